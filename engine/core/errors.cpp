@@ -1,0 +1,38 @@
+#include "mallow/errors.h"
+
+#include <utility>
+
+namespace mallow {
+namespace {
+
+std::string join(const std::vector<Problem>& problems) {
+  std::string text;
+  for (const Problem& problem : problems) {
+    if (!text.empty()) text += '\n';
+    text += to_string(problem);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string to_string(const Problem& problem) {
+  std::string text = problem.file;
+  if (problem.line > 0) text += (text.empty() ? "" : ":") + std::to_string(problem.line);
+  if (problem.line > 0 && problem.column > 0) text += ':' + std::to_string(problem.column);
+  if (!problem.field.empty()) text += (text.empty() ? "" : ": ") + problem.field;
+  if (!problem.message.empty()) text += (text.empty() ? "" : ": ") + problem.message;
+  return text;
+}
+
+ConfigError::ConfigError(std::vector<Problem> problems) : Error(join(problems)), problems_(std::move(problems)) {}
+
+ConfigError::ConfigError(std::string field, std::string message)
+    : ConfigError(std::vector<Problem>{{.field = std::move(field), .message = std::move(message)}}) {}
+
+IoError::IoError(Problem problem) : Error(to_string(problem)), problem_(std::move(problem)) {}
+
+StepError::StepError(const std::string& message, std::uint32_t particle_id)
+    : Error(message), particle_id_(particle_id) {}
+
+}  // namespace mallow

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace mallow {
+
+/// One thing that is wrong with an input: where it stands, and what would be right there.
+struct Problem {
+  std::string file;     ///< empty where the value came through the API
+  int line = 0;         ///< from 1; 0 where there is no line
+  int column = 0;       ///< from 1; 0 where there is no column
+  std::string field;    ///< as the user types it: "solver.time_step", "body[2].box.count"
+  std::string message;  ///< the value given and what is allowed
+};
+
+/// "file:line:column: field: message", leaving out what is empty.
+std::string to_string(const Problem& problem);
+
+/// Everything the library throws on purpose.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A configuration, scene or argument that cannot be run; holds all of its problems at once.
+class ConfigError : public Error {
+ public:
+  explicit ConfigError(std::vector<Problem> problems);
+  /// One problem of a value that came through the API.
+  ConfigError(std::string field, std::string message);
+  const std::vector<Problem>& problems() const { return problems_; }
+
+ private:
+  std::vector<Problem> problems_;
+};
+
+/// A file that cannot be read or written, or whose content is not what it claims to be.
+class IoError : public Error {
+ public:
+  explicit IoError(Problem problem);
+  const Problem& problem() const { return problem_; }
+
+ private:
+  Problem problem_;
+};
+
+/// A step that cannot be taken. The simulation keeps the state before that step.
+class StepError : public Error {
+ public:
+  StepError(const std::string& message, std::uint32_t particle_id);
+  /// The particle that asked for it.
+  std::uint32_t particle_id() const { return particle_id_; }
+
+ private:
+  std::uint32_t particle_id_;
+};
+
+}  // namespace mallow

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mallow/body.h"
+#include "mallow/mesh.h"
+
+/// Files of meshes and particles: target mallow::scene. Readers check every count against the bytes that are left
+/// before they allocate, and throw IoError that names file, line (of text), field, value and what is allowed.
+namespace mallow {
+
+/// Triangles of an OBJ, PLY, STL or OFF file, by its ending; polygons are split into triangles, equal corners of an STL
+/// are joined.
+Mesh read_mesh(const std::filesystem::path& file);
+
+/// Points of a PLY or CSV file, by its ending: columns or properties x, y, z and, if there, vx, vy, vz; others are
+/// passed over. spacing goes into the body as it is.
+Body read_points(const std::filesystem::path& file, float spacing);
+
+/// What a frame of particles holds on disk, in id order.
+struct ParticleFrame {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> velocities;
+  std::vector<std::uint8_t> groups;  ///< group of each particle
+  double time = 0;                   ///< simulated time [s]
+  std::int64_t step = 0;             ///< steps taken
+};
+
+/// Binary PLY with x y z vx vy vz group, time and step as comments.
+void write_particles(const std::filesystem::path& file, const ParticleFrame& frame);
+ParticleFrame read_particles(const std::filesystem::path& file);
+
+/// `id,x,y,z,vx,vy,vz` with nine significant digits, which give back the same floats.
+void write_state_csv(const std::filesystem::path& file, const ParticleFrame& frame);
+
+/// Binary PLY with normals and material ids where the mesh has them.
+void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh);
+/// Wavefront OBJ.
+void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh);
+
+/// Writes a file whole or not at all: `write` gets a name beside it, which is synced and renamed when it returns and
+/// removed when it throws.
+void write_whole(const std::filesystem::path& file,
+                 const std::function<void(const std::filesystem::path& beside)>& write);
+/// The same for content that is already there.
+void write_whole(const std::filesystem::path& file, std::string_view content);
+
+}  // namespace mallow

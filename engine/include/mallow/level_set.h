@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+
+#include "mallow/body.h"
+#include "mallow/mesh.h"
+#include "mallow/surface_config.h"
+#include "mallow/vec3.h"
+
+/// What mallow does with OpenVDB: target mallow::level_set. No OpenVDB type shows here.
+namespace mallow {
+
+/// A closed mesh as an implicit shape: a narrow-band level set with `voxels` voxels along its longest side.
+/// Throws ConfigError where the mesh is empty, open (why_not_closed) or has a vertex that is not finite.
+ImplicitShape mesh_shape(const Mesh& mesh, int voxels = 192, int threads = 0);
+
+/// A closed surface around particles: Zhu & Bridson 2005 on a narrow-band level set, then dual contouring.
+/// positions: [m], finite. spacing: h of the sampled body [m], > 0. An empty span gives an empty mesh.
+/// Throws ConfigError where a value is out of range or the grid would need more than 2^31 voxels in its band.
+Mesh surface(std::span<const Vec3> positions, float spacing, const SurfaceConfig& config, int threads = 0);
+
+}  // namespace mallow

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+namespace mallow {
+
+/// One key of an alpha schedule: alpha is `alpha` at `time` [s].
+struct AlphaKey {
+  float time;
+  float alpha;
+};
+
+/// The blend parameter alpha over time: piecewise linear between keys, constant before the first and after the
+/// last. One number is a schedule of one key. Valid: every alpha in [0, 1], times finite and strictly increasing.
+class AlphaSchedule {
+ public:
+  AlphaSchedule(float alpha = 0.0f) : keys_{{0.0f, alpha}} {}  // NOLINT: a number is a schedule
+  AlphaSchedule(std::vector<AlphaKey> keys) : keys_(std::move(keys)) {}  // NOLINT
+  AlphaSchedule(std::initializer_list<AlphaKey> keys) : keys_(keys) {}
+
+  float at(double time) const;
+  /// The smallest and the largest alpha it ever takes.
+  float lowest() const;
+  float highest() const;
+  const std::vector<AlphaKey>& keys() const { return keys_; }
+
+ private:
+  std::vector<AlphaKey> keys_;
+};
+
+/// What a group is made of. Symbols are those of Takamatsu & Kanai [TK].
+struct Material {
+  /// Elastic solid (0) to fluid (1). [TK eq. 10]
+  AlphaSchedule alpha = 0.0f;
+  /// Mean external acceleration above which the reference shape is updated, at alpha 0: γ_u [m/s²], >= 0.
+  /// The threshold in force is γ_u (1 − alpha). [TK eq. 14]
+  float update_threshold = 12.0f;
+  /// k [m²/s²], >= 0: pressure is k (ρ − ρ0). [TK eq. 1]
+  float pressure_coefficient = 16.0f;
+  /// μ [Pa s], >= 0. [TK eq. 2]
+  float viscosity = 0.5f;
+  /// Δt_SM [s], > 0; left out: the solver's time_step. [TK eq. 13]
+  std::optional<float> elastic_time_step;
+  /// m [kg], > 0. Left out: follows from rest_density; 1 if that is left out too.
+  std::optional<float> particle_mass;
+  /// ρ0 [kg/m³], > 0. Left out: follows from particle_mass, so that a full lattice is at rest pressure.
+  std::optional<float> rest_density;
+  /// Share of a negative pressure that acts, in [0, 1].
+  float cohesion = 0.0f;
+  /// Radius of the shape matching regions [m], > 0; left out: the solver's support_radius. [TK eq. 7]
+  std::optional<float> region_radius;
+};
+
+}  // namespace mallow

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "mallow/vec3.h"
+
+namespace mallow {
+
+/// A triangle mesh. Triangles are counter-clockwise seen from outside; indices are valid.
+struct Mesh {
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Vec3> normals;               ///< per vertex, unit length; empty or as long as `vertices`
+  std::vector<std::uint8_t> material_ids;  ///< per vertex, group the surface belongs to; empty: all 0
+};
+
+/// The smallest box that holds all vertices; {0, 0} for an empty mesh.
+Aabb bounds(const Mesh& mesh);
+
+/// What keeps a mesh from enclosing a volume, in words ("12 open edges, the first between vertices 3 and 4"), or an
+/// empty string. Closed means: every edge belongs to an even number of triangles, and there is at least one triangle.
+std::string why_not_closed(const Mesh& mesh);
+
+}  // namespace mallow

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace mallow {
+
+/// The phases of a step, in the order in which they run.
+enum class Phase {
+  reference_update,  ///< check of the update rule, new reference shapes and regions [TK 3.2]
+  neighbors,         ///< cell grid and neighbour lists
+  density,           ///< density and pressure [TK eq. 3]
+  accelerations,     ///< pressure and viscosity [TK eq. 1, 2, 4]
+  time_step,         ///< [TK eq. 12]
+  region_sums,       ///< sums over the regions, first of two
+  rotations,         ///< polar decompositions
+  goals,             ///< goal positions, second of the sums over regions [TK eq. 7]
+  motion,            ///< blend, contact, positions [TK eq. 10, 11]
+};
+inline constexpr std::size_t k_phase_count = 9;
+/// "region_sums" and the like.
+const char* name(Phase phase);
+
+/// Wall time per phase [s].
+using PhaseTimes = std::array<double, k_phase_count>;
+
+/// What one step did.
+struct StepReport {
+  double time_step = 0;        ///< Δt taken [s]
+  double max_velocity = 0;     ///< V of eq. 12 [m/s]; 0 where no SPH acts
+  bool limited = false;        ///< Δt is below Δt0
+  int updated_references = 0;  ///< groups whose reference shape was updated at the start of this step
+  PhaseTimes seconds{};
+};
+
+/// What a simulation runs and holds; see Simulation::info().
+struct GroupInfo {
+  std::string name;
+  std::size_t particles = 0;
+  float spacing = 0;
+  float particle_mass = 0;
+  float rest_density = 0;
+  float region_radius = 0;
+  double average_neighbors = 0;  ///< mean |N_i| over the reference shape, i included
+  bool shape_matching = false;   ///< runs now
+};
+struct SimulationInfo {
+  std::size_t particles = 0;
+  std::vector<GroupInfo> groups;
+  bool sph = false;          ///< SPH sums run
+  bool viscosity = false;    ///< viscous terms run
+  bool cross_group = false;  ///< contact between groups runs
+  std::size_t bytes = 0;     ///< memory of columns, lists and scratch
+};
+
+}  // namespace mallow

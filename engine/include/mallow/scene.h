@@ -1,0 +1,102 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "mallow/body.h"
+#include "mallow/collider.h"
+#include "mallow/material.h"
+#include "mallow/simulation.h"
+#include "mallow/solver_config.h"
+#include "mallow/surface_config.h"
+
+/// Scene files (TOML): target mallow::scene.
+namespace mallow {
+
+struct SceneMaterial {
+  std::string name;
+  Material material;
+  std::optional<Vec3> color;  ///< linear RGB in [0, 1]; left out: one of a palette
+};
+
+struct SphereSource {
+  Vec3 center{0, 0, 0};
+  float radius = 1.0f;
+  Sampling sampling;
+};
+struct MeshSource {
+  std::filesystem::path file;  ///< relative to the scene
+  Sampling sampling;
+  Placement placement;
+};
+struct PointsSource {
+  std::filesystem::path file;  ///< relative to the scene
+  float spacing = 1.0f;
+};
+struct ImplicitSource {
+  std::string shape;  ///< a name of implicit_shape_names()
+  Sampling sampling;
+  Placement placement;
+};
+using BodySource = std::variant<Lattice, SphereSource, MeshSource, PointsSource, ImplicitSource>;
+
+struct SceneBody {
+  std::string material;
+  std::string group;  ///< empty: a group of its own
+  BodySource source;
+  Vec3 velocity{0, 0, 0};
+};
+
+struct ScenePin {
+  Aabb box;
+  Vec3 velocity{0, 0, 0};
+};
+
+struct RunConfig {
+  int frames = 240;                 ///< >= 0
+  std::optional<float> frame_time;  ///< [s], > 0; left out: one step a frame
+};
+
+/// How pictures are taken.
+struct RenderConfig {
+  int width = 960;                ///< pixels, in [16, 8192]
+  int height = 540;               ///< pixels, in [16, 8192]
+  int samples = 4;                ///< rays per pixel, in [1, 256]
+  std::optional<Vec3> eye;        ///< left out: chosen so that the first frame's scene is in view
+  std::optional<Vec3> target;
+  float field_of_view = 35.0f;    ///< vertical, degrees, in [1, 120]
+  int frames_per_second = 30;     ///< of the film, in [1, 120]
+};
+
+struct Scene {
+  std::filesystem::path file;
+  SolverConfig solver;
+  std::vector<SceneMaterial> materials;
+  std::vector<SceneBody> bodies;
+  std::vector<Collider> colliders;
+  std::vector<ScenePin> pins;
+  SurfaceConfig surface;
+  RunConfig run;
+  RenderConfig render;
+};
+
+/// Reads a scene. Each override is "section.key=value" ("solver.time_step=0.1", "material[0].alpha=0.5") with the value
+/// in TOML. Throws ConfigError with all problems at once, each with file, line and column.
+Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+/// The scene as a TOML document with every value in it, defaults too; read_scene() gives the same scene back.
+std::string print_scene(const Scene& scene);
+/// Every key a scene file may hold: one line each with default, range, unit and meaning.
+std::string describe_scene_keys();
+
+/// The points of a body as the scene would add them. Throws ConfigError or IoError.
+Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int threads = 0);
+/// The simulation of a scene, ready to step. `threads` as in SolverConfig. Throws ConfigError with all problems found.
+Simulation build(const Scene& scene, int threads = 0);
+/// The material of each group that build() makes, in order of GroupId.
+std::vector<std::size_t> group_materials(const Scene& scene);
+
+}  // namespace mallow

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+
+#include "mallow/vec3.h"
+
+namespace mallow {
+
+/// Which reading of the paper's SPH sums is run.
+enum class Formulation {
+  conservative,  ///< spiky pressure gradient, pairwise pressure and viscosity: momentum is kept (Mueller 2003)
+  printed,       ///< [TK] eq. 1 and 2 to the letter: poly6 everywhere, p_j alone, v_j alone
+};
+
+/// What holds for a whole simulation. Copied when given to a Simulation.
+struct SolverConfig {
+  /// Upper bound of a step, Δt0 [s], > 0. [TK eq. 12]
+  float time_step = 0.15f;
+  /// Radius of the SPH kernels, σ [m], > 0; there is no default. [TK eq. 3]
+  float support_radius = 0.0f;
+  /// Acceleration on every particle [m/s²], finite.
+  Vec3 gravity{0.0f, 0.0f, -0.3f};
+  /// Steps between the checks that update reference shapes, m_u >= 1. [TK 3.2]
+  int update_interval = 60;
+  Formulation formulation = Formulation::conservative;
+  /// Also bound the step by the speed of sound and by viscous diffusion.
+  bool acoustic_limit = true;
+  /// Distance from a collider at which a particle touches it [m], >= 0; left out: half the spacing of its group.
+  std::optional<float> contact_offset;
+  /// Threads of every phase, >= 1; 0 takes what the machine has. Results do not depend on it.
+  int threads = 0;
+};
+
+}  // namespace mallow

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace mallow {
+
+/// A point or vector in space, single precision: x, y, z; metres or whatever length unit the scene uses.
+using Vec3 = Eigen::Vector3f;
+
+/// An axis-aligned box. Valid where min <= max in every component.
+struct Aabb {
+  Vec3 min{0, 0, 0};
+  Vec3 max{0, 0, 0};
+};
+
+}  // namespace mallow

@@ -1,0 +1,8 @@
+# OpenVDB ships its find module beside its libraries and not where CMake looks.
+find_path(MALLOW_OPENVDB_MODULE FindOpenVDB.cmake
+  PATH_SUFFIXES lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB lib/cmake/OpenVDB lib64/cmake/OpenVDB)
+mark_as_advanced(MALLOW_OPENVDB_MODULE)
+if(MALLOW_OPENVDB_MODULE)
+  list(APPEND CMAKE_MODULE_PATH ${MALLOW_OPENVDB_MODULE})
+endif()
+find_package(OpenVDB QUIET COMPONENTS openvdb)
