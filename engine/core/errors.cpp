@@ -17,15 +17,23 @@ std::string join(const std::vector<Problem>& problems) {
 }  // namespace
 
 std::string to_string(const Problem& problem) {
-  std::string text = problem.file;
-  if (problem.line > 0) text += (text.empty() ? "" : ":") + std::to_string(problem.line);
-  if (problem.line > 0 && problem.column > 0) text += ':' + std::to_string(problem.column);
-  if (!problem.field.empty()) text += (text.empty() ? "" : ": ") + problem.field;
-  if (!problem.message.empty()) text += (text.empty() ? "" : ": ") + problem.message;
+  std::string place = problem.file;
+  if (problem.line > 0) {
+    if (!place.empty()) place += ':';
+    place += std::to_string(problem.line);
+    if (problem.column > 0) place.append(1, ':').append(std::to_string(problem.column));
+  }
+  std::string text;
+  for (const std::string* part : {&std::as_const(place), &problem.field, &problem.message}) {
+    if (part->empty()) continue;
+    if (!text.empty()) text += ": ";
+    text += *part;
+  }
   return text;
 }
 
-ConfigError::ConfigError(std::vector<Problem> problems) : Error(join(problems)), problems_(std::move(problems)) {}
+ConfigError::ConfigError(std::vector<Problem> problems)
+    : Error(join(problems)), problems_(std::move(problems)) {}
 
 ConfigError::ConfigError(std::string field, std::string message)
     : ConfigError(std::vector<Problem>{{.field = std::move(field), .message = std::move(message)}}) {}

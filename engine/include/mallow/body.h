@@ -18,7 +18,8 @@ struct Body {
   std::vector<Vec3> velocities;  ///< of each point, added to `velocity`; empty or as long as `positions`
 };
 
-/// A box of count[0] × count[1] × count[2] cells of side `spacing` from `corner` on; a point in each cell's centre.
+/// A box of count[0] × count[1] × count[2] cells of side `spacing` from `corner` on; a point in each cell's
+/// centre.
 struct Lattice {
   std::array<int, 3> count{1, 1, 1};  ///< each >= 1
   float spacing = 1.0f;               ///< [m], > 0
@@ -29,8 +30,8 @@ struct Lattice {
 struct Sampling {
   std::optional<float> spacing;  ///< h [m], > 0
   std::optional<int> count;      ///< wanted number of points, >= 1; met within 1% where the shape allows it
-  /// Random displacement of every lattice point, uniform in ± jitter · h per axis, in [0, 0.5]. The same for every
-  /// run and machine.
+  /// Random displacement of every lattice point, uniform in ± jitter · h per axis, in [0, 0.5]. The same for
+  /// every run and machine.
   float jitter = 0.0f;
 };
 
@@ -47,13 +48,15 @@ ImplicitShape sphere_shape(const Vec3& center, float radius);
 /// The head of [TK] Fig. 5(a) in our own making: smoothly joined implicit shapes, 40 high, standing on z = 0,
 /// looking along +x.
 ImplicitShape moai_shape();
-/// An implicit shape by the name it has in scene files ("moai"). Throws ConfigError that lists the known names.
+/// An implicit shape by the name it has in scene files ("moai"). Throws ConfigError that lists the known
+/// names.
 ImplicitShape implicit_shape(const std::string& name);
 /// Every name implicit_shape() knows.
 std::span<const char* const> implicit_shape_names();
 
-/// Where a shape is put: turned about x, then y, then z [degrees], scaled so that the longest side of its bounds is
-/// `size` [m], and moved so that the middle of its bounds is at `center`. What is left out stays as it is.
+/// Where a shape is put: turned about x, then y, then z [degrees], scaled so that the longest side of its
+/// bounds is `size` [m], and moved so that the middle of its bounds is at `center`. What is left out stays as
+/// it is.
 struct Placement {
   Vec3 rotate{0, 0, 0};
   std::optional<float> size;  ///< > 0
@@ -63,8 +66,9 @@ ImplicitShape place(const ImplicitShape& shape, const Placement& placement);
 
 /// The points of a lattice box. Throws ConfigError.
 Body sample(const Lattice& lattice);
-/// The points of a cubic lattice inside a shape. This is the one sampler of volumes: library, scene files and command
-/// line report the same count. Throws ConfigError where a value is out of range or no point lies inside.
+/// The points of a cubic lattice inside a shape. This is the one sampler of volumes: library, scene files and
+/// command line report the same count. Throws ConfigError where a value is out of range or no point lies
+/// inside.
 Body sample(const ImplicitShape& shape, const Sampling& sampling);
 
 }  // namespace mallow

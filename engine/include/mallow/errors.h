@@ -9,11 +9,11 @@ namespace mallow {
 
 /// One thing that is wrong with an input: where it stands, and what would be right there.
 struct Problem {
-  std::string file;     ///< empty where the value came through the API
-  int line = 0;         ///< from 1; 0 where there is no line
-  int column = 0;       ///< from 1; 0 where there is no column
-  std::string field;    ///< as the user types it: "solver.time_step", "body[2].box.count"
-  std::string message;  ///< the value given and what is allowed
+  std::string file = {};     ///< empty where the value came through the API
+  int line = 0;              ///< from 1; 0 where there is no line
+  int column = 0;            ///< from 1; 0 where there is no column
+  std::string field = {};    ///< as the user types it: "solver.time_step", "body[2].box.count"
+  std::string message = {};  ///< the value given and what is allowed
 };
 
 /// "file:line:column: field: message", leaving out what is empty.

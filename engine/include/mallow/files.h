@@ -11,16 +11,17 @@
 #include "mallow/body.h"
 #include "mallow/mesh.h"
 
-/// Files of meshes and particles: target mallow::scene. Readers check every count against the bytes that are left
-/// before they allocate, and throw IoError that names file, line (of text), field, value and what is allowed.
+/// Files of meshes and particles: target mallow::scene. Readers check every count against the bytes that are
+/// left before they allocate, and throw IoError that names file, line (of text), field, value and what is
+/// allowed.
 namespace mallow {
 
-/// Triangles of an OBJ, PLY, STL or OFF file, by its ending; polygons are split into triangles, equal corners of an STL
-/// are joined.
+/// Triangles of an OBJ, PLY, STL or OFF file, by its ending; polygons are split into triangles, equal corners
+/// of an STL are joined.
 Mesh read_mesh(const std::filesystem::path& file);
 
-/// Points of a PLY or CSV file, by its ending: columns or properties x, y, z and, if there, vx, vy, vz; others are
-/// passed over. spacing goes into the body as it is.
+/// Points of a PLY or CSV file, by its ending: columns or properties x, y, z and, if there, vx, vy, vz;
+/// others are passed over. spacing goes into the body as it is.
 Body read_points(const std::filesystem::path& file, float spacing);
 
 /// What a frame of particles holds on disk, in id order.
@@ -44,8 +45,8 @@ void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh);
 /// Wavefront OBJ.
 void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh);
 
-/// Writes a file whole or not at all: `write` gets a name beside it, which is synced and renamed when it returns and
-/// removed when it throws.
+/// Writes a file whole or not at all: `write` gets a name beside it, which is synced and renamed when it
+/// returns and removed when it throws.
 void write_whole(const std::filesystem::path& file,
                  const std::function<void(const std::filesystem::path& beside)>& write);
 /// The same for content that is already there.

@@ -1,11 +1,11 @@
 #pragma once
 
 /// All of target mallow::mallow.
-#include "mallow/body.h"        // IWYU pragma: export
-#include "mallow/collider.h"    // IWYU pragma: export
-#include "mallow/errors.h"      // IWYU pragma: export
-#include "mallow/material.h"    // IWYU pragma: export
-#include "mallow/report.h"      // IWYU pragma: export
-#include "mallow/simulation.h"  // IWYU pragma: export
+#include "mallow/body.h"           // IWYU pragma: export
+#include "mallow/collider.h"       // IWYU pragma: export
+#include "mallow/errors.h"         // IWYU pragma: export
+#include "mallow/material.h"       // IWYU pragma: export
+#include "mallow/report.h"         // IWYU pragma: export
+#include "mallow/simulation.h"     // IWYU pragma: export
 #include "mallow/solver_config.h"  // IWYU pragma: export
-#include "mallow/vec3.h"        // IWYU pragma: export
+#include "mallow/vec3.h"           // IWYU pragma: export

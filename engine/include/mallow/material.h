@@ -1,6 +1,8 @@
 #pragma once
 
+#include <initializer_list>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace mallow {
@@ -11,11 +13,12 @@ struct AlphaKey {
   float alpha;
 };
 
-/// The blend parameter alpha over time: piecewise linear between keys, constant before the first and after the
-/// last. One number is a schedule of one key. Valid: every alpha in [0, 1], times finite and strictly increasing.
+/// The blend parameter alpha over time: piecewise linear between keys, constant before the first and after
+/// the last. One number is a schedule of one key. Valid: every alpha in [0, 1], times finite and strictly
+/// increasing.
 class AlphaSchedule {
  public:
-  AlphaSchedule(float alpha = 0.0f) : keys_{{0.0f, alpha}} {}  // NOLINT: a number is a schedule
+  AlphaSchedule(float alpha = 0.0f) : keys_{{0.0f, alpha}} {}            // NOLINT: a number is a schedule
   AlphaSchedule(std::vector<AlphaKey> keys) : keys_(std::move(keys)) {}  // NOLINT
   AlphaSchedule(std::initializer_list<AlphaKey> keys) : keys_(keys) {}
 
@@ -41,15 +44,15 @@ struct Material {
   /// μ [Pa s], >= 0. [TK eq. 2]
   float viscosity = 0.5f;
   /// Δt_SM [s], > 0; left out: the solver's time_step. [TK eq. 13]
-  std::optional<float> elastic_time_step;
+  std::optional<float> elastic_time_step = {};
   /// m [kg], > 0. Left out: follows from rest_density; 1 if that is left out too.
-  std::optional<float> particle_mass;
+  std::optional<float> particle_mass = {};
   /// ρ0 [kg/m³], > 0. Left out: follows from particle_mass, so that a full lattice is at rest pressure.
-  std::optional<float> rest_density;
+  std::optional<float> rest_density = {};
   /// Share of a negative pressure that acts, in [0, 1].
   float cohesion = 0.0f;
   /// Radius of the shape matching regions [m], > 0; left out: the solver's support_radius. [TK eq. 7]
-  std::optional<float> region_radius;
+  std::optional<float> region_radius = {};
 };
 
 }  // namespace mallow

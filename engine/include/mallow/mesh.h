@@ -19,8 +19,9 @@ struct Mesh {
 /// The smallest box that holds all vertices; {0, 0} for an empty mesh.
 Aabb bounds(const Mesh& mesh);
 
-/// What keeps a mesh from enclosing a volume, in words ("12 open edges, the first between vertices 3 and 4"), or an
-/// empty string. Closed means: every edge belongs to an even number of triangles, and there is at least one triangle.
+/// What keeps a mesh from enclosing a volume, in words ("12 open edges, the first between vertices 3 and 4"),
+/// or an empty string. Closed means: every edge belongs to an even number of triangles, and there is at least
+/// one triangle.
 std::string why_not_closed(const Mesh& mesh);
 
 }  // namespace mallow

@@ -63,13 +63,13 @@ struct RunConfig {
 
 /// How pictures are taken.
 struct RenderConfig {
-  int width = 960;                ///< pixels, in [16, 8192]
-  int height = 540;               ///< pixels, in [16, 8192]
-  int samples = 4;                ///< rays per pixel, in [1, 256]
-  std::optional<Vec3> eye;        ///< left out: chosen so that the first frame's scene is in view
+  int width = 960;          ///< pixels, in [16, 8192]
+  int height = 540;         ///< pixels, in [16, 8192]
+  int samples = 4;          ///< rays per pixel, in [1, 256]
+  std::optional<Vec3> eye;  ///< left out: chosen so that the first frame's scene is in view
   std::optional<Vec3> target;
-  float field_of_view = 35.0f;    ///< vertical, degrees, in [1, 120]
-  int frames_per_second = 30;     ///< of the film, in [1, 120]
+  float field_of_view = 35.0f;  ///< vertical, degrees, in [1, 120]
+  int frames_per_second = 30;   ///< of the film, in [1, 120]
 };
 
 struct Scene {
@@ -84,8 +84,8 @@ struct Scene {
   RenderConfig render;
 };
 
-/// Reads a scene. Each override is "section.key=value" ("solver.time_step=0.1", "material[0].alpha=0.5") with the value
-/// in TOML. Throws ConfigError with all problems at once, each with file, line and column.
+/// Reads a scene. Each override is "section.key=value" ("solver.time_step=0.1", "material[0].alpha=0.5") with
+/// the value in TOML. Throws ConfigError with all problems at once, each with file, line and column.
 Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 /// The scene as a TOML document with every value in it, defaults too; read_scene() gives the same scene back.
 std::string print_scene(const Scene& scene);
@@ -94,7 +94,8 @@ std::string describe_scene_keys();
 
 /// The points of a body as the scene would add them. Throws ConfigError or IoError.
 Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int threads = 0);
-/// The simulation of a scene, ready to step. `threads` as in SolverConfig. Throws ConfigError with all problems found.
+/// The simulation of a scene, ready to step. `threads` as in SolverConfig. Throws ConfigError with all
+/// problems found.
 Simulation build(const Scene& scene, int threads = 0);
 /// The material of each group that build() makes, in order of GroupId.
 std::vector<std::size_t> group_materials(const Scene& scene);

@@ -5,6 +5,8 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "mallow/body.h"
 #include "mallow/collider.h"
@@ -23,25 +25,30 @@ enum class GroupId : std::uint32_t {};
 enum class ColliderId : std::uint32_t {};
 enum class PinId : std::uint32_t {};
 
-/// Three columns, one per component, seen without a copy. Row i of every view of a simulation is the same particle;
-/// its id is ids()[i]. A view is valid until the next step or change of the simulation.
+/// Three columns, one per component, seen without a copy. Row i of every view of a simulation is the same
+/// particle; its id is ids()[i]. A view is valid until the next step or change of the simulation.
 template <class Scalar>
 class VectorColumns {
  public:
-  using Map = Eigen::Map<std::conditional_t<std::is_const_v<Scalar>, const Eigen::Matrix<float, Eigen::Dynamic, 3>,
-                                            Eigen::Matrix<float, Eigen::Dynamic, 3>>,
-                         Eigen::Unaligned, Eigen::OuterStride<>>;
+  using Map =
+      Eigen::Map<std::conditional_t<std::is_const_v<Scalar>, const Eigen::Matrix<float, Eigen::Dynamic, 3>,
+                                    Eigen::Matrix<float, Eigen::Dynamic, 3>>,
+                 Eigen::Unaligned, Eigen::OuterStride<>>;
 
-  VectorColumns(Scalar* data, std::size_t size, std::size_t stride) : data_(data), size_(size), stride_(stride) {}
+  VectorColumns(Scalar* data, std::size_t size, std::size_t stride)
+      : data_(data), size_(size), stride_(stride) {}
 
   std::size_t size() const { return size_; }
   std::span<Scalar> x() const { return {data_, size_}; }
   std::span<Scalar> y() const { return {data_ + stride_, size_}; }
   std::span<Scalar> z() const { return {data_ + 2 * stride_, size_}; }
-  Vec3 operator[](std::size_t row) const { return {data_[row], data_[stride_ + row], data_[2 * stride_ + row]}; }
+  Vec3 operator[](std::size_t row) const {
+    return {data_[row], data_[stride_ + row], data_[2 * stride_ + row]};
+  }
   /// n × 3, a row per particle.
   Map eigen() const {
-    return {data_, static_cast<Eigen::Index>(size_), 3, Eigen::OuterStride<>(static_cast<Eigen::Index>(stride_))};
+    return {data_, static_cast<Eigen::Index>(size_), 3,
+            Eigen::OuterStride<>(static_cast<Eigen::Index>(stride_))};
   }
 
  private:
@@ -62,8 +69,9 @@ struct ForceInput {
 /// Adds accelerations [m/s²] to what it is given; called once a step, before anything else moves.
 using ForceCallback = std::function<void(const ForceInput&, VectorSpan accelerations)>;
 
-/// A scene in motion: SPH and shape matching blended by alpha [TK]. Results depend on the binary and on what was
-/// added, never on the number of threads. One thread may use an object at a time; different objects are independent.
+/// A scene in motion: SPH and shape matching blended by alpha [TK]. Results depend on the binary and on what
+/// was added, never on the number of threads. One thread may use an object at a time; different objects are
+/// independent.
 class Simulation {
  public:
   /// Throws ConfigError with every value that is out of range.
@@ -74,14 +82,14 @@ class Simulation {
 
   /// A group without particles yet. Throws ConfigError with every value that is out of range.
   GroupId add_group(const Material& material, std::string name = {});
-  /// Adds a body to a group; its particles get the next ids. Bodies of one group share one spacing; a group that
-  /// already moved takes the present positions as its reference shape. Throws ConfigError.
+  /// Adds a body to a group; its particles get the next ids. Bodies of one group share one spacing; a group
+  /// that already moved takes the present positions as its reference shape. Throws ConfigError.
   void add_body(const Body& body, GroupId group);
   /// Adds a body as a group of its own.
   GroupId add_body(const Body& body, const Material& material, std::string name = {});
   ColliderId add_collider(const Collider& collider);
-  /// Particles that are in `region` now move with `velocity` from now on and answer to nothing else. The region may
-  /// hold none: that is a ConfigError, as nobody means it.
+  /// Particles that are in `region` now move with `velocity` from now on and answer to nothing else. The
+  /// region may hold none: that is a ConfigError, as nobody means it.
   PinId pin(const Aabb& region, const Vec3& velocity = {0, 0, 0});
   PinId pin(std::span<const ParticleId> ids, const Vec3& velocity = {0, 0, 0});
   /// An empty function takes the callback away.
@@ -94,13 +102,13 @@ class Simulation {
   /// Allocates, sorts and builds what the first step needs; step() does it where it was not done.
   /// Throws ConfigError where there are no particles, or particles of different groups are closer than h/10.
   void prepare();
-  /// One step of algorithm 3.3 of the paper. Throws StepError and keeps the state where Δt would fall below Δt0/1000
-  /// or a number is no longer finite.
+  /// One step of algorithm 3.3 of the paper. Throws StepError and keeps the state where Δt would fall below
+  /// Δt0/1000 or a number is no longer finite.
   StepReport step();
 
   std::size_t particle_count() const;
   std::size_t group_count() const;
-  double time() const;            ///< simulated time [s]
+  double time() const;  ///< simulated time [s]
   std::int64_t step_count() const;
   const SolverConfig& config() const;
   const std::vector<Collider>& colliders() const;  ///< as they stand now
@@ -126,8 +134,9 @@ class Simulation {
   /// What runs and what it holds; calls prepare().
   SimulationInfo info();
 
+  struct State;  ///< internal
+
  private:
-  struct State;
   std::unique_ptr<State> state_;
 };
 

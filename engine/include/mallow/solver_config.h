@@ -8,7 +8,8 @@ namespace mallow {
 
 /// Which reading of the paper's SPH sums is run.
 enum class Formulation {
-  conservative,  ///< spiky pressure gradient, pairwise pressure and viscosity: momentum is kept (Mueller 2003)
+  conservative,  ///< spiky pressure gradient, pairwise pressure and viscosity: momentum is kept (Mueller
+                 ///< 2003)
   printed,       ///< [TK] eq. 1 and 2 to the letter: poly6 everywhere, p_j alone, v_j alone
 };
 
@@ -25,8 +26,9 @@ struct SolverConfig {
   Formulation formulation = Formulation::conservative;
   /// Also bound the step by the speed of sound and by viscous diffusion.
   bool acoustic_limit = true;
-  /// Distance from a collider at which a particle touches it [m], >= 0; left out: half the spacing of its group.
-  std::optional<float> contact_offset;
+  /// Distance from a collider at which a particle touches it [m], >= 0; left out: half the spacing of its
+  /// group.
+  std::optional<float> contact_offset = {};
   /// Threads of every phase, >= 1; 0 takes what the machine has. Results do not depend on it.
   int threads = 0;
 };

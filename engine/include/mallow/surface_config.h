@@ -6,7 +6,8 @@ namespace mallow {
 
 /// How a surface is drawn around particles.
 struct SurfaceConfig {
-  /// Voxels along the longest side of the particles' bounding box, in [8, 1024]; used where voxel_size is left out.
+  /// Voxels along the longest side of the particles' bounding box, in [8, 1024]; used where voxel_size is
+  /// left out.
   int voxels = 128;
   /// Side of a voxel [m], > 0.
   std::optional<float> voxel_size;

@@ -1,0 +1,46 @@
+#pragma once
+
+namespace mallow {
+
+/// Instruction levels that kernels are compiled for. All give the same bits: fixed lanes, no contraction.
+enum class InstructionLevel {
+  baseline,  ///< x86-64-v2 (SSE 4.2), or what the compiler takes for granted on other machines
+  v3,        ///< x86-64-v3: AVX2
+  v4,        ///< x86-64-v4: AVX-512
+};
+
+/// The highest level this machine has.
+InstructionLevel best_instruction_level();
+
+}  // namespace mallow
+
+/// Kernel files are compiled once per level, each into a namespace of its own that this macro names (see
+/// mallow_add_kernels in core/kernels.cmake). They include nothing with inline functions: the linker would
+/// keep one level's copy for all.
+#ifndef MALLOW_LEVEL
+#define MALLOW_LEVEL level_baseline
+#endif
+
+#ifdef MALLOW_X86_LEVELS
+/// Picks `table` from the namespace of a level.
+#define MALLOW_SELECT(level, table)                              \
+  ((level) == ::mallow::InstructionLevel::v4   ? level_v4::table \
+   : (level) == ::mallow::InstructionLevel::v3 ? level_v3::table \
+                                               : level_baseline::table)
+#define MALLOW_DECLARE_LEVELS(type, table) \
+  namespace level_baseline {               \
+  extern const type table;                 \
+  }                                        \
+  namespace level_v3 {                     \
+  extern const type table;                 \
+  }                                        \
+  namespace level_v4 {                     \
+  extern const type table;                 \
+  }
+#else
+#define MALLOW_SELECT(level, table) ((void)(level), level_baseline::table)
+#define MALLOW_DECLARE_LEVELS(type, table) \
+  namespace level_baseline {               \
+  extern const type table;                 \
+  }
+#endif

@@ -1,0 +1,33 @@
+# mallow_add_kernels(<source> [target]): compiles a kernel file once per instruction level into a target, mallow if none
+# is named; the level is chosen at run time (core/isa.h). On machines other than x86-64 there is one level, the
+# compiler's own.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
+  set(MALLOW_X86_LEVELS ON)
+endif()
+
+function(mallow_add_kernels source)
+  set(target mallow)
+  if(ARGC GREATER 1)
+    set(target ${ARGV1})
+  endif()
+  get_filename_component(name ${source} NAME_WE)
+  set(levels baseline)
+  if(MALLOW_X86_LEVELS)
+    set(flags_baseline -march=x86-64-v2)
+    set(flags_v3 -march=x86-64-v3)
+    set(flags_v4 -march=x86-64-v4 -mprefer-vector-width=512)
+    list(APPEND levels v3 v4)
+  endif()
+  foreach(level ${levels})
+    set(object mallow_${name}_${level})
+    add_library(${object} OBJECT ${source})
+    target_include_directories(${object} PRIVATE ${MALLOW_INCLUDE_DIR} ${PROJECT_SOURCE_DIR}/engine)
+    target_compile_definitions(${object} PRIVATE MALLOW_LEVEL=level_${level} $<$<BOOL:${MALLOW_X86_LEVELS}>:MALLOW_X86_LEVELS>)
+    # Without -fno-math-errno and -fno-trapping-math a square root or a comparison keeps a loop scalar; neither
+    # changes a result.
+    target_compile_options(${object} PRIVATE ${flags_${level}} -fno-math-errno -fno-trapping-math $<$<NOT:$<CONFIG:Debug>>:-O3>)
+    target_link_libraries(${object} PRIVATE mallow_build_options Eigen3::Eigen)
+    set_target_properties(${object} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${object}>)
+  endforeach()
+endfunction()

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+/// What kernels see of columns: plain pointers, nothing inline (core/isa.h says why).
+namespace mallow {
+
+/// Lanes that kernels handle at once, at every instruction level: columns are padded to whole blocks of it.
+inline constexpr std::size_t k_lanes = 16;
+
+struct ConstVectors {
+  const float* x;
+  const float* y;
+  const float* z;
+};
+struct Vectors {
+  float* x;
+  float* y;
+  float* z;
+};
+
+}  // namespace mallow

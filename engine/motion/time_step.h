@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/column.h"
+#include "particles/particle_store.h"
+
+namespace mallow {
+
+/// The fastest unpinned particle that SPH and external forces would make in a full step.
+struct Fastest {
+  float squared_velocity = -1;  ///< V² [m²/s²]; NaN and infinity count as fastest of all
+  std::uint32_t row = 0;
+};
+
+/// V = max |v + Δt0 (a^SPH + a_ext)|, contact not in a_ext. [model 3, TK eq. 12]
+/// external: gravity is `gravity`, user forces and other groups are columns or null.
+Fastest fastest_particle(const ParticleStore& store, float time_step, const VectorColumn& sph_acceleration,
+                         const Vec3& gravity, const VectorColumn* cross_group, const VectorColumn* user,
+                         int threads, std::vector<Fastest>& partial);
+
+/// What bounds the step beside V.
+struct TimeStepLimits {
+  float time_step;       ///< Δt0 [s]
+  float support_radius;  ///< σ [m]
+  bool acoustic;         ///< the two limits below count
+  float sound_speed;     ///< largest √k [m/s]
+  float viscous_time;    ///< smallest σ² ρ0/μ [s]; infinite without viscosity
+};
+/// Δt of model section 3.
+double limited_time_step(const TimeStepLimits& limits, double max_velocity);
+
+}  // namespace mallow

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/column.h"
+#include "core/isa.h"
+#include "neighbors/cell_grid.h"
+
+namespace mallow {
+
+/// For every sorted point of a grid the sorted places of all points within a radius, itself included,
+/// ascending. Lists of one block of points lie together; where a block lies in `indices` may differ from run
+/// to run, what a list holds does not.
+struct NeighborLists {
+  Column<std::uint32_t> begin;    ///< per point: where its list starts in `indices`
+  Column<std::uint32_t> count;    ///< per point: how long it is
+  Column<std::uint32_t> indices;  ///< the lists, with unused space between blocks
+  std::size_t total = 0;          ///< sum of all counts
+
+  std::span<const std::uint32_t> of(std::size_t i) const { return {indices.data() + begin[i], count[i]}; }
+  double average() const {
+    return count.empty() ? 0.0 : static_cast<double>(total) / static_cast<double>(count.size());
+  }
+  std::size_t bytes() const { return begin.bytes() + count.bytes() + indices.bytes(); }
+};
+
+/// grid: built with at least `radius`. Grows `indices` as needed; `capacity` is where it starts when it is
+/// empty (0: a guess). Throws ConfigError where the lists would need 2^32 entries.
+void build_neighbor_lists(const CellGrid& grid, float radius, int threads, InstructionLevel level,
+                          NeighborLists& lists, std::size_t capacity = 0);
+
+}  // namespace mallow

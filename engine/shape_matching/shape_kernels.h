@@ -1,0 +1,55 @@
+#pragma once
+
+#include "core/isa.h"
+#include "core/raw_columns.h"
+
+namespace mallow {
+
+/// Floats of a row: twelve sums and padding, one cache line, so that a neighbour costs one load and one add.
+inline constexpr std::size_t k_row = 16;
+
+/// The regions of one group: every particle j owns the region N_j. Everything is relative to a rigid frame of
+/// the group, x = R_g x̄ + t + u, so that what is summed and subtracted is as small as the deformation, not as
+/// large as the body: a rigid motion gives u = 0, Q = 0 and goal = position exactly.
+///
+/// symbol  | column        | unit | eq.
+/// x̄_i     | reference     | m    | relative to the group's centre
+/// u_i     | (computed)    | m    | x_i − (R_g x̄_i + t)
+/// w_i     | weight, 1/|N_i| | 1  | model 2; the group's mass cancels
+/// W_j     | region_weight | 1    | Σ_{i∈N_j} w_i
+/// c̄_j     | center        | m    | Σ w x̄ / W
+/// B_j     | moment        | m²   | Σ w x̄ x̄ᵀ − W c̄ c̄ᵀ: xx yy zz yz xz xy
+/// R_j     | rotation      | 1    | quaternion x y z w, last step's where a step starts
+struct ShapeInput {
+  const std::uint32_t* list_begin;
+  const std::uint32_t* list_count;
+  const std::uint32_t* indices;
+  ConstVectors position;  ///< of the group's first particle on
+  ConstVectors reference;
+  const float* weight;
+  const float* region_weight;
+  ConstVectors center;
+  const float* moment[6];
+  float frame_rotation[9];     ///< R_g, row by row
+  float frame_translation[3];  ///< t
+};
+
+struct ShapeKernels {
+  /// Row i: w u x̄ᵀ (row by row), w u.
+  void (*write_rows)(const ShapeInput&, std::size_t begin, std::size_t end, float* rows) noexcept;
+  /// sums row j: Σ_{i∈N_j} of rows.
+  void (*sum_regions)(const ShapeInput&, std::size_t begin, std::size_t end, const float* rows,
+                      float* sums) noexcept;
+  /// A_j = R_g B_j + Σ w u x̄ᵀ − (Σ w u) c̄ᵀ, R_j by Newton's method from the last rotation. Replaces sums row
+  /// j by R_j − R_g (row by row) and u of the centre − (R_j − R_g) c̄. Regions that Newton cannot decide
+  /// (singular, mirrored, far away) keep their sums row, with their A in front, and get undecided[j] = 1.
+  /// begin: a multiple of k_lanes.
+  void (*solve_rotations)(const ShapeInput&, std::size_t begin, std::size_t end, float* sums,
+                          float* const* rotation, std::uint8_t* undecided) noexcept;
+  /// g_i − x_i = w_i (Σ (R_j − R_g) x̄_i + Σ (...)) − u_i. [TK eq. 7]
+  void (*goals)(const ShapeInput&, std::size_t begin, std::size_t end, const float* sums,
+                Vectors pull) noexcept;
+};
+MALLOW_DECLARE_LEVELS(ShapeKernels, shape_kernels)
+
+}  // namespace mallow

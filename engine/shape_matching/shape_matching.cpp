@@ -1,0 +1,129 @@
+#include "shape_matching/shape_matching.h"
+
+#include "core/parallel.h"
+#include "core/polar_rotation.h"
+
+namespace mallow {
+namespace {
+
+ShapeInput input(const VectorColumn& positions, std::size_t begin, const ShapeMatching& shape) {
+  ShapeInput in{
+      .list_begin = shape.regions.begin.data(),
+      .list_count = shape.regions.count.data(),
+      .indices = shape.regions.indices.data(),
+      .position = {positions.x() + begin, positions.y() + begin, positions.z() + begin},
+      .reference = raw(shape.reference),
+      .weight = shape.weight.data(),
+      .region_weight = shape.region_weight.data(),
+      .center = raw(shape.center),
+      .moment = {},
+      .frame_rotation = {},
+      .frame_translation = {},
+  };
+  for (std::size_t k = 0; k < 6; ++k) in.moment[k] = shape.moment[k].data();
+  const Eigen::Matrix3d rotation = shape.frame.rotation.toRotationMatrix();
+  for (int i = 0; i < 3; ++i) {
+    in.frame_translation[i] = static_cast<float>(shape.frame.translation[i]);
+    for (int j = 0; j < 3; ++j) in.frame_rotation[3 * i + j] = static_cast<float>(rotation(i, j));
+  }
+  return in;
+}
+
+/// Any frame near the group's motion does; the best one leaves the smallest u.
+void update_frame(const VectorColumn& positions, std::size_t begin, int threads, ShapeMatching& shape) {
+  const std::size_t n = shape.reference.size();
+  const Eigen::Vector3d near_origin = positions.get(begin).cast<double>();
+  using Sums = std::array<double, 12>;
+  const Sums sums = parallel_reduce(
+      threads, n, shape.partial, Sums{},
+      [&](std::size_t first, std::size_t last) {
+        Sums s{};
+        for (std::size_t i = first; i < last; ++i) {
+          const Eigen::Vector3d x = positions.get(begin + i).cast<double>() - near_origin;
+          const Eigen::Vector3d y = shape.reference.get(i).cast<double>();
+          for (int a = 0; a < 3; ++a) {
+            for (int b = 0; b < 3; ++b) s[static_cast<std::size_t>(3 * a + b)] += x[a] * y[b];
+            s[static_cast<std::size_t>(9 + a)] += x[a];
+          }
+        }
+        return s;
+      },
+      [](Sums a, const Sums& b) {
+        for (std::size_t k = 0; k < a.size(); ++k) a[k] += b[k];
+        return a;
+      });
+  const double count = static_cast<double>(n);
+  Eigen::Matrix3d a;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) a(i, j) = sums[static_cast<std::size_t>(3 * i + j)] / count;
+  shape.frame.rotation = polar_rotation(a, shape.frame.rotation, shape.total_moment);
+  // The reference is centred, so its mean needs no turning.
+  shape.frame.translation = near_origin + Eigen::Vector3d(sums[9], sums[10], sums[11]) / count;
+}
+
+/// The few regions that Newton's method leaves: singular, mirrored, or turned too far.
+void solve_undecided(const ShapeInput& in, std::size_t begin, std::size_t end, ShapeMatching& shape) {
+  for (std::size_t j = begin; j < end; ++j) {
+    if (!shape.undecided[j]) continue;
+    float* const row = shape.sums.data() + j * k_row;
+    Eigen::Matrix3d a;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) a(i, k) = static_cast<double>(row[3 * i + k]);
+    const Eigen::Quaterniond last(
+        static_cast<double>(shape.rotation[3][j]), static_cast<double>(shape.rotation[0][j]),
+        static_cast<double>(shape.rotation[1][j]), static_cast<double>(shape.rotation[2][j]));
+    const double scale = static_cast<double>(shape.moment[0][j] + shape.moment[1][j] + shape.moment[2][j]);
+    const Eigen::Quaterniond rotation = polar_rotation(a, last.normalized(), scale);
+    for (std::size_t k = 0; k < 4; ++k)
+      shape.rotation[k][j] = static_cast<float>(rotation.coeffs()[static_cast<Eigen::Index>(k)]);
+    const Eigen::Matrix3d r = rotation.toRotationMatrix();
+    const Vec3 center = shape.center.get(j);
+    for (int i = 0; i < 3; ++i) {
+      Vec3 difference;
+      for (int k = 0; k < 3; ++k) {
+        difference[k] = static_cast<float>(r(i, k) - static_cast<double>(in.frame_rotation[3 * i + k]));
+        row[3 * i + k] = difference[k];
+      }
+      row[9 + i] = row[9 + i] / shape.region_weight[j] - difference.dot(center);
+    }
+  }
+}
+
+}  // namespace
+
+void sum_regions(const VectorColumn& positions, std::size_t begin, int threads, InstructionLevel level,
+                 ShapeMatching& shape) {
+  update_frame(positions, begin, threads, shape);
+  const ShapeInput in = input(positions, begin, shape);
+  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
+  const std::size_t n = shape.reference.size();
+  parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
+    kernels.write_rows(in, first, last, shape.rows.data());
+  });
+  parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
+    kernels.sum_regions(in, first, last, shape.rows.data(), shape.sums.data());
+  });
+}
+
+void solve_rotations(const VectorColumn& positions, std::size_t begin, int threads, InstructionLevel level,
+                     ShapeMatching& shape) {
+  const ShapeInput in = input(positions, begin, shape);
+  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
+  float* const rotation[4] = {shape.rotation[0].data(), shape.rotation[1].data(), shape.rotation[2].data(),
+                              shape.rotation[3].data()};
+  parallel_for(threads, shape.reference.size(), [&](std::size_t first, std::size_t last) {
+    kernels.solve_rotations(in, first, last, shape.sums.data(), rotation, shape.undecided.data());
+    solve_undecided(in, first, last, shape);
+  });
+}
+
+void compute_goals(const VectorColumn& positions, std::size_t begin, int threads, InstructionLevel level,
+                   ShapeMatching& shape) {
+  const ShapeInput in = input(positions, begin, shape);
+  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
+  parallel_for(threads, shape.reference.size(), [&](std::size_t first, std::size_t last) {
+    kernels.goals(in, first, last, shape.sums.data(), raw(shape.pull));
+  });
+}
+
+}  // namespace mallow

@@ -1,0 +1,152 @@
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "simulation/state.h"
+
+namespace mallow {
+namespace {
+
+/// Steps shorter than this share of Δt0 mean that a setting is wrong, not that patience is needed.
+constexpr double k_shortest_step = 1e-3;
+
+TimeStepLimits limits(const Simulation::State& state) {
+  TimeStepLimits limits{
+      .time_step = state.config.time_step,
+      .support_radius = state.config.support_radius,
+      .acoustic = state.config.acoustic_limit,
+      .sound_speed = 0,
+      .viscous_time = std::numeric_limits<float>::infinity(),
+  };
+  for (const Group& group : state.groups) {
+    limits.sound_speed = std::max(limits.sound_speed, std::sqrt(group.material.pressure_coefficient));
+    if (group.material.viscosity > 0)
+      limits.viscous_time = std::min(limits.viscous_time, limits.support_radius * limits.support_radius *
+                                                              group.rest_density / group.material.viscosity);
+  }
+  return limits;
+}
+
+[[noreturn]] void refuse_step(const Simulation::State& state, double time_step, double velocity,
+                              std::uint32_t row) {
+  const std::uint32_t id = state.store.id[row];
+  std::ostringstream text;
+  text << "step " << state.step << ": particle " << id << " at (" << state.store.position.get(row).transpose()
+       << ") ";
+  if (!std::isfinite(velocity)) {
+    text << "would get a velocity that is not finite; lower solver.time_step (now " << state.config.time_step
+         << ") or material.pressure_coefficient";
+  } else {
+    text << "would move at " << velocity << " m/s and needs a step of " << time_step
+         << " s, below solver.time_step/1000 = "
+         << k_shortest_step * static_cast<double>(state.config.time_step)
+         << " s; lower material.pressure_coefficient or viscosity, raise solver.support_radius, or lower "
+            "solver.time_step (now "
+         << state.config.time_step << ")";
+  }
+  throw StepError(text.str(), id);
+}
+
+}  // namespace
+
+bool Simulation::State::needs_sph() const {
+  return groups.size() > 1 || groups.front().alpha > 0.0f;
+}
+
+void read_alphas(Simulation::State& state) {
+  for (Group& group : state.groups) group.alpha = group.material.alpha.at(state.time);
+}
+
+void take_reference(Simulation::State& state, Group& group) {
+  // In cell order, so that the rows of a region lie near each other.
+  build_cell_grid(state.store.position, group.begin, group.end, group.shape.region_radius, state.threads,
+                  state.region_grid);
+  state.store.permute(group.begin, state.region_grid.order.span(), state.threads);
+  update_reference(state.store.position, group.begin, group.end, group.shape);
+}
+
+int update_references(Simulation::State& state) {
+  int updated = 0;
+  const bool check = state.step > 0 && state.step % state.config.update_interval == 0;
+  for (Group& group : state.groups) {
+    const double threshold = static_cast<double>(group.material.update_threshold * (1.0f - group.alpha));
+    if (check && group.keeps_reference() && group.mean_external > threshold) {
+      take_reference(state, group);
+      ++updated;
+    }
+    if (group.matches_shape() && !group.shape.built)
+      build_regions(state.threads, state.level, state.region_grid, group.shape);
+  }
+  return updated;
+}
+
+void call_force(Simulation::State& state) {
+  if (!state.force) return;
+  VectorColumn& a = state.user_acceleration;
+  const std::size_t n = state.store.size();
+  a.resize(n);
+  for (std::size_t axis = 0; axis < 3; ++axis) std::fill_n(a.axis(axis), n, 0.0f);
+  const VectorColumn &x = state.store.position, &v = state.store.velocity;
+  state.force({state.time, state.store.id.span(), {x.x(), n, x.stride()}, {v.x(), n, v.stride()}},
+              {a.x(), n, a.stride()});
+}
+
+float choose_time_step(Simulation::State& state, StepReport& report) {
+  report.time_step = static_cast<double>(state.config.time_step);
+  if (!state.sph_ran) return state.config.time_step;
+  const Fastest fastest =
+      fastest_particle(state.store, state.config.time_step, state.sph.acceleration, state.config.gravity,
+                       state.cross_group(), state.user(), state.threads, state.partial_fastest);
+  const double velocity =
+      fastest.squared_velocity == -1 ? 0.0 : std::sqrt(static_cast<double>(fastest.squared_velocity));
+  const double step = limited_time_step(limits(state), velocity);
+  if (!std::isfinite(velocity) || step < k_shortest_step * static_cast<double>(state.config.time_step))
+    refuse_step(state, step, velocity, fastest.row);
+  report.max_velocity = velocity;
+  report.limited = static_cast<float>(step) < state.config.time_step;
+  report.time_step = static_cast<double>(static_cast<float>(step));
+  return static_cast<float>(step);
+}
+
+void move_groups(Simulation::State& state, float time_step) {
+  const SolverConfig& config = state.config;
+  for (Group& group : state.groups) {
+    const float elastic_time_step = group.material.elastic_time_step.value_or(config.time_step);
+    const bool measure = (state.step + 1) % config.update_interval == 0 && group.keeps_reference();
+    const MotionInput input{
+        .begin = group.begin,
+        .end = group.end,
+        .time_step = time_step,
+        .alpha = group.alpha,
+        .elastic_factor = (1.0f - group.alpha) * time_step / (config.time_step * elastic_time_step),
+        .gravity = config.gravity,
+        .sph_acceleration = state.sph_ran && group.alpha > 0 ? &state.sph.acceleration : nullptr,
+        .cross_group = state.cross_group(),
+        .user = state.user(),
+        .pull = group.matches_shape() ? &group.shape.pull : nullptr,
+        .colliders = state.colliders,
+        .contact = {.time_step = time_step,
+                    .max_push = config.support_radius / (10.0f * config.time_step),
+                    .contact_offset = config.contact_offset.value_or(0.5f * group.spacing)},
+        .pin_velocities = state.pin_velocities,
+        .measure_external = measure,
+    };
+    const MotionSums sums = move_particles(input, state.threads, state.store, state.partial_motion);
+    if (sums.bad_row != SIZE_MAX) {
+      refuse_step(state, static_cast<double>(time_step), std::numeric_limits<double>::quiet_NaN(),
+                  static_cast<std::uint32_t>(sums.bad_row));
+    }
+    if (measure)
+      group.mean_external = sums.unpinned > 0 ? sums.external / static_cast<double>(sums.unpinned) : 0.0;
+  }
+}
+
+void finish_step(Simulation::State& state, float time_step) {
+  state.store.position.swap(state.store.next_position);
+  state.store.velocity.swap(state.store.next_velocity);
+  move_colliders(static_cast<double>(time_step), state.colliders);
+  state.time += static_cast<double>(time_step);
+  ++state.step;
+}
+
+}  // namespace mallow

@@ -1,0 +1,268 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/parallel.h"
+#include "simulation/state.h"
+#include "simulation/validation.h"
+#include "sph/kernel_functions.h"
+
+namespace mallow {
+namespace {
+
+/// Groups, and pins, are named by 8 and 16 bits a particle.
+constexpr std::size_t k_max_groups = 256;
+constexpr std::size_t k_max_pins = 65535;
+/// Bodies of one group share their spacing to this relative difference.
+constexpr float k_same_spacing = 1e-3f;
+/// Particles of different groups nearer than this share of the spacing are an error of the scene.
+constexpr float k_overlap = 0.1f;
+
+Group& checked(std::vector<Group>& groups, GroupId id) {
+  const auto index = static_cast<std::size_t>(id);
+  if (index >= groups.size())
+    throw ConfigError("group", "there is no group " + std::to_string(index) +
+                                   "; groups so far: " + std::to_string(groups.size()));
+  return groups[index];
+}
+
+void normalize(Plane& plane) {
+  const float length = plane.normal.norm();
+  plane.normal /= length;
+  plane.offset /= length;
+}
+void normalize(Sphere&) {}
+void normalize(Box&) {}
+void normalize(Union& shapes) {
+  for (Primitive& part : shapes.parts) std::visit([](auto& shape) { normalize(shape); }, part);
+}
+
+/// m and ρ0 of a group; what the material leaves out follows from ρ0 = m Σ W over the lattice. [model 1]
+void derive_density(const SolverConfig& config, Group& group) {
+  const double per_mass =
+      lattice_density(static_cast<double>(config.support_radius), static_cast<double>(group.spacing));
+  const Material& material = group.material;
+  if (material.particle_mass)
+    group.mass = *material.particle_mass;
+  else
+    group.mass = material.rest_density
+                     ? static_cast<float>(static_cast<double>(*material.rest_density) / per_mass)
+                     : 1.0f;
+  group.rest_density =
+      material.rest_density.value_or(static_cast<float>(static_cast<double>(group.mass) * per_mass));
+}
+
+void refuse_overlaps(const Simulation::State& state) {
+  float spacing = 0;
+  for (const Group& group : state.groups) spacing = std::max(spacing, group.spacing);
+  CellGrid grid;
+  NeighborLists lists;
+  build_cell_grid(state.store.position, 0, state.store.size(), spacing, state.threads, grid);
+  build_neighbor_lists(grid, k_overlap * spacing, state.threads, state.level, lists);
+  const auto group_of = [&](std::uint32_t row) -> const Group& {
+    return *std::find_if(state.groups.begin(), state.groups.end(),
+                         [&](const Group& g) { return row < g.end; });
+  };
+  for (std::size_t s = 0; s < grid.order.size(); ++s) {
+    const std::uint32_t i = grid.order[s];
+    for (const std::uint32_t t : lists.of(s)) {
+      const std::uint32_t j = grid.order[t];
+      const Group &a = group_of(i), &b = group_of(j);
+      const bool is_new =
+          state.store.id[i] >= state.checked_particles || state.store.id[j] >= state.checked_particles;
+      const float distance = (state.store.position.get(i) - state.store.position.get(j)).norm();
+      const float limit = k_overlap * std::min(a.spacing, b.spacing);
+      if (&a == &b || !is_new || distance >= limit) continue;
+      std::ostringstream text;
+      text << "groups '" << a.name << "' and '" << b.name << "' overlap at ("
+           << state.store.position.get(i).transpose() << "): particles " << state.store.id[i] << " and "
+           << state.store.id[j] << " are " << distance << " m apart, at least a tenth of the spacing ("
+           << limit << " m) is needed; move a body, or give both one group";
+      throw ConfigError("body", text.str());
+    }
+  }
+}
+
+}  // namespace
+
+Simulation::Simulation(const SolverConfig& config) : state_(std::make_unique<State>()) {
+  Checks checks;
+  check(config, checks);
+  checks.finish();
+  state_->config = config;
+  state_->threads = thread_count(config.threads);
+  state_->level = best_instruction_level();
+  state_->sph.support_radius = config.support_radius;
+  state_->sph.formulation = config.formulation;
+  state_->sph.factors = kernel_factors(static_cast<double>(config.support_radius));
+}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+GroupId Simulation::add_group(const Material& material, std::string name) {
+  Checks checks;
+  check(material, checks);
+  checks.finish();
+  State& s = *state_;
+  if (s.groups.size() == k_max_groups) throw ConfigError("group", "at most 256 groups are possible");
+  Group group;
+  group.name = name.empty() ? "group " + std::to_string(s.groups.size()) : std::move(name);
+  group.material = material;
+  group.begin = group.end = s.store.size();
+  group.shape.region_radius = material.region_radius.value_or(s.config.support_radius);
+  s.groups.push_back(std::move(group));
+  s.prepared = false;
+  return static_cast<GroupId>(s.groups.size() - 1);
+}
+
+void Simulation::add_body(const Body& body, GroupId id) {
+  State& s = *state_;
+  Group& group = checked(s.groups, id);
+  Checks checks;
+  check(body, checks);
+  if (group.spacing > 0 && !(std::abs(body.spacing - group.spacing) <= k_same_spacing * group.spacing)) {
+    std::ostringstream text;
+    text << body.spacing << " is not allowed in group '" << group.name << "', whose spacing is "
+         << group.spacing << ": bodies of one group share one spacing";
+    checks.problem("body.spacing", text.str());
+  }
+  checks.finish();
+  std::vector<Vec3> velocities(body.positions.size(), body.velocity);
+  for (std::size_t i = 0; i < body.velocities.size(); ++i) velocities[i] += body.velocities[i];
+  s.store.insert(group.end, body.positions, velocities);
+  group.end += body.positions.size();
+  for (std::size_t g = static_cast<std::size_t>(id) + 1; g < s.groups.size(); ++g) {
+    s.groups[g].begin += body.positions.size();
+    s.groups[g].end += body.positions.size();
+  }
+  if (group.spacing == 0) group.spacing = body.spacing;
+  derive_density(s.config, group);
+  group.grew = true;
+  s.prepared = false;
+  s.sph_ran = false;
+}
+
+GroupId Simulation::add_body(const Body& body, const Material& material, std::string name) {
+  Checks checks;
+  check(body, checks);
+  checks.finish();
+  const GroupId group = add_group(material, std::move(name));
+  add_body(body, group);
+  return group;
+}
+
+ColliderId Simulation::add_collider(const Collider& collider) {
+  Checks checks;
+  check(collider, checks);
+  checks.finish();
+  state_->colliders.push_back(collider);
+  std::visit([](auto& shape) { normalize(shape); }, state_->colliders.back().shape);
+  return static_cast<ColliderId>(state_->colliders.size() - 1);
+}
+
+PinId Simulation::pin(const Aabb& region, const Vec3& velocity) {
+  std::vector<ParticleId> ids;
+  for (std::size_t row = 0; row < state_->store.size(); ++row) {
+    const Vec3 x = state_->store.position.get(row);
+    if ((x.array() >= region.min.array()).all() && (x.array() <= region.max.array()).all())
+      ids.push_back(state_->store.id[row]);
+  }
+  if (ids.empty()) {
+    std::ostringstream text;
+    text << "no particle is between (" << region.min.transpose() << ") and (" << region.max.transpose()
+         << ')';
+    throw ConfigError("pin.box", text.str());
+  }
+  return pin(ids, velocity);
+}
+
+PinId Simulation::pin(std::span<const ParticleId> ids, const Vec3& velocity) {
+  State& s = *state_;
+  Checks checks;
+  checks.vector("pin.velocity", velocity);
+  for (const ParticleId id : ids) {
+    if (id < s.store.size()) continue;
+    checks.problem("pin", "there is no particle " + std::to_string(id) + "; ids are 0 to " +
+                              std::to_string(static_cast<std::int64_t>(s.store.size()) - 1));
+    break;
+  }
+  if (s.pin_velocities.size() == k_max_pins) checks.problem("pin", "at most 65535 pins are possible");
+  checks.finish();
+  s.pin_velocities.push_back(velocity);
+  if (s.store.pin.empty()) s.store.pin.resize(s.store.size());
+  for (const ParticleId id : ids)
+    s.store.pin[s.store.row_of_id[id]] = static_cast<std::uint16_t>(s.pin_velocities.size());
+  return static_cast<PinId>(s.pin_velocities.size() - 1);
+}
+
+void Simulation::set_force(ForceCallback callback) {
+  state_->force = std::move(callback);
+  if (!state_->force) state_->user_acceleration.release();
+}
+
+void Simulation::set_alpha(GroupId id, const AlphaSchedule& alpha) {
+  Group& group = checked(state_->groups, id);
+  Checks checks;
+  check(alpha, checks);
+  checks.finish();
+  group.material.alpha = alpha;
+  // A fluid that may turn elastic remembers the shape it has now.
+  if (group.keeps_reference() && group.shape.reference.size() != group.size()) {
+    group.grew = true;
+    state_->prepared = false;
+  }
+}
+
+void Simulation::set_velocity(ColliderId id, const Vec3& velocity) {
+  Checks checks;
+  checks.vector("collider.velocity", velocity);
+  if (static_cast<std::size_t>(id) >= state_->colliders.size())
+    checks.problem("collider", "there is no collider " + std::to_string(static_cast<std::size_t>(id)));
+  checks.finish();
+  state_->colliders[static_cast<std::size_t>(id)].velocity = velocity;
+}
+
+void Simulation::set_velocity(PinId id, const Vec3& velocity) {
+  Checks checks;
+  checks.vector("pin.velocity", velocity);
+  if (static_cast<std::size_t>(id) >= state_->pin_velocities.size())
+    checks.problem("pin", "there is no pin " + std::to_string(static_cast<std::size_t>(id)));
+  checks.finish();
+  state_->pin_velocities[static_cast<std::size_t>(id)] = velocity;
+}
+
+void Simulation::prepare() {
+  State& s = *state_;
+  if (s.prepared) return;
+  Checks checks;
+  if (s.store.size() == 0) checks.problem("body", "no particles: a simulation needs at least one");
+  for (const Group& group : s.groups)
+    if (group.size() == 0) checks.problem("group", "group '" + group.name + "' has no particles");
+  checks.finish();
+  if (s.groups.size() > 1) refuse_overlaps(s);
+  s.checked_particles = s.store.size();
+
+  s.sph.groups.clear();
+  s.sph.group_end.clear();
+  s.sph.viscous = false;
+  for (Group& group : s.groups) {
+    s.sph.groups.push_back({.mass = group.mass,
+                            .rest_density = group.rest_density,
+                            .rest_volume = group.mass / group.rest_density,
+                            .pressure_coefficient = group.material.pressure_coefficient,
+                            .viscosity = group.material.viscosity,
+                            .cohesion = group.material.cohesion});
+    s.sph.group_end.push_back(group.end);
+    s.sph.viscous = s.sph.viscous || group.material.viscosity > 0;
+    if (group.grew && group.keeps_reference()) take_reference(s, group);
+    group.grew = false;
+  }
+  read_alphas(s);
+  for (Group& group : s.groups)
+    if (group.matches_shape() && !group.shape.built)
+      build_regions(s.threads, s.level, s.region_grid, group.shape);
+  s.prepared = true;
+}
+
+}  // namespace mallow

@@ -1,0 +1,48 @@
+#include "simulation/state.h"
+
+namespace mallow {
+
+// Algorithm 3.3 of [TK], as the model settles it. Surfacing is not a phase: it reads the views between steps.
+StepReport Simulation::step() {
+  prepare();
+  State& s = *state_;
+  Sph& sph = s.sph;
+  const VectorColumn& x = s.store.position;
+  StepReport report;
+  PhaseTimer timer(report.seconds);
+
+  read_alphas(s);                                               // time -> alpha
+  report.updated_references = update_references(s);             // |a_ext| -> x̄, regions       [TK 3.2, eq. 14]
+  timer.lap(Phase::reference_update);
+
+  s.sph_ran = s.needs_sph();
+  if (s.sph_ran) {
+    find_neighbors(x, s.threads, s.level, sph);                 // x -> lists within σ
+    timer.lap(Phase::neighbors);
+    compute_density(s.threads, s.level, sph);                   // lists, x -> ρ, p             [TK eq. 3]
+    timer.lap(Phase::density);
+    compute_accelerations(s.store.velocity, s.threads, s.level, sph);  // ρ, p, x, v -> a^SPH   [TK eq. 1, 2, 4]
+    timer.lap(Phase::accelerations);
+  }
+
+  call_force(s);                                                // x, v -> user part of a_ext
+  const float time_step = choose_time_step(s, report);          // v, a -> Δt                   [TK eq. 12]
+  timer.lap(Phase::time_step);
+
+  for (Group& g : s.groups)
+    if (g.matches_shape()) sum_regions(x, g.begin, s.threads, s.level, g.shape);      // x, x̄ -> sums over N_j
+  timer.lap(Phase::region_sums);
+  for (Group& g : s.groups)
+    if (g.matches_shape()) solve_rotations(x, g.begin, s.threads, s.level, g.shape);  // sums -> R_j
+  timer.lap(Phase::rotations);
+  for (Group& g : s.groups)
+    if (g.matches_shape()) compute_goals(x, g.begin, s.threads, s.level, g.shape);    // R_j -> g − x       [TK eq. 7]
+  timer.lap(Phase::goals);
+
+  move_groups(s, time_step);                                    // a, g − x -> v', x'           [TK eq. 10, 11, 13]
+  finish_step(s, time_step);                                    // v', x' -> v, x; c ← c + 1
+  timer.lap(Phase::motion);
+  return report;
+}
+
+}  // namespace mallow

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "mallow/simulation.h"
+#include "motion/motion.h"
+#include "motion/time_step.h"
+#include "particles/particle_store.h"
+#include "shape_matching/shape_matching.h"
+#include "sph/sph.h"
+
+namespace mallow {
+
+/// One material, one reference shape, one range of rows.
+struct Group {
+  std::string name;
+  Material material;
+  std::size_t begin = 0, end = 0;  ///< rows
+  float spacing = 0;               ///< h [m]; 0 while it has no particles
+  float mass = 0;                  ///< m [kg]
+  float rest_density = 0;          ///< ρ0 [kg/m³]
+  float alpha = 0;                 ///< at the present time
+  double mean_external = 0;        ///< mean |a_ext| in the last step that measured it [m/s²]
+  bool grew = false;               ///< has particles that prepare() has not seen
+  ShapeMatching shape;             ///< empty where alpha is never below 1
+
+  std::size_t size() const { return end - begin; }
+  bool keeps_reference() const { return material.alpha.lowest() < 1.0f; }
+  bool matches_shape() const { return alpha < 1.0f; }
+};
+
+/// All that a simulation is.
+struct Simulation::State {
+  SolverConfig config;
+  int threads = 1;
+  InstructionLevel level = InstructionLevel::baseline;
+  std::int64_t step = 0;
+  double time = 0;
+
+  ParticleStore store;
+  std::vector<Group> groups;
+  std::vector<Collider> colliders;
+  std::vector<Vec3> pin_velocities;
+  ForceCallback force;
+  Sph sph;
+  VectorColumn user_acceleration;  ///< empty without a force callback
+
+  bool prepared = false;
+  std::size_t checked_particles = 0;  ///< ids below were looked at for overlaps
+  bool sph_ran = false;               ///< in the last step
+  // Scratch.
+  CellGrid region_grid;
+  std::vector<Fastest> partial_fastest;
+  std::vector<MotionSums> partial_motion;
+
+  /// Some acceleration of SPH counts: pairs within a group that is not purely elastic, or between groups.
+  bool needs_sph() const;
+  const VectorColumn* cross_group() const {
+    return sph_ran && groups.size() > 1 ? &sph.cross_group : nullptr;
+  }
+  const VectorColumn* user() const { return force ? &user_acceleration : nullptr; }
+};
+
+// The phases of step(), in its order. Each says what it reads -> what it writes.
+
+/// time -> alpha of every group.
+void read_alphas(Simulation::State& state);
+/// mean_external -> reference shapes that give way, their rows sorted; regions that are due. Returns how many
+/// gave way. [TK 3.2, model 6]
+int update_references(Simulation::State& state);
+/// positions, velocities -> user accelerations.
+void call_force(Simulation::State& state);
+/// velocities, accelerations -> Δt, with V in the report. [TK eq. 12, model 3] Throws StepError.
+float choose_time_step(Simulation::State& state, StepReport& report);
+/// everything -> next positions and velocities, mean_external. [TK eq. 10, 11, 13, model 4, 5] Throws
+/// StepError.
+void move_groups(Simulation::State& state, float time_step);
+/// next positions and velocities become the present ones; time, step and colliders move on.
+void finish_step(Simulation::State& state, float time_step);
+
+/// Sorts the rows of a group into cell order and takes its positions as reference shape.
+void take_reference(Simulation::State& state, Group& group);
+
+/// Writes the wall time between laps into a report.
+class PhaseTimer {
+ public:
+  explicit PhaseTimer(PhaseTimes& seconds) : seconds_(seconds), last_(Clock::now()) {}
+  void lap(Phase phase) {
+    const Clock::time_point now = Clock::now();
+    seconds_[static_cast<std::size_t>(phase)] += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  PhaseTimes& seconds_;
+  Clock::time_point last_;
+};
+
+}  // namespace mallow

@@ -1,0 +1,105 @@
+#include "simulation/validation.h"
+
+namespace mallow {
+namespace {
+
+constexpr const char* k_positive = "a finite number above 0";
+constexpr const char* k_not_negative = "a finite number, 0 or above";
+constexpr const char* k_share = "a number in [0, 1]";
+
+void check_optional(const char* field, const std::optional<float>& value, Checks& checks) {
+  if (value) checks.number(field, *value, *value > 0, k_positive);
+}
+
+void check(const Plane& plane, Checks& checks) {
+  checks.vector("collider.plane.normal", plane.normal);
+  if (!(plane.normal.norm() > 0))
+    checks.problem("collider.plane.normal", "(0 0 0) is not allowed: a direction");
+  checks.number("collider.plane.offset", plane.offset, true, "a finite number");
+}
+
+void check(const Sphere& sphere, Checks& checks) {
+  checks.vector("collider.sphere.center", sphere.center);
+  checks.number("collider.sphere.radius", sphere.radius, sphere.radius > 0, k_positive);
+}
+
+void check(const Box& box, Checks& checks) {
+  checks.vector("collider.box.min", box.min);
+  checks.vector("collider.box.max", box.max);
+  if (!(box.min.array() < box.max.array()).all())
+    checks.problem("collider.box", "min must be below max in every component");
+}
+
+void check(const Union& shapes, Checks& checks) {
+  if (shapes.parts.empty()) checks.problem("collider.union", "no parts: at least one is needed");
+  for (const Primitive& part : shapes.parts)
+    std::visit([&](const auto& shape) { check(shape, checks); }, part);
+}
+
+}  // namespace
+
+void check(const SolverConfig& config, Checks& checks) {
+  checks.number("solver.time_step", config.time_step, config.time_step > 0, k_positive);
+  checks.number("solver.support_radius", config.support_radius, config.support_radius > 0, k_positive);
+  checks.vector("solver.gravity", config.gravity);
+  checks.number("solver.update_interval", config.update_interval, config.update_interval >= 1, "1 or above");
+  if (config.contact_offset)
+    checks.number("solver.contact_offset", *config.contact_offset, *config.contact_offset >= 0,
+                  k_not_negative);
+  checks.number("solver.threads", config.threads, config.threads >= 0 && config.threads <= 1024,
+                "0 (what the machine has) to 1024");
+}
+
+void check(const AlphaSchedule& alpha, Checks& checks) {
+  if (alpha.keys().empty()) checks.problem("material.alpha", "no keys: at least one is needed");
+  for (std::size_t k = 0; k < alpha.keys().size(); ++k) {
+    const AlphaKey& key = alpha.keys()[k];
+    checks.number("material.alpha", key.alpha, key.alpha >= 0 && key.alpha <= 1, k_share);
+    checks.number("material.alpha time", key.time, k == 0 || key.time > alpha.keys()[k - 1].time,
+                  "finite times, each above the one before");
+  }
+}
+
+void check(const Material& material, Checks& checks) {
+  check(material.alpha, checks);
+  checks.number("material.update_threshold", material.update_threshold, material.update_threshold >= 0,
+                k_not_negative);
+  checks.number("material.pressure_coefficient", material.pressure_coefficient,
+                material.pressure_coefficient >= 0, k_not_negative);
+  checks.number("material.viscosity", material.viscosity, material.viscosity >= 0, k_not_negative);
+  checks.number("material.cohesion", material.cohesion, material.cohesion >= 0 && material.cohesion <= 1,
+                k_share);
+  check_optional("material.elastic_time_step", material.elastic_time_step, checks);
+  check_optional("material.particle_mass", material.particle_mass, checks);
+  check_optional("material.rest_density", material.rest_density, checks);
+  check_optional("material.region_radius", material.region_radius, checks);
+}
+
+void check(const Collider& collider, Checks& checks) {
+  std::visit([&](const auto& shape) { check(shape, checks); }, collider.shape);
+  checks.vector("collider.velocity", collider.velocity);
+  checks.number("collider.restitution", collider.restitution,
+                collider.restitution >= 0 && collider.restitution <= 1, k_share);
+  checks.number("collider.friction", collider.friction, collider.friction >= 0, k_not_negative);
+}
+
+void check(const Body& body, Checks& checks) {
+  if (body.positions.empty()) checks.problem("body.positions", "no particles: at least one is needed");
+  checks.number("body.spacing", body.spacing, body.spacing > 0, k_positive);
+  checks.vector("body.velocity", body.velocity);
+  if (!body.velocities.empty() && body.velocities.size() != body.positions.size())
+    checks.problem("body.velocities", std::to_string(body.velocities.size()) + " velocities for " +
+                                          std::to_string(body.positions.size()) +
+                                          " positions: none or as many");
+  const auto first_bad = [&](const std::string& field, const std::vector<Vec3>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i].allFinite()) continue;
+      checks.vector(field + '[' + std::to_string(i) + ']', values[i]);
+      return;
+    }
+  };
+  first_bad("body.positions", body.positions);
+  first_bad("body.velocities", body.velocities);
+}
+
+}  // namespace mallow

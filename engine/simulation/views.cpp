@@ -1,0 +1,124 @@
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "simulation/state.h"
+
+namespace mallow {
+namespace {
+
+VectorView view(const VectorColumn& column) {
+  return {column.x(), column.size(), column.stride()};
+}
+
+std::vector<Vec3> by_id(const ParticleStore& store, const VectorColumn& column) {
+  std::vector<Vec3> values(store.size());
+  for (std::size_t id = 0; id < values.size(); ++id) values[id] = column.get(store.row_of_id[id]);
+  return values;
+}
+
+/// Mean |N_i| over the present positions of a group that has no reference shape.
+double count_neighbors(const Simulation::State& s, const Group& group) {
+  CellGrid grid;
+  NeighborLists lists;
+  build_cell_grid(s.store.position, group.begin, group.end, group.shape.region_radius, s.threads, grid);
+  build_neighbor_lists(grid, group.shape.region_radius, s.threads, s.level, lists);
+  return lists.average();
+}
+
+}  // namespace
+
+const char* name(Phase phase) {
+  constexpr std::array<const char*, k_phase_count> k_names{"reference_update", "neighbors", "density",
+                                                           "accelerations",    "time_step", "region_sums",
+                                                           "rotations",        "goals",     "motion"};
+  return k_names[static_cast<std::size_t>(phase)];
+}
+
+std::size_t Simulation::particle_count() const {
+  return state_->store.size();
+}
+std::size_t Simulation::group_count() const {
+  return state_->groups.size();
+}
+double Simulation::time() const {
+  return state_->time;
+}
+std::int64_t Simulation::step_count() const {
+  return state_->step;
+}
+const SolverConfig& Simulation::config() const {
+  return state_->config;
+}
+const std::vector<Collider>& Simulation::colliders() const {
+  return state_->colliders;
+}
+
+std::span<const ParticleId> Simulation::ids() const {
+  return state_->store.id.span();
+}
+VectorView Simulation::positions() const {
+  return view(state_->store.position);
+}
+VectorView Simulation::velocities() const {
+  return view(state_->store.velocity);
+}
+std::span<const float> Simulation::densities() const {
+  return state_->sph_ran ? state_->sph.density_by_row.span() : std::span<const float>{};
+}
+
+Simulation::Rows Simulation::rows(GroupId group) const {
+  const auto index = static_cast<std::size_t>(group);
+  if (index >= state_->groups.size())
+    throw ConfigError("group", "there is no group " + std::to_string(index));
+  return {state_->groups[index].begin, state_->groups[index].end};
+}
+
+std::vector<Vec3> Simulation::positions_by_id() const {
+  return by_id(state_->store, state_->store.position);
+}
+std::vector<Vec3> Simulation::velocities_by_id() const {
+  return by_id(state_->store, state_->store.velocity);
+}
+
+std::vector<std::uint8_t> Simulation::groups_by_id() const {
+  std::vector<std::uint8_t> groups(state_->store.size());
+  for (std::size_t g = 0; g < state_->groups.size(); ++g)
+    for (std::size_t row = state_->groups[g].begin; row < state_->groups[g].end; ++row)
+      groups[state_->store.id[row]] = static_cast<std::uint8_t>(g);
+  return groups;
+}
+
+std::uint64_t Simulation::state_hash() const {
+  const std::vector<Vec3> x = positions_by_id(), v = velocities_by_id();
+  static_assert(sizeof(Vec3) == 3 * sizeof(float));
+  std::uint64_t hash =
+      XXH3_64bits_withSeed(x.data(), x.size() * sizeof(Vec3), static_cast<XXH64_hash_t>(state_->step));
+  hash = XXH3_64bits_withSeed(v.data(), v.size() * sizeof(Vec3), hash);
+  return XXH3_64bits_withSeed(&state_->time, sizeof(double), hash);
+}
+
+SimulationInfo Simulation::info() {
+  prepare();
+  const State& s = *state_;
+  SimulationInfo info;
+  info.particles = s.store.size();
+  info.sph = s.needs_sph();
+  info.viscosity = info.sph && s.sph.viscous;
+  info.cross_group = s.groups.size() > 1;
+  info.bytes = s.store.bytes() + s.sph.bytes() + s.user_acceleration.bytes() + s.region_grid.bytes();
+  for (const Group& group : s.groups) {
+    info.bytes += group.shape.bytes();
+    info.groups.push_back(
+        {.name = group.name,
+         .particles = group.size(),
+         .spacing = group.spacing,
+         .particle_mass = group.mass,
+         .rest_density = group.rest_density,
+         .region_radius = group.shape.region_radius,
+         .average_neighbors = group.shape.built ? group.shape.regions.average() : count_neighbors(s, group),
+         .shape_matching = group.matches_shape()});
+  }
+  return info;
+}
+
+}  // namespace mallow

@@ -1,0 +1,40 @@
+#include "sph/kernel_functions.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace mallow {
+namespace {
+
+constexpr double k_pi = std::numbers::pi;
+
+}  // namespace
+
+KernelFactors kernel_factors(double support_radius) {
+  const double s3 = support_radius * support_radius * support_radius;
+  const double s4 = s3 * support_radius, s5 = s4 * support_radius;
+  return {
+      .density = static_cast<float>(315.0 / (64.0 * k_pi * s3)),
+      .spiky_gradient = static_cast<float>(45.0 / (k_pi * s4)),
+      .viscosity = static_cast<float>(45.0 / (k_pi * s5)),
+      .poly6_gradient = static_cast<float>(945.0 / (32.0 * k_pi * s5)),
+      .poly6_laplacian = static_cast<float>(945.0 / (32.0 * k_pi * s5)),
+  };
+}
+
+double lattice_density(double support_radius, double spacing) {
+  const double s = support_radius;
+  const int reach = static_cast<int>(std::ceil(s / spacing));
+  double sum = 0;
+  for (int z = -reach; z <= reach; ++z) {
+    for (int y = -reach; y <= reach; ++y) {
+      for (int x = -reach; x <= reach; ++x) {
+        const double q2 = spacing * spacing * (x * x + y * y + z * z) / (s * s);
+        if (q2 < 1) sum += (1 - q2) * (1 - q2) * (1 - q2);
+      }
+    }
+  }
+  return 315.0 / (64.0 * k_pi * s * s * s) * sum;
+}
+
+}  // namespace mallow

@@ -1,0 +1,20 @@
+#pragma once
+
+namespace mallow {
+
+/// Normalising factors of the smoothing kernels for support radius σ, for use with q = r/σ in [0, 1]; the
+/// powers of σ are taken out in double, so that scenes of any unit stay inside single precision.
+struct KernelFactors {
+  float density;         ///< poly6: W = density (1 − q²)³ [1/m³]. [TK eq. 3]
+  float spiky_gradient;  ///< |∇W| = spiky_gradient (1 − q)² [1/m⁴]. Desbrun's spiky kernel, Mueller 2003
+  float viscosity;       ///< ∇²W = viscosity (1 − q) [1/m⁵]. Mueller 2003
+  float poly6_gradient;   ///< ∇W = −poly6_gradient (1 − q²)² (x_i − x_j) [1/m⁵]
+  float poly6_laplacian;  ///< ∇²W = −poly6_laplacian (1 − q²)(3 − 7q²) [1/m⁵]
+};
+KernelFactors kernel_factors(double support_radius);
+
+/// Σ W over an infinite cubic lattice of the given spacing, a point at the origin included [1/m³]: a full
+/// interior of unit masses has this density, which is what rest density follows from.
+double lattice_density(double support_radius, double spacing);
+
+}  // namespace mallow

@@ -1,0 +1,86 @@
+#include "sph/sph.h"
+
+#include <algorithm>
+
+#include "core/parallel.h"
+
+namespace mallow {
+namespace {
+
+SphInput input(const Sph& sph) {
+  return {
+      .list_begin = sph.lists.begin.data(),
+      .list_count = sph.lists.count.data(),
+      .indices = sph.lists.indices.data(),
+      .row_of = sph.grid.order.data(),
+      .group = sph.group.empty() ? nullptr : sph.group.data(),
+      .groups = sph.groups.data(),
+      .position = raw(sph.grid.sorted),
+      .velocity = sph.viscous ? raw(sph.velocity) : ConstVectors{},
+      .inverse_radius = 1.0f / sph.support_radius,
+      .density_factor = sph.factors.density,
+      .spiky_gradient = sph.factors.spiky_gradient,
+      .viscosity = sph.factors.viscosity,
+      .poly6_gradient = sph.factors.poly6_gradient,
+      .poly6_laplacian = sph.factors.poly6_laplacian,
+  };
+}
+
+}  // namespace
+
+std::size_t Sph::bytes() const {
+  return grid.bytes() + lists.bytes() + group.bytes() + velocity.bytes() + density.bytes() +
+         pressure.bytes() + volume.bytes() + density_by_row.bytes() + acceleration.bytes() +
+         cross_group.bytes();
+}
+
+void find_neighbors(const VectorColumn& positions, int threads, InstructionLevel level, Sph& sph) {
+  const std::size_t n = positions.size();
+  build_cell_grid(positions, 0, n, sph.support_radius, threads, sph.grid);
+  build_neighbor_lists(sph.grid, sph.support_radius, threads, level, sph.lists);
+  if (sph.groups.size() == 1) return;
+  sph.group.resize(n);
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto behind = std::upper_bound(sph.group_end.begin(), sph.group_end.end(), sph.grid.order[i]);
+      sph.group[i] = static_cast<std::uint8_t>(behind - sph.group_end.begin());
+    }
+  });
+}
+
+void compute_density(int threads, InstructionLevel level, Sph& sph) {
+  const std::size_t n = sph.grid.order.size();
+  for (Column<float>* column : {&sph.density, &sph.pressure, &sph.volume, &sph.density_by_row})
+    column->resize(n);
+  const SphInput in = input(sph);
+  const SphKernels& kernels = MALLOW_SELECT(level, sph_kernels);
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    kernels.density(in, begin, end, sph.density.data(), sph.pressure.data(), sph.volume.data(),
+                    sph.density_by_row.data());
+  });
+}
+
+void compute_accelerations(const VectorColumn& velocities, int threads, InstructionLevel level, Sph& sph) {
+  const std::size_t n = sph.grid.order.size();
+  sph.acceleration.resize(n);
+  if (sph.groups.size() > 1) sph.cross_group.resize(n);
+  if (sph.viscous) {
+    sph.velocity.resize(n);
+    parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        const float* from = velocities.axis(a);
+        float* to = sph.velocity.axis(a);
+        for (std::size_t i = begin; i < end; ++i) to[i] = from[sph.grid.order[i]];
+      }
+    });
+  }
+  const SphInput in = input(sph);
+  const SphKernels& kernels = MALLOW_SELECT(level, sph_kernels);
+  const auto run = sph.formulation == Formulation::printed ? kernels.printed : kernels.conservative;
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    run(in, begin, end, sph.density.data(), sph.pressure.data(), sph.volume.data(), raw(sph.acceleration),
+        raw(sph.cross_group));
+  });
+}
+
+}  // namespace mallow

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/column.h"
+#include "core/isa.h"
+#include "mallow/solver_config.h"
+#include "neighbors/cell_grid.h"
+#include "neighbors/neighbor_lists.h"
+#include "sph/kernel_functions.h"
+#include "sph/sph_kernels.h"
+
+namespace mallow {
+
+/// What the SPH phases of a scene own; empty in a scene without SPH.
+struct Sph {
+  KernelFactors factors{};
+  float support_radius = 0;  ///< σ [m]
+  Formulation formulation = Formulation::conservative;
+  bool viscous = false;                ///< some group has μ > 0
+  std::vector<SphGroup> groups;        ///< constants per group
+  std::vector<std::size_t> group_end;  ///< per group: row behind its last
+
+  CellGrid grid;
+  NeighborLists lists;
+  // Sorted order.
+  Column<std::uint8_t> group;  ///< empty where there is one group
+  VectorColumn velocity;       ///< empty without viscosity
+  Column<float> density, pressure, volume;
+  // By row of the particle store.
+  Column<float> density_by_row;
+  VectorColumn acceleration;  ///< a^SPH: pairs of one group [m/s²]
+  VectorColumn cross_group;   ///< pairs of two groups, part of a_ext [m/s²]; empty where there is one group
+
+  std::size_t bytes() const;
+};
+
+/// Cell grid and lists of all particles within σ of each particle.
+void find_neighbors(const VectorColumn& positions, int threads, InstructionLevel level, Sph& sph);
+/// Density and pressure from the lists. [TK eq. 3, model 1]
+void compute_density(int threads, InstructionLevel level, Sph& sph);
+/// Pressure and viscosity accelerations. [TK eq. 1, 2, 4, model 1]
+void compute_accelerations(const VectorColumn& velocities, int threads, InstructionLevel level, Sph& sph);
+
+}  // namespace mallow

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "core/isa.h"
+#include "core/raw_columns.h"
+
+namespace mallow {
+
+/// Material constants of one group, as pairs read them.
+struct SphGroup {
+  float mass;                  ///< m [kg]
+  float rest_density;          ///< ρ0 [kg/m³]
+  float rest_volume;           ///< m/ρ0 [m³]
+  float pressure_coefficient;  ///< k [m²/s²]
+  float viscosity;             ///< μ [Pa s]
+  float cohesion;              ///< share of negative pressure
+};
+
+/// Sums over all particles within σ. All columns are in sorted order unless they say row.
+///
+/// symbol | column        | unit    | eq.
+/// x_i    | position      | m       |
+/// v_i    | velocity      | m/s     |
+/// ρ_i    | density       | kg/m³   | model 1, [TK eq. 3]
+/// p_i    | pressure      | Pa      | model 1
+/// V_j    | volume, m_j/ρ_j | m³    |
+struct SphInput {
+  const std::uint32_t* list_begin;
+  const std::uint32_t* list_count;
+  const std::uint32_t* indices;
+  const std::uint32_t* row_of;  ///< sorted place -> row of the particle store
+  const std::uint8_t* group;    ///< null: all in group 0
+  const SphGroup* groups;
+  ConstVectors position;
+  ConstVectors velocity;  ///< accelerations only; null without viscosity
+  float inverse_radius;   ///< 1/σ
+  float density_factor;   ///< KernelFactors
+  float spiky_gradient;
+  float viscosity;
+  float poly6_gradient;
+  float poly6_laplacian;
+};
+
+struct SphKernels {
+  /// ρ_i = ρ0_i Σ_j (m_j/ρ0_j) W_ij, p_i = k (ρ_i − ρ0), negative ones times cohesion.
+  /// Writes density, pressure and volume, and the density also by row.
+  void (*density)(const SphInput&, std::size_t begin, std::size_t end, float* density, float* pressure,
+                  float* volume, float* density_by_row) noexcept;
+  /// a_i = (1/ρ_i) Σ_j V_j [ (p_i + p_j)/2 |∇W_spiky| r̂ + μ (v_j − v_i) ∇²W_visc ], by row: pairs of one
+  /// group into `same`, pairs of two groups into `cross` (null where there is one group).
+  void (*conservative)(const SphInput&, std::size_t begin, std::size_t end, const float* density,
+                       const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept;
+  /// [TK eq. 1, 2] to the letter: a_i = (1/ρ_i) Σ_j V_j [ −p_j ∇W_poly6 + μ v_j ∇²W_poly6 ], j = i included.
+  void (*printed)(const SphInput&, std::size_t begin, std::size_t end, const float* density,
+                  const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept;
+};
+MALLOW_DECLARE_LEVELS(SphKernels, sph_kernels)
+
+}  // namespace mallow
