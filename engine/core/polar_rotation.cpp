@@ -6,16 +6,15 @@
 namespace mallow {
 namespace {
 
-/// Weight of the last rotation against A, relative to A at rest: far above single precision noise in A's sums
-/// (1e-6), far below what an honest region has in its weakest direction.
+/// A says something about every axis where its best rotation beats the next one by this share of A at rest:
+/// far above single precision noise in A's sums (1e-6), far below what an honest region has in its weakest
+/// direction.
+constexpr double k_decided = 1e-3;
+/// Weight of the last rotation where A does not.
 constexpr double k_memory = 1e-4;
 
-}  // namespace
-
-Eigen::Quaterniond polar_rotation(const Eigen::Matrix3d& a, const Eigen::Quaterniond& last, double scale) {
-  if (!(scale > 0) || !a.allFinite()) return last;
-  const Eigen::Matrix3d m = a / scale + k_memory * last.toRotationMatrix();
-  // tr(Rᵀ M) = qᵀ K q for the unit quaternion q = (w, x, y, z) of R.
+/// tr(Rᵀ M) = qᵀ K q for the unit quaternion q = (w, x, y, z) of R.
+Eigen::Matrix4d quaternion_matrix(const Eigen::Matrix3d& m) {
   Eigen::Matrix4d k;
   k(0, 0) = m(0, 0) + m(1, 1) + m(2, 2);
   k(0, 1) = m(2, 1) - m(1, 2);
@@ -28,7 +27,16 @@ Eigen::Quaterniond polar_rotation(const Eigen::Matrix3d& a, const Eigen::Quatern
   k(2, 3) = m(2, 1) + m(1, 2);
   k(3, 3) = m(2, 2) - m(0, 0) - m(1, 1);
   k.triangularView<Eigen::StrictlyLower>() = k.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(k);
+  return k;
+}
+
+}  // namespace
+
+Eigen::Quaterniond polar_rotation(const Eigen::Matrix3d& a, const Eigen::Quaterniond& last, double scale) {
+  if (!(scale > 0) || !a.allFinite()) return last;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(quaternion_matrix(a / scale));
+  if (solver.eigenvalues()[3] - solver.eigenvalues()[2] < k_decided)
+    solver.compute(quaternion_matrix(a / scale + k_memory * last.toRotationMatrix()));
   const Eigen::Vector4d q = solver.eigenvectors().col(3);
   if (!q.allFinite() || q.squaredNorm() < 0.5) return last;
   Eigen::Quaterniond rotation(q[0], q[1], q[2], q[3]);

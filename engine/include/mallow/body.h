@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "mallow/vec3.h"
@@ -12,10 +13,10 @@ namespace mallow {
 
 /// Points that stand for a body at rest, and how it starts to move.
 struct Body {
-  std::vector<Vec3> positions;   ///< [m], finite, at least one
+  std::vector<Vec3> positions = {};   ///< [m], finite, at least one
   float spacing = 1.0f;          ///< distance of neighbouring points, h [m], > 0
   Vec3 velocity{0, 0, 0};        ///< of every point [m/s]
-  std::vector<Vec3> velocities;  ///< of each point, added to `velocity`; empty or as long as `positions`
+  std::vector<Vec3> velocities = {};  ///< of each point, added to `velocity`; empty or as long as `positions`
 };
 
 /// A box of count[0] × count[1] × count[2] cells of side `spacing` from `corner` on; a point in each cell's
@@ -28,14 +29,14 @@ struct Lattice {
 
 /// How a volume is filled: give one of `spacing` and `count`.
 struct Sampling {
-  std::optional<float> spacing;  ///< h [m], > 0
-  std::optional<int> count;      ///< wanted number of points, >= 1; met within 1% where the shape allows it
+  std::optional<float> spacing = {};  ///< h [m], > 0
+  std::optional<int> count = {};  ///< wanted number of points, >= 1; met within 1% where the shape allows it
   /// Random displacement of every lattice point, uniform in ± jitter · h per axis, in [0, 0.5]. The same for
   /// every run and machine.
   float jitter = 0.0f;
 };
 
-/// Signed distance to a closed shape [m], negative inside.
+/// Signed distance to a closed shape [m], negative inside. Its slope is 1; up to 1.5 is sampled correctly.
 using DistanceFunction = std::function<float(const Vec3&)>;
 
 /// A closed shape given by its distance function and a box that holds it.
@@ -59,8 +60,8 @@ std::span<const char* const> implicit_shape_names();
 /// it is.
 struct Placement {
   Vec3 rotate{0, 0, 0};
-  std::optional<float> size;  ///< > 0
-  std::optional<Vec3> center;
+  std::optional<float> size = {};  ///< > 0
+  std::optional<Vec3> center = {};
 };
 ImplicitShape place(const ImplicitShape& shape, const Placement& placement);
 

@@ -29,7 +29,7 @@ class AlphaSchedule {
   const std::vector<AlphaKey>& keys() const { return keys_; }
 
  private:
-  std::vector<AlphaKey> keys_;
+  std::vector<AlphaKey> keys_ = {};
 };
 
 /// What a group is made of. Symbols are those of Takamatsu & Kanai [TK].

@@ -18,9 +18,9 @@
 namespace mallow {
 
 struct SceneMaterial {
-  std::string name;
+  std::string name = {};
   Material material;
-  std::optional<Vec3> color;  ///< linear RGB in [0, 1]; left out: one of a palette
+  std::optional<Vec3> color = {};  ///< linear RGB in [0, 1]; left out: one of a palette
 };
 
 struct SphereSource {
@@ -29,36 +29,38 @@ struct SphereSource {
   Sampling sampling;
 };
 struct MeshSource {
-  std::filesystem::path file;  ///< relative to the scene
+  std::filesystem::path file = {};  ///< relative to the scene
   Sampling sampling;
   Placement placement;
 };
 struct PointsSource {
-  std::filesystem::path file;  ///< relative to the scene
+  std::filesystem::path file = {};  ///< relative to the scene
   float spacing = 1.0f;
 };
 struct ImplicitSource {
-  std::string shape;  ///< a name of implicit_shape_names()
+  std::string shape = {};  ///< a name of implicit_shape_names()
   Sampling sampling;
   Placement placement;
 };
 using BodySource = std::variant<Lattice, SphereSource, MeshSource, PointsSource, ImplicitSource>;
 
 struct SceneBody {
-  std::string material;
-  std::string group;  ///< empty: a group of its own
+  std::string material = {};
+  std::string group = {};  ///< empty: a group of its own
   BodySource source;
   Vec3 velocity{0, 0, 0};
+  int line = 0;  ///< of the scene file; 0 where it did not come from one
 };
 
 struct ScenePin {
   Aabb box;
   Vec3 velocity{0, 0, 0};
+  int line = 0;  ///< of the scene file; 0 where it did not come from one
 };
 
 struct RunConfig {
   int frames = 240;                 ///< >= 0
-  std::optional<float> frame_time;  ///< [s], > 0; left out: one step a frame
+  std::optional<float> frame_time = {};  ///< [s], > 0; left out: one step a frame
 };
 
 /// How pictures are taken.
@@ -66,19 +68,19 @@ struct RenderConfig {
   int width = 960;          ///< pixels, in [16, 8192]
   int height = 540;         ///< pixels, in [16, 8192]
   int samples = 4;          ///< rays per pixel, in [1, 256]
-  std::optional<Vec3> eye;  ///< left out: chosen so that the first frame's scene is in view
-  std::optional<Vec3> target;
+  std::optional<Vec3> eye = {};  ///< left out: chosen so that the first frame's scene is in view
+  std::optional<Vec3> target = {};
   float field_of_view = 35.0f;  ///< vertical, degrees, in [1, 120]
   int frames_per_second = 30;   ///< of the film, in [1, 120]
 };
 
 struct Scene {
-  std::filesystem::path file;
+  std::filesystem::path file = {};
   SolverConfig solver;
-  std::vector<SceneMaterial> materials;
-  std::vector<SceneBody> bodies;
-  std::vector<Collider> colliders;
-  std::vector<ScenePin> pins;
+  std::vector<SceneMaterial> materials = {};
+  std::vector<SceneBody> bodies = {};
+  std::vector<Collider> colliders = {};
+  std::vector<ScenePin> pins = {};
   SurfaceConfig surface;
   RunConfig run;
   RenderConfig render;

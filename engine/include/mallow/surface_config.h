@@ -10,7 +10,7 @@ struct SurfaceConfig {
   /// left out.
   int voxels = 128;
   /// Side of a voxel [m], > 0.
-  std::optional<float> voxel_size;
+  std::optional<float> voxel_size = {};
   /// Radius of the kernels that blend the particles, in spacings, in [1, 4].
   float kernel_radius = 2.0f;
   /// Distance of the surface from the outermost particles, in spacings, in [0.1, 1].

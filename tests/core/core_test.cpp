@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+#include <numeric>
+#include <random>
+
+#include "core/checks.h"
+#include "core/column.h"
+#include "core/parallel.h"
+#include "core/polar_rotation.h"
+
+namespace mallow {
+namespace {
+
+TEST(column, keeps_values_when_it_grows_and_pads_with_zeros) {
+  Column<float> column(5);
+  std::iota(column.begin(), column.end(), 1.0f);
+  column.resize(40);
+  EXPECT_EQ(column[4], 5.0f);
+  column.resize(3);
+  column.resize(6);
+  EXPECT_EQ(column[2], 3.0f);
+  for (std::size_t i = 3; i < padded(6); ++i) EXPECT_EQ(column.data()[i], 0.0f);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(column.data()) % 64, 0u);
+}
+
+TEST(vector_column, keeps_all_three_axes_when_the_stride_changes) {
+  VectorColumn column(3);
+  for (std::size_t i = 0; i < 3; ++i) column.set(i, Vec3(1, 2, 3) * static_cast<float>(i + 1));
+  column.resize(100);
+  EXPECT_EQ(column.get(2), Vec3(3, 6, 9));
+  EXPECT_EQ(column.get(99), Vec3(0, 0, 0));
+}
+
+TEST(parallel_reduce, gives_the_same_bits_for_any_number_of_threads) {
+  std::mt19937 random(1);
+  std::normal_distribution<float> normal;
+  std::vector<float> values(100003);
+  for (float& v : values) v = normal(random);
+  std::vector<float> partial;
+  const auto sum = [&](int threads) {
+    return parallel_reduce(
+        threads, values.size(), partial, 0.0f,
+        [&](std::size_t b, std::size_t e) {
+          float s = 0;
+          for (std::size_t i = b; i < e; ++i) s += values[i];
+          return s;
+        },
+        [](float a, float b) { return a + b; });
+  };
+  const float one = sum(1);
+  for (const int threads : {2, 3, 4, 8}) EXPECT_EQ(sum(threads), one);
+}
+
+Eigen::Matrix3d svd_rotation(const Eigen::Matrix3d& a) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d sign(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
+  return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+}
+
+TEST(polar_rotation, is_the_polar_factor_and_never_a_reflection) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 2000; ++trial) {
+    Eigen::Matrix3d a;
+    for (int k = 0; k < 9; ++k) a(k) = normal(random);
+    const Eigen::Matrix3d expected = svd_rotation(a);
+    const Eigen::Matrix3d r =
+        polar_rotation(a, Eigen::Quaterniond::UnitRandom(), a.norm()).toRotationMatrix();
+    EXPECT_NEAR(r.determinant(), 1.0, 1e-12);
+    const Eigen::Vector3d s = a.jacobiSvd().singularValues();
+    // A mirrored matrix whose smaller singular values are nearly equal has no single answer.
+    const double gap = s[1] + (a.determinant() < 0 ? -s[2] : s[2]);
+    if (gap < 1e-3 * a.norm()) continue;
+    EXPECT_LT((r - expected).norm(), 1e-12 * s[0] / gap);
+  }
+}
+
+TEST(polar_rotation, keeps_the_last_rotation_where_the_matrix_says_nothing) {
+  const Eigen::Quaterniond last(Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()));
+  EXPECT_LT(polar_rotation(Eigen::Matrix3d::Zero(), last, 1.0).angularDistance(last), 1e-12);
+  EXPECT_LT(polar_rotation(Eigen::Matrix3d::Zero(), last, 0.0).angularDistance(last), 1e-12);
+  // A line that turned: the rotation takes its direction along and does not spin about it.
+  const Eigen::Vector3d from = last * Eigen::Vector3d::UnitX();
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.4, from.cross(Eigen::Vector3d::UnitZ()).normalized()));
+  const Eigen::Matrix3d line = (turn * from) * Eigen::Vector3d::UnitX().transpose();
+  EXPECT_LT(polar_rotation(line, last, 1.0).angularDistance(turn * last), 2e-4);
+}
+
+TEST(polar_rotation, survives_matrices_that_are_not_finite) {
+  const Eigen::Quaterniond last = Eigen::Quaterniond::Identity();
+  Eigen::Matrix3d a = Eigen::Matrix3d::Identity();
+  a(1, 1) = std::nan("");
+  EXPECT_EQ(polar_rotation(a, last, 1.0).coeffs(), last.coeffs());
+}
+
+TEST(problem, is_written_as_file_line_column_field_message) {
+  EXPECT_EQ(to_string(Problem{"a.toml", 3, 7, "solver.time_step", "-1 is not allowed"}),
+            "a.toml:3:7: solver.time_step: -1 is not allowed");
+  EXPECT_EQ(to_string(Problem{.field = "x", .message = "bad"}), "x: bad");
+  EXPECT_EQ(to_string(Problem{.line = 2, .message = "bad"}), "2: bad");
+}
+
+TEST(checks, say_every_problem_at_once) {
+  Checks checks;
+  checks.number("a", -1.0f, false, "above 0");
+  checks.number("b", std::nanf(""), true, "a finite number");
+  checks.number("c", 1.0f, true, "above 0");
+  try {
+    checks.finish();
+    FAIL();
+  } catch (const ConfigError& error) {
+    ASSERT_EQ(error.problems().size(), 2u);
+    EXPECT_EQ(error.problems()[0].message, "-1 is not allowed: above 0");
+    EXPECT_EQ(error.problems()[1].field, "b");
+  }
+}
+
+}  // namespace
+}  // namespace mallow

@@ -1,0 +1,155 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nanoflann.hpp>
+#include <random>
+
+#include "core/isa.h"
+#include "levels.h"
+#include "neighbors/cell_grid.h"
+#include "neighbors/neighbor_lists.h"
+
+namespace mallow {
+namespace {
+
+using Points = std::vector<Vec3>;
+
+VectorColumn column(const Points& points) {
+  VectorColumn x(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) x.set(i, points[i]);
+  return x;
+}
+
+Points random_points(std::size_t n, float side, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> coordinate(0, side);
+  Points points(n);
+  for (Vec3& p : points) p = {coordinate(random), coordinate(random), coordinate(random)};
+  return points;
+}
+
+/// Lists by index of the points, each ascending.
+std::vector<std::vector<std::uint32_t>> lists_of(const Points& points, float radius, int threads,
+                                                 InstructionLevel level, std::size_t capacity = 0) {
+  CellGrid grid;
+  NeighborLists lists;
+  build_cell_grid(column(points), 0, points.size(), radius, threads, grid);
+  build_neighbor_lists(grid, radius, threads, level, lists, capacity);
+  std::vector<std::vector<std::uint32_t>> result(points.size());
+  std::size_t total = 0;
+  for (std::size_t s = 0; s < points.size(); ++s) {
+    auto& list = result[grid.order[s]];
+    for (const std::uint32_t t : lists.of(s)) list.push_back(grid.order[t]);
+    EXPECT_TRUE(std::is_sorted(lists.of(s).begin(), lists.of(s).end()));
+    std::sort(list.begin(), list.end());
+    total += list.size();
+  }
+  EXPECT_EQ(total, lists.total);
+  return result;
+}
+
+struct Cloud {
+  const Points& points;
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+/// The same from nanoflann. Pairs within rounding of the radius may fall on either side, so points are chosen
+/// without.
+std::vector<std::vector<std::uint32_t>> oracle_lists(const Points& points, float radius) {
+  const Cloud cloud{points};
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3,
+                                                   std::uint32_t>;
+  Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+  tree.buildIndex();
+  std::vector<std::vector<std::uint32_t>> result(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::vector<std::pair<std::uint32_t, float>> found;
+    tree.radiusSearch(points[i].data(), radius * radius, found, nanoflann::SearchParams());
+    for (const auto& [index, distance] : found) result[i].push_back(index);
+    std::sort(result[i].begin(), result[i].end());
+  }
+  return result;
+}
+
+TEST(neighbors, equals_nanoflann_on_random_points_at_every_level_and_thread_count) {
+  const Points points = random_points(3000, 10, 1);
+  const auto expected = oracle_lists(points, 1.1f);
+  for (const InstructionLevel level : levels())
+    for (const int threads : {1, 2, 3, 4}) EXPECT_EQ(lists_of(points, 1.1f, threads, level), expected);
+}
+
+TEST(neighbors, equals_nanoflann_on_coincident_points) {
+  Points points = random_points(200, 5, 2);
+  for (int k = 0; k < 300; ++k) points.push_back(points[7]);
+  for (int k = 0; k < 20; ++k) points.push_back(points[static_cast<std::size_t>(k)]);
+  EXPECT_EQ(lists_of(points, 1.3f, 2, best_instruction_level()), oracle_lists(points, 1.3f));
+}
+
+TEST(neighbors, equals_nanoflann_when_capacity_is_forced_too_small) {
+  const Points points = random_points(2000, 8, 3);
+  const auto expected = oracle_lists(points, 1.2f);
+  for (const std::size_t capacity : {1u, 100u, 5000u})
+    EXPECT_EQ(lists_of(points, 1.2f, 2, best_instruction_level(), capacity), expected);
+}
+
+TEST(neighbors, equals_nanoflann_where_few_points_stray_far_away) {
+  Points points = random_points(1500, 6, 4);
+  points.push_back({1e5f, 0, 0});
+  points.push_back({1e5f, 0.5f, 0});
+  points.push_back({-3e4f, 2e5f, -1e5f});
+  EXPECT_EQ(lists_of(points, 1.0f, 2, best_instruction_level()), oracle_lists(points, 1.0f));
+}
+
+TEST(neighbors, finds_all_where_the_radius_spans_the_cloud_and_only_itself_where_it_is_tiny) {
+  const Points points = random_points(300, 1, 5);
+  for (const auto& list : lists_of(points, 10, 2, best_instruction_level()))
+    EXPECT_EQ(list.size(), points.size());
+  const auto lonely = lists_of(points, 1e-6f, 2, best_instruction_level());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_EQ(lonely[i], std::vector<std::uint32_t>{static_cast<unsigned>(i)});
+}
+
+TEST(neighbors, cell_order_is_stable_for_any_number_of_threads) {
+  const Points points = random_points(5000, 4, 6);
+  CellGrid one, other;
+  build_cell_grid(column(points), 0, points.size(), 0.5f, 1, one);
+  for (const int threads : {2, 3, 7}) {
+    build_cell_grid(column(points), 0, points.size(), 0.5f, threads, other);
+    EXPECT_TRUE(std::equal(one.order.begin(), one.order.end(), other.order.begin(), other.order.end()));
+  }
+}
+
+struct TableRow {
+  std::array<int, 3> count;
+  float spacing, radius;
+  double average;
+};
+
+// Model, "Table 1's scenes, decoded".
+TEST(neighbors, lattice_averages_are_those_of_table_1) {
+  for (const TableRow& row :
+       {TableRow{{10, 10, 36}, 40.0f / 36, 8, 755.32}, TableRow{{10, 10, 36}, 40.0f / 36, 5, 256.54},
+        TableRow{{10, 10, 36}, 40.0f / 36, 3, 64.28}, TableRow{{22, 22, 22}, 1, 2.9f, 80.70},
+        TableRow{{15, 15, 15}, 22.0f / 15, 2.9f, 23.56}}) {
+    Points points;
+    for (int z = 0; z < row.count[2]; ++z)
+      for (int y = 0; y < row.count[1]; ++y)
+        for (int x = 0; x < row.count[0]; ++x)
+          points.push_back(row.spacing * Vec3(Eigen::Vector3i(x, y, z).cast<float>()));
+    CellGrid grid;
+    NeighborLists lists;
+    build_cell_grid(column(points), 0, points.size(), row.radius, 2, grid);
+    build_neighbor_lists(grid, row.radius, 2, best_instruction_level(), lists);
+    EXPECT_NEAR(lists.average(), row.average, 0.005);
+  }
+}
+
+}  // namespace
+}  // namespace mallow

@@ -1,0 +1,347 @@
+#include "oracle/oracle.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "oracle/signed_distance.h"
+
+namespace mallow::oracle {
+namespace {
+
+constexpr double k_pi = std::numbers::pi;
+
+// [TK eq. 3]
+double poly6(double r, double sigma) {
+  if (r > sigma) return 0;
+  return 315 / (64 * k_pi * std::pow(sigma, 9)) * std::pow(sigma * sigma - r * r, 3);
+}
+
+/// ∇ with respect to x_i, of d = x_i − x_j.
+Vec poly6_gradient(const Vec& d, double sigma) {
+  const double r = d.norm();
+  if (r > sigma) return Vec::Zero();
+  return -6 * 315 / (64 * k_pi * std::pow(sigma, 9)) * std::pow(sigma * sigma - r * r, 2) * d;
+}
+
+double poly6_laplacian(double r, double sigma) {
+  if (r > sigma) return 0;
+  const double s = sigma * sigma - r * r;
+  return -6 * 315 / (64 * k_pi * std::pow(sigma, 9)) * s * (3 * s - 4 * r * r);
+}
+
+// Müller, Charypar, Gross 2003. Coincident points have no direction.
+Vec spiky_gradient(const Vec& d, double sigma) {
+  const double r = d.norm();
+  if (r > sigma || r == 0) return Vec::Zero();
+  return -45 / (k_pi * std::pow(sigma, 6)) * std::pow(sigma - r, 2) * (d / r);
+}
+
+double viscosity_laplacian(double r, double sigma) {
+  if (r > sigma) return 0;
+  return 45 / (k_pi * std::pow(sigma, 6)) * (sigma - r);
+}
+
+bool is_always_fluid(const Group& group) {
+  const auto& keys = group.material.alpha.keys();
+  return std::all_of(keys.begin(), keys.end(), [](const AlphaKey& key) { return key.alpha == 1; });
+}
+
+void set_mass_and_rest_density(Group& group, double sigma) {
+  const double sum = lattice_sum(group.spacing, sigma);
+  const Material& material = group.material;
+  group.mass = material.particle_mass  ? *material.particle_mass
+               : material.rest_density ? *material.rest_density / sum
+                                       : 1.0;
+  group.rest_density = material.rest_density ? *material.rest_density : group.mass * sum;
+}
+
+}  // namespace
+
+double alpha_at(const AlphaSchedule& schedule, double time) {
+  const auto& keys = schedule.keys();
+  if (time <= keys.front().time) return keys.front().alpha;
+  for (std::size_t k = 1; k < keys.size(); ++k) {
+    const double t0 = keys[k - 1].time, a0 = keys[k - 1].alpha;
+    const double t1 = keys[k].time, a1 = keys[k].alpha;
+    if (time < t1) return a0 + (a1 - a0) * (time - t0) / (t1 - t0);
+  }
+  return keys.back().alpha;
+}
+
+double lattice_sum(double spacing, double support_radius) {
+  const int n = static_cast<int>(support_radius / spacing) + 1;
+  double sum = 0;
+  for (int x = -n; x <= n; ++x)
+    for (int y = -n; y <= n; ++y)
+      for (int z = -n; z <= n; ++z) sum += poly6(spacing * Vec(x, y, z).norm(), support_radius);
+  return sum;
+}
+
+Matrix polar_rotation(const Matrix& a, const Matrix& last, double scale) {
+  Eigen::JacobiSVD<Matrix> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  // Two directions and det +1 fix a rotation. With fewer, a trace of the last rotation decides what A leaves
+  // open, as the rotation sought is the one that maximises tr(Rᵀ A).
+  const double silence = 1e-12 * scale;
+  if (svd.singularValues()[1] <= silence) svd.compute(a + silence * last);
+  Matrix sign = Matrix::Identity();
+  sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * sign * svd.matrixV().transpose();
+}
+
+std::size_t Oracle::add_group(const Material& material) {
+  groups_.push_back({.material = material});
+  return groups_.size() - 1;
+}
+
+void Oracle::add_body(const std::vector<Vec>& positions, const std::vector<Vec>& velocities, double spacing,
+                      std::size_t group) {
+  groups_[group].spacing = spacing;
+  set_mass_and_rest_density(groups_[group], config_.support_radius);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    particles_.push_back({.group = group, .x = positions[i], .v = velocities[i]});
+  }
+  rebuild_regions(group);
+}
+
+void Oracle::pin(const Aabb& box, const Vec& velocity) {
+  const Vec min = box.min.cast<double>();
+  const Vec max = box.max.cast<double>();
+  for (Particle& p : particles_) {
+    if ((p.x.array() < min.array()).any() || (p.x.array() > max.array()).any()) continue;
+    p.pinned = true;
+    p.pin_velocity = velocity;
+  }
+}
+
+void Oracle::set_positions(const std::vector<Vec>& positions) {
+  for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].x = positions[i];
+}
+
+std::vector<Vec> Oracle::positions() const {
+  std::vector<Vec> positions;
+  for (const Particle& p : particles_) positions.push_back(p.x);
+  return positions;
+}
+
+std::vector<Vec> Oracle::velocities() const {
+  std::vector<Vec> velocities;
+  for (const Particle& p : particles_) velocities.push_back(p.v);
+  return velocities;
+}
+
+Step Oracle::step() {
+  for (Group& group : groups_) group.alpha = alpha_at(group.material.alpha, time_);
+  Step step;
+  step.updated_groups = update_references();
+  sum_densities();
+  sum_accelerations();
+  step.max_velocity = sph_acts() ? max_velocity() : 0;
+  step.time_step = time_step(step.max_velocity);
+  match_shapes();
+  move(step.time_step);
+  for (Obstacle& obstacle : obstacles_) {
+    obstacle.moved += step.time_step * obstacle.collider.velocity.cast<double>();
+  }
+  time_ += step.time_step;
+  ++steps_;
+  return step;
+}
+
+// Section 6: x̄ ← x, and N from it.
+void Oracle::rebuild_regions(std::size_t group) {
+  const double radius = groups_[group].material.region_radius.value_or(config_.support_radius);
+  for (Particle& i : particles_) {
+    if (i.group != group) continue;
+    i.reference = i.x;
+    i.rotation = Matrix::Identity();
+    i.region.clear();
+    for (std::size_t j = 0; j < particles_.size(); ++j) {
+      if (particles_[j].group == group && (particles_[j].x - i.x).norm() <= radius) i.region.push_back(j);
+    }
+  }
+}
+
+double Oracle::mean_external_acceleration(std::size_t group) const {
+  double sum = 0;
+  int count = 0;
+  for (const Particle& p : particles_) {
+    if (p.group != group || p.pinned) continue;
+    sum += (p.external + p.contact).norm();
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+std::vector<std::size_t> Oracle::update_references() {
+  std::vector<std::size_t> updated;
+  if (steps_ == 0 || steps_ % config_.update_interval != 0) return updated;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const double threshold = groups_[g].material.update_threshold * (1 - groups_[g].alpha);
+    if (is_always_fluid(groups_[g]) || mean_external_acceleration(g) <= threshold) continue;
+    rebuild_regions(g);
+    updated.push_back(g);
+  }
+  return updated;
+}
+
+// Section 1: densities and pressures.
+void Oracle::sum_densities() {
+  for (Particle& i : particles_) {
+    const Group& group = groups_[i.group];
+    double sum = 0;
+    for (const Particle& j : particles_) {
+      const Group& other = groups_[j.group];
+      sum += other.mass / other.rest_density * poly6((i.x - j.x).norm(), config_.support_radius);
+    }
+    i.density = group.rest_density * sum;
+    i.pressure = group.material.pressure_coefficient * (i.density - group.rest_density);
+    if (i.pressure < 0) i.pressure *= group.material.cohesion;
+  }
+}
+
+/// What j adds to the acceleration of i [TK eq. 1, 2, 4]. The conservative sums leave out j = i, and their
+/// formula is zero there; the printed ones do not leave it out.
+Vec Oracle::pair_acceleration(const Particle& i, const Particle& j) const {
+  const double sigma = config_.support_radius;
+  const Vec d = i.x - j.x;
+  const Group& group_i = groups_[i.group];
+  const Group& group_j = groups_[j.group];
+  const double mu = (double{group_i.material.viscosity} + group_j.material.viscosity) / 2;
+  const double volume = group_j.mass / j.density;
+  Vec force;
+  if (config_.formulation == Formulation::printed) {
+    force = -j.pressure * poly6_gradient(d, sigma) + mu * poly6_laplacian(d.norm(), sigma) * j.v;
+  } else {
+    force = -(i.pressure + j.pressure) / 2 * spiky_gradient(d, sigma) +
+            mu * viscosity_laplacian(d.norm(), sigma) * (j.v - i.v);
+  }
+  return volume / i.density * force;
+}
+
+void Oracle::sum_accelerations() {
+  for (std::size_t id = 0; id < particles_.size(); ++id) {
+    Particle& i = particles_[id];
+    i.sph = Vec::Zero();
+    i.crossing = Vec::Zero();
+    for (const Particle& j : particles_) {
+      if ((i.x - j.x).norm() > config_.support_radius) continue;
+      (j.group == i.group ? i.sph : i.crossing) += pair_acceleration(i, j);
+    }
+    i.external = config_.gravity.cast<double>() + i.crossing;
+    if (force_) i.external += force_(time_, id, i.x, i.v);
+  }
+}
+
+// Section 3.
+bool Oracle::sph_acts() const {
+  return groups_.size() > 1 || groups_.front().alpha > 0;
+}
+
+double Oracle::max_velocity() const {
+  double max = 0;
+  for (const Particle& p : particles_) {
+    if (!p.pinned) max = std::max(max, (p.v + config_.time_step * (p.sph + p.external)).norm());
+  }
+  return max;
+}
+
+double Oracle::time_step(double max_velocity) const {
+  const double longest = config_.time_step;
+  if (!sph_acts()) return longest;
+  const double sigma = config_.support_radius;
+  double dt = std::min(longest, 0.999 * sigma / max_velocity);
+  if (config_.acoustic_limit) {
+    double largest_k = 0;
+    for (const Group& group : groups_) {
+      const Material& material = group.material;
+      largest_k = std::max(largest_k, double{material.pressure_coefficient});
+      dt = std::min(dt, 0.125 * sigma * sigma * group.rest_density / material.viscosity);
+    }
+    dt = std::min(dt, 0.4 * sigma / (std::sqrt(largest_k) + max_velocity));
+  }
+  if (!(dt >= longest / 1000)) throw std::runtime_error("the time step would fall below a thousandth");
+  return dt;
+}
+
+// Section 2. Reads x̄, x and the last rotations; writes rotations and goals.
+void Oracle::match_shapes() {
+  const auto weight = [&](const Particle& p) {
+    return groups_[p.group].mass / static_cast<double>(p.region.size());
+  };
+  std::vector<Vec> centers(particles_.size());
+  std::vector<Vec> reference_centers(particles_.size());
+  for (std::size_t id = 0; id < particles_.size(); ++id) {
+    Particle& j = particles_[id];
+    double w = 0;
+    Vec c = Vec::Zero();
+    Vec c_ref = Vec::Zero();
+    for (std::size_t i : j.region) {
+      w += weight(particles_[i]);
+      c += weight(particles_[i]) * particles_[i].x;
+      c_ref += weight(particles_[i]) * particles_[i].reference;
+    }
+    c /= w;
+    c_ref /= w;
+    Matrix a = Matrix::Zero();
+    for (std::size_t i : j.region) {
+      a += weight(particles_[i]) * (particles_[i].x - c) * (particles_[i].reference - c_ref).transpose();
+    }
+    const double radius = groups_[j.group].material.region_radius.value_or(config_.support_radius);
+    j.rotation = polar_rotation(a, j.rotation, w * radius * radius);
+    centers[id] = c;
+    reference_centers[id] = c_ref;
+  }
+  for (Particle& i : particles_) {
+    Vec sum = Vec::Zero();
+    for (std::size_t j : i.region) {
+      sum += particles_[j].rotation * (i.reference - reference_centers[j]) + centers[j];
+    }
+    i.goal = sum / static_cast<double>(i.region.size());
+  }
+}
+
+// Section 5, one obstacle.
+void Oracle::touch(const Obstacle& obstacle, const Particle& particle, double dt, Vec& v) const {
+  const Collider& collider = obstacle.collider;
+  const double offset = config_.contact_offset.value_or(groups_[particle.group].spacing / 2);
+  const auto [phi, normal] = distance(collider, particle.x - obstacle.moved);
+  const double d = phi - offset;
+  const Vec u = collider.velocity.cast<double>();
+  const Vec w = v - u;
+  const double w_n = w.dot(normal);
+  if (d + dt * w_n >= 0) return;
+
+  const double bounce = -collider.restitution * w_n;
+  const double gentle = config_.support_radius / (10 * double{config_.time_step});
+  const double new_w_n = d >= 0 ? std::max(-d / dt, bounce) : std::max(std::min(-d / dt, gentle), bounce);
+  const Vec w_t = w - w_n * normal;
+  const double sliding = w_t.norm();
+  const double kept = sliding > 0 ? std::max(0.0, 1 - collider.friction * (new_w_n - w_n) / sliding) : 0;
+  v = u + new_w_n * normal + kept * w_t;
+}
+
+// Section 4.
+void Oracle::move(double dt) {
+  for (Particle& p : particles_) {
+    const Group& group = groups_[p.group];
+    p.contact = Vec::Zero();
+    if (p.pinned) {
+      p.v = p.pin_velocity;
+    } else {
+      const double dt0 = config_.time_step;
+      const double dt_sm = group.material.elastic_time_step.value_or(config_.time_step);
+      p.v += dt * p.external + group.alpha * dt * p.sph;
+      if (!is_always_fluid(group)) p.v += (1 - group.alpha) * dt / (dt0 * dt_sm) * (p.goal - p.x);
+      const Vec blended = p.v;
+      for (const Obstacle& obstacle : obstacles_) touch(obstacle, p, dt, p.v);
+      p.contact = (p.v - blended) / dt;
+    }
+    p.x += dt * p.v;
+  }
+}
+
+}  // namespace mallow::oracle

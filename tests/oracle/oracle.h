@@ -1,0 +1,118 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "mallow/collider.h"
+#include "mallow/material.h"
+#include "mallow/solver_config.h"
+#include "mallow/vec3.h"
+
+/// The model read literally: double precision, every pair looked at, one struct per particle, an SVD for
+/// every rotation. Nothing is shared with the engine but the structs that configure it, so that a mistake in
+/// one is not a mistake in both. O(n²) a step: meant for a few hundred particles.
+namespace mallow::oracle {
+
+using Vec = Eigen::Vector3d;
+using Matrix = Eigen::Matrix3d;
+
+struct Particle {
+  std::size_t group = 0;
+  Vec x{0, 0, 0};
+  Vec v{0, 0, 0};
+  bool pinned = false;
+  Vec pin_velocity{0, 0, 0};
+
+  Vec reference{0, 0, 0};                ///< x̄
+  std::vector<std::size_t> region = {};  ///< N, the particle itself included
+  Matrix rotation = Matrix::Identity();
+
+  // What the last step found.
+  double density = 0;
+  double pressure = 0;
+  Vec sph{0, 0, 0};       ///< a^SPH of the same group [m/s²]
+  Vec external{0, 0, 0};  ///< gravity, user force and the other groups [m/s²]
+  Vec crossing{0, 0, 0};  ///< the part of `external` that is from the other groups [m/s²]
+  Vec contact{0, 0, 0};   ///< change of velocity by colliders over Δt [m/s²]
+  Vec goal{0, 0, 0};      ///< g
+};
+
+struct Group {
+  Material material;
+  double spacing = 0;
+  double mass = 0;
+  double rest_density = 0;
+  double alpha = 0;  ///< of the last step
+};
+
+struct Step {
+  double time_step = 0;     ///< Δt [s]
+  double max_velocity = 0;  ///< V of eq. 12; 0 where no SPH acts
+  std::vector<std::size_t> updated_groups;
+};
+
+/// Acceleration of a particle by the user, from time, id, position and velocity.
+using Force = std::function<Vec(double, std::size_t, const Vec&, const Vec&)>;
+
+class Oracle {
+ public:
+  explicit Oracle(const SolverConfig& config) : config_(config) {}
+
+  /// Groups, bodies, colliders and pins are added before the first step. Ids count particles in order of
+  /// add_body.
+  std::size_t add_group(const Material& material);
+  void add_body(const std::vector<Vec>& positions, const std::vector<Vec>& velocities, double spacing,
+                std::size_t group);
+  void add_collider(const Collider& collider) { obstacles_.push_back({collider, Vec::Zero()}); }
+  void pin(const Aabb& box, const Vec& velocity);
+  void set_force(Force force) { force_ = std::move(force); }
+  /// Moves the particles away from their reference shape.
+  void set_positions(const std::vector<Vec>& positions);
+
+  Step step();
+
+  double time() const { return time_; }
+  const std::vector<Particle>& particles() const { return particles_; }
+  const std::vector<Group>& groups() const { return groups_; }
+  std::vector<Vec> positions() const;
+  std::vector<Vec> velocities() const;
+
+ private:
+  struct Obstacle {
+    Collider collider;
+    Vec moved;  ///< since it was added
+  };
+
+  void rebuild_regions(std::size_t group);
+  double mean_external_acceleration(std::size_t group) const;
+  std::vector<std::size_t> update_references();
+  void sum_densities();
+  Vec pair_acceleration(const Particle& i, const Particle& j) const;
+  void sum_accelerations();
+  bool sph_acts() const;
+  double max_velocity() const;
+  double time_step(double max_velocity) const;
+  void match_shapes();
+  void touch(const Obstacle& obstacle, const Particle& particle, double dt, Vec& v) const;
+  void move(double dt);
+
+  SolverConfig config_;
+  std::vector<Group> groups_;
+  std::vector<Particle> particles_;
+  std::vector<Obstacle> obstacles_;
+  Force force_;
+  double time_ = 0;
+  int steps_ = 0;
+};
+
+/// α at a time: linear between keys, constant outside.
+double alpha_at(const AlphaSchedule& schedule, double time);
+/// Σ W over an infinite cubic lattice, the point itself included.
+double lattice_sum(double spacing, double support_radius);
+/// The rotation of the polar decomposition of `a`. `last` decides where `a` says nothing, that is about
+/// directions in which it is smaller than 1e-12 `scale`.
+Matrix polar_rotation(const Matrix& a, const Matrix& last, double scale);
+
+}  // namespace mallow::oracle

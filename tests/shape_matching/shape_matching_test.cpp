@@ -1,0 +1,260 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+#include <random>
+
+#include "levels.h"
+#include "shape_matching/shape_matching.h"
+
+namespace mallow {
+namespace {
+
+/// One group with irregular points and its regions.
+struct World {
+  VectorColumn x;
+  ShapeMatching shape;
+  CellGrid grid;
+
+  explicit World(std::size_t n = 600, float side = 8, float radius = 2.0f, unsigned seed = 1) : x(n) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> coordinate(0, side);
+    for (std::size_t i = 0; i < n; ++i)
+      x.set(i, {coordinate(random), coordinate(random), coordinate(random)});
+    build(radius);
+  }
+  explicit World(const std::vector<Vec3>& points, float radius) : x(points.size()) {
+    for (std::size_t i = 0; i < points.size(); ++i) x.set(i, points[i]);
+    build(radius);
+  }
+  void build(float radius) {
+    shape.region_radius = radius;
+    update_reference(x, 0, x.size(), shape);
+    build_regions(2, best_instruction_level(), grid, shape);
+  }
+  void match(int threads = 2, InstructionLevel level = best_instruction_level()) {
+    sum_regions(x, 0, threads, level, shape);
+    solve_rotations(x, 0, threads, level, shape);
+    compute_goals(x, 0, threads, level, shape);
+  }
+  template <class F>
+  void transform(const F& f) {
+    for (std::size_t i = 0; i < x.size(); ++i) x.set(i, f(x.get(i).cast<double>()).template cast<float>());
+  }
+  Eigen::Matrix3d rotation(std::size_t j) const {
+    return Eigen::Quaternionf(shape.rotation[3][j], shape.rotation[0][j], shape.rotation[1][j],
+                              shape.rotation[2][j])
+        .cast<double>()
+        .toRotationMatrix();
+  }
+};
+
+/// Model section 2, literally: double, no frame.
+std::vector<Eigen::Vector3d> literal_pull(const World& world, const std::vector<Eigen::Vector3d>& reference) {
+  const std::size_t n = world.x.size();
+  std::vector<Eigen::Matrix3d> rotations(n);
+  std::vector<Eigen::Vector3d> c(n), cr(n);
+  const auto position = [&](std::size_t i) -> Eigen::Vector3d { return world.x.get(i).cast<double>(); };
+  for (std::size_t j = 0; j < n; ++j) {
+    double total = 0;
+    c[j] = cr[j] = Eigen::Vector3d::Zero();
+    for (const auto i : world.shape.regions.of(j)) {
+      const double w = 1.0 / world.shape.regions.count[i];
+      total += w;
+      c[j] += w * position(i);
+      cr[j] += w * reference[i];
+    }
+    c[j] /= total;
+    cr[j] /= total;
+    Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+    for (const auto i : world.shape.regions.of(j))
+      a += (position(i) - c[j]) * (reference[i] - cr[j]).transpose() / world.shape.regions.count[i];
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::Vector3d sign(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
+    rotations[j] = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  }
+  std::vector<Eigen::Vector3d> pull(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    Eigen::Vector3d g = Eigen::Vector3d::Zero();
+    for (const auto j : world.shape.regions.of(i)) g += rotations[j] * (reference[i] - cr[j]) + c[j];
+    pull[i] = g / world.shape.regions.count[i] - position(i);
+  }
+  return pull;
+}
+
+std::vector<Eigen::Vector3d> points_of(const World& world) {
+  std::vector<Eigen::Vector3d> points(world.x.size());
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = world.x.get(i).cast<double>();
+  return points;
+}
+
+double largest_pull(const World& world) {
+  double largest = 0;
+  for (std::size_t i = 0; i < world.x.size(); ++i)
+    largest = std::max(largest, static_cast<double>(world.shape.pull.get(i).norm()));
+  return largest;
+}
+
+TEST(regions, rigid_motion_gives_goal_equal_position) {
+  World world;
+  const Eigen::AngleAxisd turn(2.1, Eigen::Vector3d(1, -2, 0.5).normalized());
+  world.transform(
+      [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return turn * x + Eigen::Vector3d(30, -10, 5); });
+  world.match();
+  // Positions themselves are rounded to 2e-6 at this distance from the origin.
+  EXPECT_LT(largest_pull(world), 1e-5);
+}
+
+TEST(regions, rigid_motion_gives_goal_equal_position_at_a_large_body) {
+  std::vector<Vec3> bar;
+  for (int z = 0; z < 400; ++z)
+    for (int k = 0; k < 9; ++k)
+      bar.push_back({static_cast<float>(k % 3), static_cast<float>(k / 3), static_cast<float>(z)});
+  World world(bar, 2.5f);
+  const Eigen::AngleAxisd turn(1.0, Eigen::Vector3d(1, 1, 0).normalized());
+  world.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return turn * x; });
+  world.match();
+  // x ~ 400 is rounded to 3e-5.
+  EXPECT_LT(largest_pull(world), 1e-4);
+}
+
+TEST(shape_matching, equals_the_literal_sums_on_a_deformed_body) {
+  World world;
+  const auto reference = points_of(world);
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal(0, 0.2);
+  world.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+    const Eigen::AngleAxisd twist(0.3 * x.z(), Eigen::Vector3d::UnitZ());
+    return twist * Eigen::Vector3d(1.3 * x.x(), x.y(), 0.7 * x.z()) +
+           Eigen::Vector3d(normal(random), normal(random), normal(random));
+  });
+  world.match();
+  const auto expected = literal_pull(world, reference);
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_LT((world.shape.pull.get(i).cast<double>() - expected[i]).norm(), 2e-5);
+}
+
+TEST(shape_matching, conserves_linear_and_angular_momentum) {
+  World world;
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0, 0.3);
+  world.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+    return x + Eigen::Vector3d(normal(random), normal(random), normal(random));
+  });
+  world.match();
+  Eigen::Vector3d linear(0, 0, 0), angular(0, 0, 0);
+  double size = 0, moment = 0;
+  for (std::size_t i = 0; i < world.x.size(); ++i) {
+    const Eigen::Vector3d x = world.x.get(i).cast<double>(), p = world.shape.pull.get(i).cast<double>();
+    linear += p;
+    angular += x.cross(p);
+    size += p.norm();
+    moment += x.norm() * p.norm();
+  }
+  EXPECT_LT(linear.norm(), 1e-6 * size);
+  EXPECT_LT(angular.norm(), 1e-6 * moment);
+}
+
+TEST(rotation, is_the_polar_factor_of_every_region_to_single_precision) {
+  World world;
+  world.transform([](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+    const Eigen::AngleAxisd twist(0.25 * x.y(), Eigen::Vector3d::UnitY());
+    return twist * Eigen::Vector3d(1.5 * x.x() + 0.3 * x.y(), 0.8 * x.y(), x.z());
+  });
+  const auto reference = points_of(World());
+  world.match();
+  for (std::size_t j = 0; j < world.x.size(); ++j) {
+    Eigen::Vector3d c(0, 0, 0), cr(0, 0, 0);
+    double total = 0;
+    for (const auto i : world.shape.regions.of(j)) {
+      const double w = 1.0 / world.shape.regions.count[i];
+      total += w;
+      c += w * world.x.get(i).cast<double>();
+      cr += w * reference[i];
+    }
+    Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+    for (const auto i : world.shape.regions.of(j))
+      a += (world.x.get(i).cast<double>() - c / total) * (reference[i] - cr / total).transpose() /
+           world.shape.regions.count[i];
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::Matrix3d r = svd.matrixU() * svd.matrixV().transpose();
+    if (r.determinant() < 0 || svd.singularValues()[1] < 1e-2 * svd.singularValues()[0]) continue;
+    const Eigen::Vector3d s = svd.singularValues();
+    // Rounding of A (a few 1e-7 of its size) turns the rotation by its share of the weakest pair of
+    // directions.
+    EXPECT_LT(Eigen::AngleAxisd(world.rotation(j).transpose() * r).angle(),
+              4e-6 * std::max(1.0, s[0] / (s[1] + s[2])));
+  }
+}
+
+TEST(rotation, never_mirrors_and_never_is_nan_on_mirrored_flat_and_collapsed_bodies) {
+  const auto mirror = [](const Eigen::Vector3d& x) -> Eigen::Vector3d { return {-x.x(), x.y(), x.z()}; };
+  const auto flatten = [](const Eigen::Vector3d& x) -> Eigen::Vector3d { return {x.x(), x.y(), 0}; };
+  const auto line = [](const Eigen::Vector3d& x) -> Eigen::Vector3d { return {x.x(), 0, 0}; };
+  const auto collapse = [](const Eigen::Vector3d&) -> Eigen::Vector3d { return {1, 2, 3}; };
+  const auto check = [](World world) {
+    world.match();
+    for (std::size_t j = 0; j < world.x.size(); ++j) {
+      ASSERT_NEAR(world.rotation(j).determinant(), 1.0, 1e-5);
+      ASSERT_TRUE(world.shape.pull.get(j).allFinite());
+    }
+  };
+  const auto transformed = [](const auto& f) {
+    World world(300);
+    world.transform(f);
+    return world;
+  };
+  check(transformed(mirror));
+  check(transformed(flatten));
+  check(transformed(line));
+  check(transformed(collapse));
+}
+
+TEST(rotation, of_a_collapsed_body_is_the_last_one) {
+  World world(300);
+  const Eigen::AngleAxisd turn(0.8, Eigen::Vector3d::UnitX());
+  world.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return turn * x; });
+  world.match();
+  const Eigen::Matrix3d before = world.rotation(17);
+  world.transform([](const Eigen::Vector3d&) -> Eigen::Vector3d { return {0, 0, 0}; });
+  world.match();
+  EXPECT_LT((world.rotation(17) - before).norm(), 1e-3);
+}
+
+TEST(regions, of_one_two_and_three_particles_pull_back_to_shape) {
+  World one({{1, 2, 3}}, 2);
+  one.match();
+  EXPECT_EQ(largest_pull(one), 0);
+  World two({{0, 0, 0}, {1, 0, 0}}, 2);
+  two.x.set(1, {0, 0, 2});
+  two.match();
+  // Two of distance 2 that were 1 apart: each is drawn in by a half, wherever the line turned.
+  EXPECT_LT((two.shape.pull.get(0) - Vec3(0, 0, 0.5f)).norm(), 1e-3f);
+  EXPECT_LT((two.shape.pull.get(1) - Vec3(0, 0, -0.5f)).norm(), 1e-3f);
+  World three({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 2);
+  const Eigen::AngleAxisd turn(1.5, Eigen::Vector3d(1, 1, 1).normalized());
+  three.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return turn * x; });
+  three.match();
+  EXPECT_LT(largest_pull(three), 1e-5);
+}
+
+TEST(shape_matching, has_the_same_bits_at_every_level_and_thread_count) {
+  const auto deform = [](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+    return Eigen::AngleAxisd(0.3 * x.z(), Eigen::Vector3d::UnitZ()) *
+           Eigen::Vector3d(1.4 * x.x(), x.y(), x.z());
+  };
+  World reference;
+  reference.transform(deform);
+  reference.match(1, InstructionLevel::baseline);
+  for (const InstructionLevel level : levels()) {
+    for (const int threads : {1, 2, 3}) {
+      World world;
+      world.transform(deform);
+      world.match(threads, level);
+      for (std::size_t i = 0; i < world.x.size(); ++i)
+        ASSERT_EQ(world.shape.pull.get(i), reference.shape.pull.get(i));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mallow

@@ -1,0 +1,184 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+#include "mallow/body.h"
+#include "shapes/random_points.h"
+
+namespace mallow {
+namespace {
+
+constexpr float k_nan = std::numeric_limits<float>::quiet_NaN();
+
+TEST(lattice, points_are_in_the_middle_of_cells_with_x_fastest) {
+  const Body body = sample(Lattice{{2, 3, 4}, 0.5f, {10.0f, 20.0f, 30.0f}});
+  ASSERT_EQ(body.positions.size(), 24u);
+  EXPECT_EQ(body.spacing, 0.5f);
+  EXPECT_EQ(body.positions[0], Vec3(10.25f, 20.25f, 30.25f));
+  EXPECT_EQ(body.positions[1], Vec3(10.75f, 20.25f, 30.25f));
+  EXPECT_EQ(body.positions[2], Vec3(10.25f, 20.75f, 30.25f));
+  EXPECT_EQ(body.positions[6], Vec3(10.25f, 20.25f, 30.75f));
+  EXPECT_EQ(body.positions[23], Vec3(10.75f, 21.25f, 31.75f));
+}
+
+TEST(lattice, bad_values_are_named) {
+  EXPECT_EQ(problem_of([] {
+              sample(Lattice{{2, 0, 2}, 1.0f, Vec3::Zero()});
+            }),
+            "count[1]: 0 is not allowed: a whole number >= 1");
+  EXPECT_EQ(problem_of([] {
+              sample(Lattice{{2, 2, 2}, -1.0f, Vec3::Zero()});
+            }),
+            "spacing: -1 is not allowed: a number > 0");
+  EXPECT_EQ(problem_of([] {
+              sample(Lattice{{2, 2, 2}, k_nan, Vec3::Zero()});
+            }),
+            "spacing: nan is not allowed: a number > 0");
+  EXPECT_EQ(problem_of([] {
+              sample(Lattice{{2, 2, 2}, 1.0f, {0.0f, k_nan, 0.0f}});
+            }).substr(0, 7),
+            "corner:");
+  EXPECT_EQ(problem_of([] { sample(Lattice{{2, 2, 2}, 3e38f, Vec3::Zero()}); }).substr(0, 8), "spacing:");
+}
+
+TEST(lattice, more_than_100_million_points_are_refused_before_allocation) {
+  EXPECT_EQ(problem_of([] {
+              sample(Lattice{{2000000000, 2000000000, 2000000000}, 1.0f, Vec3::Zero()});
+            }),
+            "count: 8e+27 is not allowed: 100 million points at most");
+}
+
+TEST(lattice, all_problems_are_said_at_once) {
+  try {
+    sample(Lattice{{0, 1, -3}, 0.0f, {k_nan, 0.0f, 0.0f}});
+    FAIL() << "nothing thrown";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.problems().size(), 4u);
+  }
+}
+
+TEST(sampling, sphere_holds_its_volume_in_cells) {
+  for (float spacing : {0.5f, 0.73f, 1.0f}) {
+    const Body body = sample(sphere_shape({1.0f, 2.0f, 3.0f}, 10.0f), {.spacing = spacing});
+    const double cells = 4.0 / 3.0 * std::numbers::pi * std::pow(10.0 / double(spacing), 3);
+    EXPECT_NEAR(double(body.positions.size()) / cells, 1.0, 0.02);
+    EXPECT_EQ(body.spacing, spacing);
+  }
+}
+
+TEST(sampling, equals_a_test_of_every_lattice_point) {
+  const ImplicitShape moai = moai_shape();
+  constexpr float spacing = 1.1f;
+  const Body body = sample(moai, {.spacing = spacing});
+  std::size_t expected = 0;
+  const Vec3 middle = 0.5f * (moai.bounds.min + moai.bounds.max);
+  for (int z = -30; z < 30; ++z)
+    for (int y = -30; y < 30; ++y)
+      for (int x = -30; x < 30; ++x)
+        expected +=
+            moai.distance(middle + spacing * (Vec3(float(x), float(y), float(z)) + Vec3::Constant(0.5f))) < 0;
+  EXPECT_EQ(body.positions.size(), expected);
+  for (const Vec3& x : body.positions) {
+    EXPECT_LT(moai.distance(x), 0.0f);
+    const Vec3 cell = (x - middle) / spacing - Vec3::Constant(0.5f);
+    EXPECT_LT((cell - cell.array().round().matrix()).norm(), 1e-4f);
+  }
+}
+
+TEST(sampling, wanted_counts_are_met_within_1_percent) {
+  const ImplicitShape sphere = sphere_shape({-3.0f, 0.5f, 8.0f}, 7.0f);
+  const ImplicitShape moai = moai_shape();
+  for (int wanted : {1328, 2015, 3764, 4185, 10648}) {
+    EXPECT_NEAR(double(sample(sphere, {.count = wanted}).positions.size()), wanted, 0.01 * wanted);
+    EXPECT_NEAR(double(sample(moai, {.count = wanted}).positions.size()), wanted, 1.0);
+  }
+}
+
+TEST(sampling, spacing_for_a_wanted_count_fits_the_volume) {
+  const Body body = sample(sphere_shape(Vec3::Zero(), 10.0f), {.count = 4185});
+  EXPECT_NEAR(double(body.positions.size()) * std::pow(double(body.spacing), 3), 4188.8, 84.0);
+}
+
+TEST(sampling, single_points_and_tiny_counts_are_met) {
+  EXPECT_EQ(sample(sphere_shape({1.0f, 2.0f, 3.0f}, 1.0f), {.count = 1}).positions.at(0),
+            Vec3(1.0f, 2.0f, 3.0f));
+  EXPECT_EQ(sample(sphere_shape(Vec3::Zero(), 1.0f), {.count = 8}).positions.size(), 8u);
+}
+
+TEST(sampling, gives_the_same_points_each_time) {
+  const Sampling sampling{.count = 1328, .jitter = 0.3f};
+  EXPECT_EQ(sample(moai_shape(), sampling).positions, sample(moai_shape(), sampling).positions);
+}
+
+TEST(sampling, jitter_moves_points_by_its_share_and_keeps_them_inside) {
+  const ImplicitShape sphere = sphere_shape({1.0f, -2.0f, 3.0f}, 6.0f);
+  const Body regular = sample(sphere, {.spacing = 0.5f});
+  const Body jittered = sample(sphere, {.spacing = 0.5f, .jitter = 0.4f});
+  ASSERT_EQ(jittered.positions.size(), regular.positions.size());
+  Vec3 largest = Vec3::Zero();
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero(), square = Eigen::Vector3d::Zero();
+  std::size_t deep = 0;
+  for (std::size_t i = 0; i < regular.positions.size(); ++i) {
+    EXPECT_LT(sphere.distance(jittered.positions[i]), 0.0f);
+    const Vec3 moved = jittered.positions[i] - regular.positions[i];
+    largest = largest.cwiseMax(moved.cwiseAbs());
+    if (sphere.distance(regular.positions[i]) > -0.5f) continue;
+    ++deep;
+    mean += moved.cast<double>();
+    square += moved.cast<double>().cwiseAbs2();
+  }
+  // Uniform in ± 0.2: variance 0.2²/3.
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LE(largest[axis], 0.2001f);
+    EXPECT_GT(largest[axis], 0.19f);
+    EXPECT_NEAR(mean[axis] / double(deep), 0.0, 0.01);
+    EXPECT_NEAR(square[axis] / double(deep), 0.2 * 0.2 / 3.0, 7e-4);
+  }
+}
+
+TEST(sampling, bad_values_are_named) {
+  const ImplicitShape sphere = sphere_shape(Vec3::Zero(), 1.0f);
+  const auto problem = [&](const Sampling& sampling) {
+    return problem_of([&] { sample(sphere, sampling); });
+  };
+  EXPECT_EQ(problem({.spacing = 0.0f}), "spacing: 0 is not allowed: a number > 0");
+  EXPECT_EQ(problem({.spacing = k_nan}), "spacing: nan is not allowed: a number > 0");
+  EXPECT_EQ(problem({.count = 0}), "count: 0 is not allowed: 1 to 100 million points");
+  EXPECT_EQ(problem({.count = 100000001}).substr(0, 17), "count: 100000001 ");
+  EXPECT_EQ(problem({.spacing = 0.1f, .jitter = 0.6f}).substr(0, 11), "jitter: 0.6");
+  EXPECT_EQ(problem({}).substr(0, 9), "sampling:");
+  EXPECT_EQ(problem({.spacing = 0.1f, .count = 5}).substr(0, 9), "sampling:");
+  EXPECT_EQ(problem({.spacing = 1e-9f}).substr(0, 14), "spacing: 1e-09");
+  EXPECT_EQ(problem({.spacing = 2.5f}).substr(0, 8), "spacing:");
+  EXPECT_EQ(problem_of([&] { sample({sphere.distance, {}}, {.count = 5}); }).substr(0, 7), "bounds:");
+}
+
+TEST(sampling, too_many_points_are_counted_and_refused) {
+  // 4/3 π 300³ points, of 600³ in the bounds.
+  EXPECT_EQ(
+      problem_of([] { sample(sphere_shape(Vec3::Zero(), 1.0f), {.spacing = 1.0f / 300.0f}); }).substr(0, 12),
+      "spacing: 113");
+}
+
+TEST(sampling, a_count_that_symmetry_forbids_names_the_nearest) {
+  // A cube holds n · n · n points, or one more along some of its sides: 216, 252, 294, 343, ...
+  const ImplicitShape cube{[](const Vec3& x) { return x.cwiseAbs().maxCoeff() - 1.0f; },
+                           {Vec3::Constant(-1.0f), Vec3::Constant(1.0f)}};
+  EXPECT_EQ(sample(cube, {.count = 343}).positions.size(), 343u);
+  EXPECT_EQ(sample(cube, {.count = 252}).positions.size(), 252u);
+  EXPECT_EQ(problem_of([&] { sample(cube, {.count = 232}); }),
+            "count: 232 cannot be met within 1%: the nearest number that fits is 216");
+}
+
+TEST(sampling, an_empty_shape_is_refused) {
+  const ImplicitShape nothing{[](const Vec3&) { return 1.0f; },
+                              {Vec3::Constant(-1.0f), Vec3::Constant(1.0f)}};
+  EXPECT_EQ(problem_of([&] { sample(nothing, {.count = 1000}); }),
+            "count: 1000 cannot be met: the shape fills too little of its bounds");
+  EXPECT_EQ(problem_of([&] { sample(nothing, {.spacing = 0.1f}); }),
+            "spacing: no lattice point lies inside the shape at 0.1: a smaller spacing");
+}
+
+}  // namespace
+}  // namespace mallow

@@ -1,0 +1,145 @@
+#include "simulation/oracle_cases.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace mallow {
+namespace {
+
+/// The paper's free units, small: Δt0 0.15, h about 1, |g| 0.4; checks often enough to fire within 40 steps.
+SolverConfig units(float support_radius = 2.2f) {
+  return {.support_radius = support_radius, .gravity = {0, 0, -0.4f}, .update_interval = 10};
+}
+
+SolverConfig printed() {
+  SolverConfig solver = units();
+  solver.formulation = Formulation::printed;
+  return solver;
+}
+
+SolverConfig without_acoustic_limit() {
+  SolverConfig solver = units();
+  solver.acoustic_limit = false;
+  return solver;
+}
+
+SolverConfig with_offset(float contact_offset) {
+  SolverConfig solver = units();
+  solver.contact_offset = contact_offset;
+  return solver;
+}
+
+Material stuff(AlphaSchedule alpha) {
+  return {.alpha = std::move(alpha), .update_threshold = 1.0f};
+}
+/// Keeps its first reference shape.
+Material lasting(AlphaSchedule alpha) {
+  return {.alpha = std::move(alpha), .update_threshold = 1e6f};
+}
+
+const Plane k_tilted{{0.3f, -0.2f, 1.0f}, 0.1f};
+const Collider k_slope{.shape = k_tilted, .restitution = 0.3f, .friction = 0.3f};
+const Collider k_ball{.shape = Sphere{{0.4f, -0.3f, -3.0f}, 3.0f}, .friction = 0.3f};
+const Collider k_bowl{.shape = Sphere{{0, 0, 6}, 6.2f, true}, .friction = 0.2f};
+const Collider k_step{.shape = Box{{-9, -9, -2}, {0.3f, 9, 0.2f}}, .friction = 0.3f};
+const Collider k_tank{.shape = Box{{-3.7f, -9, 0}, {9, 9, 20}, true}, .friction = 0.1f};
+const Collider k_union{
+    .shape = Union{{Sphere{{-2, 0, -1}, 2.0f}, Box{{0.5f, -2, -2}, {5, 2, 0.6f}}, Plane{{0, 0, 1}, -0.6f}}},
+    .friction = 0.3f};
+
+}  // namespace
+
+const std::vector<Case>& oracle_cases() {
+  // clang-format off
+  static const std::vector<Case> cases = {
+      {.name = "elastic_on_slope", .blobs = {{lasting(0.0f), {0, 0, 4.2f}, {0, 0, -1.5f}}}, .colliders = {k_slope}, .solver = units()},
+      {.name = "elastic_on_slope_updated", .blobs = {{stuff(0.0f), {0, 0, 4.2f}, {0, 0, -1.5f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1},
+      {.name = "jelly_on_slope", .blobs = {{stuff(0.3f), {0, 0, 4.2f}, {0, 0, -1.5f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1},
+      {.name = "paste_on_slope", .blobs = {{stuff(0.7f), {0, 0, 4.0f}, {0, 0, -1.0f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1},
+      {.name = "paste_on_ball", .blobs = {{stuff(0.7f), {0, 0, 3.8f}, {0, 0, -1.0f}}}, .colliders = {k_ball}, .solver = units(2.9f), .updates = 1},
+      {.name = "cream_on_ball_and_slope", .blobs = {{stuff(0.9f), {0, 0, 3.8f}, {0, 0, -1.0f}}}, .colliders = {k_ball, {.shape = Plane{{0, 0.1f, 1}, -0.5f}, .friction = 0.3f}}, .solver = units(), .updates = 2},
+      {.name = "fluid_on_slope", .blobs = {{stuff(1.0f), {0, 0, 4.0f}, {0, 0, -1.0f}}}, .colliders = {k_slope}, .solver = units()},
+      {.name = "syrup_on_slope", .blobs = {{{.alpha = 1.0f, .viscosity = 6}, {0, 0, 4.0f}, {0, 0, -1.0f}}}, .colliders = {k_slope}, .solver = units(), .limited = true},
+      {.name = "fluid_in_tank", .blobs = {{stuff(1.0f), {0, 0, 3.6f}, {-0.8f, 0.3f, -0.5f}}}, .colliders = {k_tank}, .solver = units()},
+      {.name = "paste_in_bowl", .blobs = {{stuff(0.7f), {0, 0, 5.0f}, {0, 0, -1.0f}, {5, 5, 7}}}, .colliders = {k_bowl}, .solver = units(1.7f), .updates = 1},
+      {.name = "paste_on_step", .blobs = {{stuff(0.7f), {0, 0, 3.8f}, {0, 0, -1.0f}}}, .colliders = {k_step}, .solver = units(), .updates = 1},
+      {.name = "jelly_on_union", .blobs = {{stuff(0.3f), {0, 0, 4.4f}, {0, 0, -1.0f}, {7, 5, 6}}}, .colliders = {k_union}, .solver = units(), .updates = 1},
+      {.name = "overlap_at_start", .blobs = {{lasting(0.3f), {0, 0, 2.0f}, {0, 0, -0.5f}}}, .colliders = {k_slope}, .solver = with_offset(0.2f)},
+      {.name = "moving_slope", .blobs = {{stuff(0.7f), {0, 0, 4.0f}}}, .colliders = {{.shape = k_tilted, .velocity = {0.5f, 0, 0.6f}, .friction = 0.5f}}, .solver = units(), .updates = 1},
+      {.name = "moving_ball", .blobs = {{lasting(0.3f), {0, 0, 4.0f}}}, .colliders = {{.shape = Sphere{{-6.5f, 0.2f, 4}, 2.5f}, .velocity = {1.0f, 0, 0}, .restitution = 0.2f}}, .solver = units()},
+      {.name = "elastic_pair", .blobs = {{lasting(0.0f), {0, 0, 0}, {0, 0, 0.6f}, {5, 5, 4}}, {lasting(0.0f), {0.6f, 0.2f, 4.6f}, {0, 0, -0.6f}, {5, 5, 4}}}, .solver = units()},
+      {.name = "unlike_pair", .blobs = {{{.alpha = 0.3f, .update_threshold = 1.0f, .pressure_coefficient = 12, .viscosity = 0.2f, .particle_mass = 2.0f}, {0, 0, 3.4f}, {0, 0, -0.4f}, {5, 5, 5}},
+                                        {{.alpha = 0.9f, .update_threshold = 1.0f, .pressure_coefficient = 20, .viscosity = 1.0f, .rest_density = 0.4f, .cohesion = 0.3f}, {0.2f, 0.3f, 8.2f}, {0, 0, -1}, {6, 5, 5}, 0.8f}}, .colliders = {k_slope}, .solver = units(), .updates = 2},
+      {.name = "bodies_of_one_group_merge", .blobs = {{stuff(0.7f), {0, 0, 3.4f}, {0, 0, -0.2f}, {5, 5, 5}}, {.center = {0.3f, 0.4f, 8.8f}, .velocity = {0, 0, -1.2f}, .count = {5, 5, 5}, .joins_the_one_before = true}}, .colliders = {k_slope}, .solver = units(), .updates = 1},
+      {.name = "melting", .blobs = {{stuff({{1.0f, 0.05f}, {3.0f, 1.0f}}), {0, 0, 4.0f}, {0, 0, -1.0f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1},
+      {.name = "setting", .blobs = {{stuff({{0.6f, 0.9f}, {1.2f, 0.0f}}), {0, 0, 4.0f}, {3, 0, -1.0f}}}, .colliders = {k_slope}, .solver = units(), .limited = true, .updates = 1},
+      {.name = "hanging", .blobs = {{{.alpha = 0.5f, .cohesion = 1.0f}, {0, 0, 4.2f}, {}, {4, 4, 10}}}, .solver = units(), .pins = {{{{-9, -9, 7.2f}, {9, 9, 99}}, {0.3f, 0.2f, 0.1f}}}},
+      {.name = "pinned_and_pushed", .blobs = {{{.alpha = 0.3f, .update_threshold = 1.2f, .cohesion = 1.0f}, {0, 0, 6.0f}, {}, {4, 4, 10}}}, .colliders = {{.shape = Plane{{0.1f, 0.1f, 1}, 0.6f}, .velocity = {0, 0, 0.5f}, .friction = 0.3f}}, .solver = units(), .pins = {{{{-9, -9, 5.5f}, {9, 9, 99}}}}, .updates = 1},
+      {.name = "wrung", .blobs = {{lasting(0.7f), {0, 0, 0}, {}, {10, 4, 4}}}, .solver = units(), .pins = {{{{-9, -9, -9}, {-3.0f, 9, 9}}}, {{{3.0f, -9, -9}, {9, 9, 9}}, {-0.3f, 0.2f, 0}}}},
+      {.name = "printed_paste_on_slope", .blobs = {{stuff(0.7f), {0, 0, 4.0f}, {0, 0, -1.0f}}}, .colliders = {k_slope}, .solver = printed(), .updates = 1},
+      {.name = "printed_pair", .blobs = {{lasting(0.5f), {0, 0, 0}, {0, 0, 0.6f}, {5, 5, 4}}, {{.alpha = 0.7f, .pressure_coefficient = 9, .viscosity = 1, .cohesion = 0.2f}, {0.6f, 0.2f, 4.4f}, {0, 0, -0.6f}, {5, 5, 4}}}, .solver = printed()},
+      {.name = "cohesive_fluid_in_wind", .blobs = {{{.alpha = 1.0f, .cohesion = 0.5f}, {0, 0, 0}, {0.2f, 0, 0}}}, .solver = units(), .wind = true},
+      {.name = "jelly_in_wind", .blobs = {{lasting(0.3f), {0, 0, 0}, {0.2f, 0, 0}, {8, 4, 4}}}, .solver = units(), .wind = true},
+      {.name = "fast_fall", .blobs = {{stuff(0.7f), {0, 0, 14}, {2, 0, -16}}}, .solver = without_acoustic_limit(), .limited = true},
+      {.name = "slow_spring_small_regions", .blobs = {{{.alpha = 0.3f, .update_threshold = 1.0f, .elastic_time_step = 0.3f, .region_radius = 1.6f}, {0, 0, 4.2f}, {0, 0, -1.5f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1},
+      // The engine remembers the last rotation at 1e-4 of a region's size, which a flat region feels.
+      {.name = "flat_sheet_and_loose_points", .blobs = {{lasting(0.0f), {0, 0, 3}, {}, {9, 9, 1}, 1, 0}, {.center = {0, 0, 9}, .velocity = {0, 0, -1.5f}, .count = {1, 1, 1}, .joins_the_one_before = true}, {.center = {9, 0, 7}, .velocity = {0, 0, -1}, .count = {3, 1, 1}, .joins_the_one_before = true}}, .colliders = {k_ball, k_slope}, .solver = units(), .tolerance = 1e-3},
+  };
+  // clang-format on
+  return cases;
+}
+
+std::vector<Case> ablations(const Case& whole) {
+  std::vector<Case> lesser;
+  const auto without = [&](const std::string& what, const std::function<void(Case&)>& take_away) {
+    Case less = whole;
+    less.name += " without " + what;
+    take_away(less);
+    lesser.push_back(std::move(less));
+  };
+  for (std::size_t c = 0; c < whole.colliders.size(); ++c) {
+    const std::string number = std::to_string(c);
+    without("collider " + number,
+            [&](Case& less) { less.colliders.erase(less.colliders.begin() + static_cast<long>(c)); });
+    if (whole.colliders[c].friction > 0)
+      without("friction", [&](Case& less) { less.colliders[c].friction = 0; });
+    if (whole.colliders[c].restitution > 0)
+      without("bounce", [&](Case& less) { less.colliders[c].restitution = 0; });
+    if (!whole.colliders[c].velocity.isZero())
+      without("motion", [&](Case& less) { less.colliders[c].velocity.setZero(); });
+    const auto* shapes = std::get_if<Union>(&whole.colliders[c].shape);
+    for (std::size_t p = 0; shapes && p < shapes->parts.size(); ++p) {
+      without("part " + std::to_string(p), [&](Case& less) {
+        auto& parts = std::get<Union>(less.colliders[c].shape).parts;
+        parts.erase(parts.begin() + static_cast<long>(p));
+      });
+    }
+  }
+  for (std::size_t p = 0; p < whole.pins.size(); ++p) {
+    without("pin " + std::to_string(p),
+            [&](Case& less) { less.pins.erase(less.pins.begin() + static_cast<long>(p)); });
+  }
+  if (whole.wind) without("wind", [](Case& less) { less.wind = false; });
+  if (whole.updates > 0)
+    without("updates", [](Case& less) {
+      for (Blob& b : less.blobs) b.material.update_threshold = 1e6f;
+    });
+  const bool sph_acts = whole.blobs.front().material.alpha.keys().back().alpha > 0 ||
+                        std::any_of(whole.blobs.begin() + 1, whole.blobs.end(),
+                                    [](const Blob& b) { return !b.joins_the_one_before; });
+  if (sph_acts)
+    without("pressure", [](Case& less) {
+      for (Blob& b : less.blobs) b.material.pressure_coefficient = 0;
+    });
+  if (sph_acts)
+    without("viscosity", [](Case& less) {
+      for (Blob& b : less.blobs) b.material.viscosity = 0;
+    });
+  for (std::size_t b = 0; b < whole.blobs.size(); ++b) {
+    if (whole.blobs[b].material.cohesion > 0)
+      without("cohesion", [&](Case& less) { less.blobs[b].material.cohesion = 0; });
+  }
+  return lesser;
+}
+
+}  // namespace mallow

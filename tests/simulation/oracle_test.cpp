@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "mallow/simulation.h"
+#include "oracle/oracle.h"
+#include "oracle/points.h"
+#include "simulation/oracle_cases.h"
+
+namespace mallow {
+
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+  return out << c.name;
+}
+
+namespace {
+
+using oracle::Oracle;
+using oracle::Vec;
+
+constexpr int k_steps = 40;
+/// What everything in a case must do to some position at least, in units of h.
+constexpr double k_significant = 0.05;
+
+std::vector<Vec3> points_of(const Blob& blob) {
+  return oracle::lattice_points(blob.count, blob.spacing, blob.center, blob.jitter);
+}
+
+/// A gust that turns, tears and drags; the same formula for both precisions.
+template <class Scalar>
+Eigen::Matrix<Scalar, 3, 1> wind(double time, std::size_t id, const Eigen::Matrix<Scalar, 3, 1>& x,
+                                 const Eigen::Matrix<Scalar, 3, 1>& v) {
+  const auto t = static_cast<Scalar>(time);
+  const auto side = static_cast<Scalar>(id % 2 == 0 ? 0.2 : -0.1);
+  return {Scalar(0.3) * x.x() + side, Scalar(0.2) * t - Scalar(0.1) * v.y(), Scalar(0.1) * x.x()};
+}
+
+Oracle oracle_of(const Case& scene) {
+  Oracle oracle(scene.solver);
+  std::size_t group = 0;
+  for (const Blob& blob : scene.blobs) {
+    if (!blob.joins_the_one_before) group = oracle.add_group(blob.material);
+    std::vector<Vec> positions;
+    for (const Vec3& x : points_of(blob)) positions.push_back(x.cast<double>());
+    const std::vector<Vec> velocities(positions.size(), blob.velocity.cast<double>());
+    oracle.add_body(positions, velocities, blob.spacing, group);
+  }
+  for (const Collider& collider : scene.colliders) oracle.add_collider(collider);
+  for (const Pinned& pin : scene.pins) oracle.pin(pin.box, pin.velocity.cast<double>());
+  if (scene.wind) oracle.set_force(wind<double>);
+  return oracle;
+}
+
+Simulation engine_of(const Case& scene) {
+  Simulation engine(scene.solver);
+  GroupId group{};
+  for (const Blob& blob : scene.blobs) {
+    if (!blob.joins_the_one_before) group = engine.add_group(blob.material);
+    engine.add_body(
+        {.positions = points_of(blob), .spacing = blob.spacing, .velocity = blob.velocity, .velocities = {}},
+        group);
+  }
+  for (const Collider& collider : scene.colliders) engine.add_collider(collider);
+  for (const Pinned& pin : scene.pins) engine.pin(pin.box, pin.velocity);
+  if (scene.wind) {
+    engine.set_force([](const ForceInput& input, VectorSpan accelerations) {
+      for (std::size_t row = 0; row < input.ids.size(); ++row) {
+        accelerations.eigen().row(static_cast<Eigen::Index>(row)) +=
+            wind<float>(input.time, input.ids[row], input.positions[row], input.velocities[row]).transpose();
+      }
+    });
+  }
+  return engine;
+}
+
+/// The largest distance of a particle from its twin, in spacings of its body.
+double largest_deviation(const Case& scene, const std::vector<Vec>& a, const std::vector<Vec>& b) {
+  double largest = 0;
+  std::size_t id = 0;
+  for (const Blob& blob : scene.blobs) {
+    for (std::size_t k = 0; k < points_of(blob).size(); ++k, ++id) {
+      const double deviation = (a[id] - b[id]).norm() / blob.spacing;
+      largest = std::isfinite(deviation) ? std::max(largest, deviation) : INFINITY;
+    }
+  }
+  return largest;
+}
+
+std::vector<Vec> positions_of(const Simulation& engine) {
+  std::vector<Vec> positions;
+  for (const Vec3& x : engine.positions_by_id()) positions.push_back(x.cast<double>());
+  return positions;
+}
+
+class oracle_case : public testing::TestWithParam<Case> {};
+
+TEST_P(oracle_case, engine_matches_the_oracle) {
+  const Case& scene = GetParam();
+  Oracle oracle = oracle_of(scene);
+  Simulation engine = engine_of(scene);
+  for (int c = 0; c < k_steps; ++c) {
+    const oracle::Step expected = oracle.step();
+    const StepReport report = engine.step();
+    ASSERT_NEAR(report.time_step / expected.time_step, 1, 1e-4) << "step " << c;
+    ASSERT_EQ(static_cast<std::size_t>(report.updated_references), expected.updated_groups.size())
+        << "step " << c;
+  }
+  EXPECT_LE(largest_deviation(scene, oracle.positions(), positions_of(engine)), scene.tolerance)
+      << "in units of h";
+}
+
+TEST_P(oracle_case, everything_in_it_matters) {
+  const Case& scene = GetParam();
+  Oracle whole = oracle_of(scene);
+  int updates = 0;
+  bool limited = false;
+  for (int c = 0; c < k_steps; ++c) {
+    const oracle::Step step = whole.step();
+    updates += static_cast<int>(step.updated_groups.size());
+    limited = limited || step.time_step < double{scene.solver.time_step};
+  }
+  EXPECT_GE(updates, scene.updates);
+  EXPECT_TRUE(limited || !scene.limited);
+  for (const Case& less : ablations(scene)) {
+    Oracle lesser = oracle_of(less);
+    for (int c = 0; c < k_steps; ++c) lesser.step();
+    EXPECT_GE(largest_deviation(scene, whole.positions(), lesser.positions()), k_significant) << less.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(scenes, oracle_case, testing::ValuesIn(oracle_cases()),
+                         [](const auto& scene) { return scene.param.name; });
+
+}  // namespace
+}  // namespace mallow

@@ -1,0 +1,303 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <random>
+
+#include "mallow/mallow.h"
+
+namespace mallow {
+namespace {
+
+SolverConfig config(int threads = 2) {
+  SolverConfig c;
+  c.support_radius = 2.0f;
+  c.acoustic_limit = false;
+  c.update_interval = 10;
+  c.threads = threads;
+  return c;
+}
+
+Body cube(int side, Vec3 corner = {0, 0, 0}) {
+  return sample(Lattice{{side, side, side}, 1.0f, corner});
+}
+
+/// Everything at once: three groups, an update, a pin, a force, colliders that move, alpha that changes.
+Simulation busy_scene(int threads) {
+  Simulation s(config(threads));
+  const GroupId jelly =
+      s.add_body(cube(9, {0, 0, 1}), Material{.alpha = 0.5f, .update_threshold = 0.1f}, "jelly");
+  s.add_body(cube(6, {2, 2, 11}), Material{.alpha = {{0, 1}, {3, 0.2f}}}, "thickening");
+  s.add_body(cube(5, {-7, 0, 1}), Material{.alpha = 0}, "solid");
+  s.add_body(cube(4, {20, 0, 1}), jelly);
+  s.add_collider({.shape = Plane{{0.1f, 0, 1}, 0}, .friction = 0.3f});
+  s.add_collider(
+      {.shape = Union{{Sphere{{4, 4, 0}, 2}, Box{{-3, -3, 0}, {-1, -1, 3}}}}, .velocity = {0, 0.1f, 0}});
+  s.pin(Aabb{{-7, 0, 1}, {-5, 5, 2}}, {0, 0, 0.05f});
+  s.set_force(
+      [](const ForceInput& in, VectorSpan a) { a.eigen().col(0) -= 0.05f * in.positions.eigen().col(1); });
+  return s;
+}
+
+TEST(step, same_bits_for_any_thread_count) {
+  Simulation one = busy_scene(1);
+  int updates = 0;
+  for (int k = 0; k < 60; ++k) updates += one.step().updated_references;
+  EXPECT_GT(updates, 0);
+  for (const int threads : {2, 3, 4}) {
+    Simulation s = busy_scene(threads);
+    for (int k = 0; k < 60; ++k) s.step();
+    EXPECT_EQ(s.state_hash(), one.state_hash()) << threads << " threads";
+  }
+}
+
+TEST(free_fall, equals_the_recurrence) {
+  for (const float alpha : {0.0f, 0.4f, 1.0f}) {
+    Simulation s(config());
+    s.add_body(cube(6), Material{.alpha = alpha});
+    const std::vector<Vec3> start = s.positions_by_id();
+    float v = 0, z = 0;
+    for (int k = 0; k < 50; ++k) {
+      s.step();
+      v += 0.15f * -0.3f;
+      z += 0.15f * v;
+    }
+    const std::vector<Vec3> end = s.positions_by_id();
+    // A lattice at rest pressure is not under tension at its surface (cohesion 0), so it falls as one.
+    for (std::size_t i = 0; i < end.size(); ++i) EXPECT_LT((end[i] - start[i] - Vec3(0, 0, z)).norm(), 1e-4f);
+  }
+}
+
+TEST(shape_matching, conserves_linear_and_angular_momentum_over_1000_steps) {
+  SolverConfig c = config();
+  c.gravity = {0, 0, 0};
+  Simulation s(c);
+  Body body = cube(8, {-4, -4, -4});
+  std::mt19937 random(7);
+  std::normal_distribution<float> normal(0, 0.1f);
+  const Vec3 spin(0.1f, 0.2f, 0.15f);
+  for (const Vec3& x : body.positions)
+    body.velocities.push_back(spin.cross(x) + Vec3(0.3f, -0.1f, 0.2f) +
+                              Vec3(normal(random), normal(random), normal(random)));
+  s.add_body(body, Material{.alpha = 0});
+  const auto momenta = [&] {
+    const auto x = s.positions().eigen().cast<double>().eval();
+    const auto v = s.velocities().eigen().cast<double>().eval();
+    const Eigen::RowVector3d center = x.colwise().mean();
+    Eigen::Vector3d angular(0, 0, 0);
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      angular +=
+          Eigen::Vector3d((x.row(i) - center).transpose()).cross(Eigen::Vector3d(v.row(i).transpose()));
+    return std::pair<Eigen::Vector3d, Eigen::Vector3d>(v.colwise().sum().transpose(), angular);
+  };
+  const auto [linear, angular] = momenta();
+  for (int k = 0; k < 1000; ++k) s.step();
+  const auto [linear_after, angular_after] = momenta();
+  EXPECT_LT((linear_after - linear).norm(), 1e-5 * linear.norm());
+  EXPECT_LT((angular_after - angular).norm(), 1e-5 * angular.norm());
+}
+
+TEST(step, needs_no_sph_for_a_lone_elastic_group_and_no_regions_at_alpha_1) {
+  Simulation solid(config());
+  solid.add_body(cube(6), Material{.alpha = 0});
+  Simulation fluid(config());
+  fluid.add_body(cube(6), Material{.alpha = 1, .viscosity = 0});
+  Simulation both(config());
+  both.add_body(cube(6), Material{.alpha = 0.5f});
+  for (Simulation* s : {&solid, &fluid, &both}) s->step();
+  EXPECT_FALSE(solid.info().sph);
+  EXPECT_TRUE(solid.densities().empty());
+  EXPECT_EQ(solid.step().seconds[static_cast<std::size_t>(Phase::neighbors)], 0);
+  EXPECT_FALSE(fluid.info().groups[0].shape_matching);
+  EXPECT_FALSE(fluid.info().viscosity);
+  EXPECT_EQ(fluid.densities().size(), fluid.particle_count());
+  EXPECT_LT(solid.info().bytes, both.info().bytes);
+  EXPECT_LT(fluid.info().bytes, both.info().bytes);
+}
+
+TEST(alpha, that_changes_turns_phases_on_and_off) {
+  Simulation s(config());
+  const GroupId group = s.add_body(cube(6), Material{.alpha = {{0.0f, 1.0f}, {1.0f, 0.0f}}});
+  EXPECT_FALSE(s.info().groups[0].shape_matching);
+  while (s.time() < 0.5) s.step();
+  EXPECT_TRUE(s.info().groups[0].shape_matching);
+  EXPECT_TRUE(s.info().sph);
+  while (s.time() < 1.2) s.step();
+  EXPECT_FALSE(s.info().sph);
+  s.set_alpha(group, 1.0f);
+  s.step();
+  EXPECT_FALSE(s.info().groups[0].shape_matching);
+}
+
+TEST(alpha, set_below_1_on_a_fluid_remembers_the_shape_of_that_moment) {
+  SolverConfig c = config();
+  c.gravity = {0, 0, 0};
+  Simulation s(c);
+  Body body = cube(6);
+  body.velocities.resize(body.positions.size());
+  for (std::size_t i = 0; i < body.positions.size(); ++i) body.velocities[i] = 0.05f * body.positions[i];
+  const GroupId group = s.add_body(body, Material{.alpha = 1});
+  for (int k = 0; k < 20; ++k) s.step();
+  s.set_alpha(group, 0.0f);
+  const float width = s.positions().eigen().col(0).maxCoeff() - s.positions().eigen().col(0).minCoeff();
+  for (int k = 0; k < 400; ++k) s.step();
+  // It swings about the width it had, not about the lattice it was made with.
+  double mean = 0;
+  for (int k = 0; k < 400; ++k) {
+    s.step();
+    mean += (s.positions().eigen().col(0).maxCoeff() - s.positions().eigen().col(0).minCoeff()) / 400;
+  }
+  EXPECT_GT(width, 5.5f);
+  EXPECT_NEAR(mean, width, 0.15 * width);
+}
+
+TEST(groups, that_touch_push_each_other_and_never_merge) {
+  SolverConfig c = config();
+  c.gravity = {0, 0, 0};
+  Simulation s(c);
+  Body left = cube(5, {0, 0, 0}), right = cube(5, {7, 0, 0});
+  left.velocity = {0.5f, 0, 0};
+  const GroupId a = s.add_body(left, Material{.alpha = 0}), b = s.add_body(right, Material{.alpha = 0});
+  for (int k = 0; k < 120; ++k) s.step();
+  const auto mean_velocity = [&](GroupId g) {
+    const auto rows = s.rows(g);
+    return s.velocities()
+        .eigen()
+        .col(0)
+        .segment(static_cast<Eigen::Index>(rows.begin), static_cast<Eigen::Index>(rows.end - rows.begin))
+        .mean();
+  };
+  EXPECT_GT(mean_velocity(b), 0.1f);
+  EXPECT_NEAR(mean_velocity(a) + mean_velocity(b), 0.5, 1e-4);
+}
+
+TEST(pinned_particles, move_as_told_and_hold_the_body) {
+  Simulation s(config());
+  s.add_body(cube(5, {0, 0, 10}), Material{.alpha = 0});
+  const PinId pin = s.pin(Aabb{{0, 0, 14}, {5, 5, 15}}, {0.1f, 0, 0});
+  const std::vector<Vec3> start = s.positions_by_id();
+  for (int k = 0; k < 40; ++k) s.step();
+  for (std::size_t id = 100; id < 125; ++id)
+    EXPECT_LT((s.positions_by_id()[id] - start[id] - Vec3(0.6f, 0, 0)).norm(), 1e-4f);
+  EXPECT_GT(s.positions_by_id()[0].z(), 8.0f);
+  s.set_velocity(pin, {0, 0, 0});
+  const Vec3 held = s.positions_by_id()[110];
+  s.step();
+  EXPECT_EQ(s.positions_by_id()[110], held);
+}
+
+TEST(views, show_columns_without_a_copy_and_name_every_row) {
+  Simulation s(config());
+  s.add_body(cube(7), Material{.alpha = 0.5f, .update_threshold = 0});
+  for (int k = 0; k < 25; ++k) s.step();
+  const VectorView x = s.positions();
+  EXPECT_EQ(x.eigen().data(), x.x().data());
+  const std::vector<Vec3> by_id = s.positions_by_id();
+  std::vector<bool> seen(by_id.size());
+  for (std::size_t row = 0; row < x.size(); ++row) {
+    const ParticleId id = s.ids()[row];
+    EXPECT_FALSE(seen[id]);
+    seen[id] = true;
+    EXPECT_EQ(x[row], by_id[id]);
+    EXPECT_EQ(x.eigen()(static_cast<Eigen::Index>(row), 2), by_id[id].z());
+  }
+}
+
+TEST(bodies, can_be_added_between_steps) {
+  Simulation s(config());
+  const GroupId first = s.add_body(cube(4), Material{.alpha = 0.5f});
+  const GroupId second = s.add_body(cube(4, {20, 0, 0}), Material{.alpha = 0.5f});
+  for (int k = 0; k < 5; ++k) s.step();
+  s.add_body(cube(3, {40, 0, 0}), first);
+  EXPECT_EQ(s.rows(first).end, 64u + 27u);
+  EXPECT_EQ(s.rows(second).begin, 64u + 27u);
+  s.step();
+  EXPECT_EQ(s.particle_count(), 64u + 64u + 27u);
+  EXPECT_NEAR(s.positions_by_id()[64 + 64].x(), 40.5f, 1e-3);
+}
+
+TEST(errors, name_the_particle_and_keep_the_state_where_a_step_cannot_be_taken) {
+  Simulation s(config());
+  s.add_body(cube(5), Material{.alpha = 0.5f});
+  s.step();
+  s.set_force([](const ForceInput& in, VectorSpan a) {
+    for (std::size_t row = 0; row < in.ids.size(); ++row)
+      if (in.ids[row] == 42) a.x()[row] = std::nanf("");
+  });
+  const std::uint64_t before = s.state_hash();
+  try {
+    s.step();
+    FAIL() << "a step into NaN was taken";
+  } catch (const StepError& error) {
+    EXPECT_EQ(error.particle_id(), 42u);
+    EXPECT_NE(std::string(error.what()).find("particle 42"), std::string::npos);
+  }
+  EXPECT_EQ(s.state_hash(), before);
+  s.set_force({});
+  s.step();
+}
+
+TEST(errors, stop_a_step_below_a_thousandth_and_say_what_to_change) {
+  Simulation s(config());
+  Body body = cube(3);
+  body.velocity = {1e6f, 0, 0};
+  s.add_body(body, Material{.alpha = 1});
+  try {
+    s.step();
+    FAIL() << "a step of 2e-6 s was taken";
+  } catch (const StepError& error) {
+    EXPECT_NE(std::string(error.what()).find("solver.support_radius"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(s.step_count(), 0);
+}
+
+template <class F>
+std::string message_of(const F& f) {
+  try {
+    f();
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no ConfigError";
+}
+
+TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
+  const auto contains = [](const std::string& text, std::initializer_list<const char*> parts) {
+    for (const char* part : parts)
+      EXPECT_NE(text.find(part), std::string::npos) << text << "\n has no " << part;
+  };
+  SolverConfig bad = config();
+  bad.time_step = -1;
+  bad.support_radius = std::nanf("");
+  contains(message_of([&] { Simulation s(bad); }),
+           {"solver.time_step: -1", "above 0", "solver.support_radius: nan"});
+  Simulation s(config());
+  contains(message_of([&] { s.prepare(); }), {"no particles"});
+  contains(message_of([&] { s.add_group(Material{.alpha = 1.5f, .cohesion = 2}); }),
+           {"material.alpha: 1.5", "material.cohesion: 2", "[0, 1]"});
+  contains(message_of([&] { s.add_group(Material{.alpha = {{1, 0}, {1, 1}}}); }), {"material.alpha time: 1"});
+  contains(message_of([&] { s.add_body(Body{}, Material{}); }), {"body.positions", "no particles"});
+  contains(message_of([&] {
+             s.add_body(Body{.positions = {{0, 0, std::nanf("")}}}, Material{});
+           }),
+           {"body.positions[0]", "nan"});
+  contains(message_of([&] {
+             s.add_collider({.shape = Sphere{{0, 0, 0}, -2}, .restitution = 3});
+           }),
+           {"radius: -2", "restitution: 3"});
+  contains(message_of([&] { s.add_collider({.shape = Union{}}); }), {"no parts"});
+  const GroupId group = s.add_body(cube(3), Material{});
+  contains(message_of([&] {
+             s.add_body(sample(Lattice{{2, 2, 2}, 2.0f, {9, 9, 9}}), group);
+           }),
+           {"body.spacing: 2", "share one spacing"});
+  contains(message_of([&] { s.pin(Aabb{{50, 50, 50}, {51, 51, 51}}); }), {"pin.box", "no particle"});
+  contains(message_of([&] { s.pin(std::vector<ParticleId>{99}); }), {"no particle 99"});
+  contains(message_of([&] { s.set_alpha(GroupId{7}, 0.5f); }), {"no group 7"});
+  s.add_body(cube(3, {0.05f, 0, 0}), Material{}, "second");
+  contains(message_of([&] { s.prepare(); }), {"overlap", "second", "0.05"});
+}
+
+}  // namespace
+}  // namespace mallow
