@@ -244,6 +244,7 @@ Body sample(const Lattice& lattice) {
   if (points > k_most_points) checks.number("count", points, false, "100 million points at most");
   checks.number("spacing", lattice.spacing, lattice.spacing > 0.0f, "a number > 0");
   checks.vector("corner", lattice.corner);
+  checks.number("jitter", lattice.jitter, lattice.jitter >= 0.0f && lattice.jitter <= 0.5f, "0 to 0.5");
   checks.finish();
 
   const auto [nx, ny, nz] = lattice.count;
@@ -255,6 +256,13 @@ Body sample(const Lattice& lattice) {
   for (int z = 0; z < nz; ++z)
     for (int y = 0; y < ny; ++y)
       for (int x = 0; x < nx; ++x) body.positions.push_back(grid.point({x, y, z}));
+  if (lattice.jitter > 0.0f) {
+    std::size_t k = 0;
+    for (std::int64_t z = 0; z < nz; ++z)
+      for (std::int64_t y = 0; y < ny; ++y)
+        for (std::int64_t x = 0; x < nx; ++x)
+          body.positions[k++] += lattice.jitter * lattice.spacing * random_offset({x, y, z});
+  }
   if (!body.positions.back().allFinite()) {
     throw ConfigError("spacing",
                       std::to_string(lattice.spacing) + " is not allowed: the last point is not finite");

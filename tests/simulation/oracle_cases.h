@@ -44,8 +44,8 @@ struct Case {
 const std::vector<Case>& oracle_cases();
 
 /// The case without one of the things that it claims to test: a collider, a part of a union, friction,
-/// bounce, the pins, the wind, pressure, viscosity, cohesion, a group's neighbour, the updates. What is left
-/// out is appended to the name.
+/// bounce, motion, the pins, the wind, pressure, viscosity, cohesion, the updates. What is left out is
+/// appended to the name.
 std::vector<Case> ablations(const Case& whole);
 
 }  // namespace mallow

@@ -25,6 +25,7 @@ struct Lattice {
   std::array<int, 3> count{1, 1, 1};  ///< each >= 1
   float spacing = 1.0f;               ///< [m], > 0
   Vec3 corner{0, 0, 0};               ///< lowest corner of the box, half a cell from the first point
+  float jitter = 0.0f;                ///< as in Sampling
 };
 
 /// How a volume is filled: give one of `spacing` and `count`.
