@@ -1,0 +1,37 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <string>
+
+#include "mallow/vec3.h"
+
+namespace mallow {
+
+template <class T>
+void append_little_endian(std::string& bytes, T value) {
+  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
+  bytes.append(raw.data(), raw.size());
+}
+
+inline void append_little_endian(std::string& bytes, const Vec3& vector) {
+  for (const float value : vector) append_little_endian(bytes, value);
+}
+
+/// printf's %.<digits>g, whatever the locale.
+template <class T>
+void append_number(std::string& text, T value, int digits) {
+  std::array<char, 64> raw;
+  const auto result =
+      std::to_chars(raw.data(), raw.data() + raw.size(), value, std::chars_format::general, digits);
+  text.append(raw.data(), result.ptr);
+}
+
+/// Significant digits that give back the same number.
+inline constexpr int k_float_digits = 9;
+inline constexpr int k_double_digits = 17;
+
+}  // namespace mallow

@@ -1,0 +1,93 @@
+#include <string>
+
+#include "files/byte_reader.h"
+#include "files/byte_writer.h"
+#include "files/mesh_readers.h"
+#include "files/text_reader.h"
+#include "mallow/errors.h"
+#include "mallow/files.h"
+
+namespace mallow {
+namespace {
+
+template <class T>
+void require_per_vertex(const char* field, const std::vector<T>& values, const Mesh& mesh) {
+  if (values.empty() || values.size() == mesh.vertices.size()) return;
+  throw ConfigError(field, std::to_string(values.size()) +
+                               " are not allowed: none, or as many as vertices (" +
+                               std::to_string(mesh.vertices.size()) + ')');
+}
+
+void require_valid(const Mesh& mesh) {
+  require_per_vertex("mesh.normals", mesh.normals, mesh);
+  require_per_vertex("mesh.material_ids", mesh.material_ids, mesh);
+}
+
+std::string ply_header(const Mesh& mesh) {
+  std::string header = "ply\nformat binary_little_endian 1.0\ncomment mallow mesh\nelement vertex " +
+                       std::to_string(mesh.vertices.size()) +
+                       "\nproperty float x\nproperty float y\nproperty float z\n";
+  if (!mesh.normals.empty()) header += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (!mesh.material_ids.empty()) header += "property uchar material_id\n";
+  return header + "element face " + std::to_string(mesh.triangles.size()) +
+         "\nproperty list uchar uint vertex_indices\nend_header\n";
+}
+
+}  // namespace
+
+Mesh read_mesh(const std::filesystem::path& file) {
+  const std::string ending = lower_case_ending(file);
+  if (ending == ".obj") return read_obj(file);
+  if (ending == ".ply") return read_ply_mesh(file);
+  if (ending == ".stl") return read_stl(file);
+  if (ending == ".off") return read_off(file);
+  fail_file(file, "ending " + in_quotes(ending) + " is not allowed for a mesh: .obj, .ply, .stl or .off");
+}
+
+void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh) {
+  require_valid(mesh);
+  std::string bytes = ply_header(mesh);
+  const std::size_t vertex_bytes = 12 + (mesh.normals.empty() ? 0 : 12) + (mesh.material_ids.empty() ? 0 : 1);
+  constexpr std::size_t k_triangle_bytes = 13;
+  const std::size_t total =
+      bytes.size() + mesh.vertices.size() * vertex_bytes + mesh.triangles.size() * k_triangle_bytes;
+  require_readable_size(file, total);
+  bytes.reserve(total);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    append_little_endian(bytes, mesh.vertices[v]);
+    if (!mesh.normals.empty()) append_little_endian(bytes, mesh.normals[v]);
+    if (!mesh.material_ids.empty()) append_little_endian(bytes, mesh.material_ids[v]);
+  }
+  for (const auto& triangle : mesh.triangles) {
+    append_little_endian(bytes, std::uint8_t{3});
+    for (const std::uint32_t vertex : triangle) append_little_endian(bytes, vertex);
+  }
+  write_whole(file, bytes);
+}
+
+void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh) {
+  require_valid(mesh);
+  std::string text = "# mallow mesh\n";
+  const auto append_vectors = [&](const char* keyword, const std::vector<Vec3>& vectors) {
+    for (const Vec3& vector : vectors) {
+      text += keyword;
+      for (const float value : vector) append_number(text += ' ', value, k_float_digits);
+      text += '\n';
+    }
+  };
+  append_vectors("v", mesh.vertices);
+  append_vectors("vn", mesh.normals);
+  for (const auto& triangle : mesh.triangles) {
+    text += 'f';
+    for (const std::uint32_t vertex : triangle) {
+      const std::string index = std::to_string(std::uint64_t{vertex} + 1);
+      text += ' ' + index;
+      if (!mesh.normals.empty()) text += "//" + index;
+    }
+    text += '\n';
+  }
+  require_readable_size(file, text.size());
+  write_whole(file, text);
+}
+
+}  // namespace mallow

@@ -1,0 +1,121 @@
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <system_error>
+
+#include "files/byte_reader.h"
+#include "files/byte_writer.h"
+#include "files/ply.h"
+#include "files/text_reader.h"
+#include "mallow/errors.h"
+#include "mallow/files.h"
+
+namespace mallow {
+namespace {
+
+constexpr std::string_view k_time_comment = "mallow time ";
+constexpr std::string_view k_step_comment = "mallow step ";
+
+void require_valid(const ParticleFrame& frame) {
+  const auto require = [&](const char* field, std::size_t count) {
+    if (count == frame.positions.size()) return;
+    throw ConfigError(field, std::to_string(count) + " are not allowed: as many as positions (" +
+                                 std::to_string(frame.positions.size()) + ')');
+  };
+  require("frame.velocities", frame.velocities.size());
+  require("frame.groups", frame.groups.size());
+}
+
+std::string particle_header(const ParticleFrame& frame) {
+  std::string header = "ply\nformat binary_little_endian 1.0\ncomment ";
+  append_number(header += k_time_comment, frame.time, k_double_digits);
+  header += "\ncomment ";
+  header += k_step_comment;
+  header += std::to_string(frame.step) + "\nelement vertex " + std::to_string(frame.positions.size()) + '\n';
+  for (const char* name : {"x", "y", "z", "vx", "vy", "vz"})
+    header += std::string("property float ") + name + '\n';
+  return header + "property uchar group\nend_header\n";
+}
+
+std::string_view require_comment(const PlyReader& ply, std::string_view begin) {
+  for (const std::string_view comment : ply.header().comments) {
+    if (comment.starts_with(begin)) return comment.substr(begin.size());
+  }
+  ply.fail("this is not a frame of particles: there is no 'comment " + std::string(begin) + "<number>'");
+}
+
+double read_time(const PlyReader& ply) {
+  const std::string_view text = require_comment(ply, k_time_comment);
+  const std::optional<double> time = parse_number(text);
+  if (!time || !std::isfinite(*time))
+    ply.fail("time " + in_quotes(text) + " is not allowed: a finite number");
+  return *time;
+}
+
+std::int64_t read_step(const PlyReader& ply) {
+  const std::string_view text = require_comment(ply, k_step_comment);
+  std::int64_t step = -1;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, step);
+  if (error != std::errc{} || stop != end || step < 0) {
+    ply.fail("step " + in_quotes(text) + " is not allowed: a whole number from 0 on");
+  }
+  return step;
+}
+
+}  // namespace
+
+void write_particles(const std::filesystem::path& file, const ParticleFrame& frame) {
+  require_valid(frame);
+  std::string bytes = particle_header(frame);
+  constexpr std::size_t k_particle_bytes = 25;
+  const std::size_t total = bytes.size() + frame.positions.size() * k_particle_bytes;
+  require_readable_size(file, total);
+  bytes.reserve(total);
+  for (std::size_t i = 0; i < frame.positions.size(); ++i) {
+    append_little_endian(bytes, frame.positions[i]);
+    append_little_endian(bytes, frame.velocities[i]);
+    append_little_endian(bytes, frame.groups[i]);
+  }
+  write_whole(file, bytes);
+}
+
+ParticleFrame read_particles(const std::filesystem::path& file) {
+  PlyReader ply(file);
+  ParticleFrame frame;
+  frame.time = read_time(ply);
+  frame.step = read_step(ply);
+  const PlyElement& vertex = ply.require("vertex");
+  const auto position = ply.find_vector(vertex, {"x", "y", "z"}, true);
+  const auto velocity = ply.find_vector(vertex, {"vx", "vy", "vz"}, true);
+  const auto group = ply.find_scalar(vertex, "group");
+  if (!group) ply.fail("element 'vertex' lacks 'group'");
+  while (const PlyElement* element = ply.next_element()) {
+    if (element != &vertex) continue;
+    frame.positions.reserve(element->count);
+    frame.velocities.reserve(element->count);
+    frame.groups.reserve(element->count);
+    while (ply.next_row()) {
+      frame.positions.push_back(ply.finite_vector(*position));
+      frame.velocities.push_back(ply.finite_vector(*velocity));
+      frame.groups.push_back(static_cast<std::uint8_t>(ply.index(ply.value(*group), 256, "group")));
+    }
+  }
+  return frame;
+}
+
+void write_state_csv(const std::filesystem::path& file, const ParticleFrame& frame) {
+  require_valid(frame);
+  std::string text = "id,x,y,z,vx,vy,vz\n";
+  for (std::size_t i = 0; i < frame.positions.size(); ++i) {
+    text += std::to_string(i);
+    for (const Vec3* vector : {&frame.positions[i], &frame.velocities[i]}) {
+      for (const float value : *vector) append_number(text += ',', value, k_float_digits);
+    }
+    text += '\n';
+  }
+  require_readable_size(file, text.size());
+  write_whole(file, text);
+}
+
+}  // namespace mallow

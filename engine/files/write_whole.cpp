@@ -1,0 +1,102 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+#include "files/byte_reader.h"
+#include "mallow/files.h"
+
+namespace mallow {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail_write(const fs::path& file, int error) {
+  fail_file(file, "cannot be written: " + std::generic_category().message(error));
+}
+
+/// A file open for as long as this lives.
+class OpenFile {
+ public:
+  /// Errors speak of `name`, which need not be the file itself.
+  OpenFile(const fs::path& file, int flags, const fs::path& name)
+      : name_(name), descriptor_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) fail_write(name_, errno);
+  }
+  ~OpenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  void write(std::string_view content) {
+    while (!content.empty()) {
+      const ssize_t written = ::write(descriptor_, content.data(), content.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail_write(name_, errno);
+      content.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+  void sync() {
+    // Some file systems cannot sync a folder and say EINVAL; the rename stands all the same.
+    if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP) fail_write(name_, errno);
+  }
+  /// A full disk or quota may show only here.
+  void close() {
+    const int descriptor = descriptor_;
+    descriptor_ = -1;
+    if (::close(descriptor) != 0 && errno != EINTR) fail_write(name_, errno);
+  }
+
+ private:
+  const fs::path& name_;
+  int descriptor_;
+};
+
+/// Removes a file when it goes out of scope, unless it has been renamed by then.
+class PartialFile {
+ public:
+  explicit PartialFile(fs::path path) : path_(std::move(path)) { remove(); }
+  ~PartialFile() { remove(); }
+  PartialFile(const PartialFile&) = delete;
+  PartialFile& operator=(const PartialFile&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  void remove() noexcept { ::unlink(path_.c_str()); }
+
+  fs::path path_;
+};
+
+}  // namespace
+
+void write_whole(const fs::path& file, const std::function<void(const fs::path& beside)>& write) {
+  if (!file.has_filename()) fail_file(file, "cannot be written: it has no file name");
+  std::error_code error;
+  const fs::file_status old = fs::status(file, error);
+  if (fs::is_directory(old)) fail_write(file, EISDIR);
+  if (fs::exists(old) && !fs::is_regular_file(old)) {
+    write(file);  // a device or pipe, such as /dev/stdout, takes the content and must stay what it is
+    return;
+  }
+
+  const PartialFile partial(fs::path(file).replace_filename('.' + file.filename().string() + ".partial"));
+  write(partial.path());
+  OpenFile(partial.path(), O_RDONLY, file).sync();
+  if (::rename(partial.path().c_str(), file.c_str()) != 0) fail_write(file, errno);
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  OpenFile(folder, O_RDONLY | O_DIRECTORY, file).sync();
+}
+
+void write_whole(const fs::path& file, std::string_view content) {
+  write_whole(file, [&](const fs::path& beside) {
+    OpenFile out(beside, O_WRONLY | O_CREAT | O_TRUNC, file);
+    out.write(content);
+    out.close();
+  });
+}
+
+}  // namespace mallow

@@ -1,0 +1,224 @@
+#include <clocale>
+#include <cmath>
+#include <locale>
+#include <numbers>
+
+#include "files/file_fixture.h"
+
+namespace mallow {
+namespace {
+
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+void expect_same_shape(const Mesh& read, const Mesh& written) {
+  EXPECT_EQ(read.vertices, written.vertices);
+  EXPECT_EQ(read.triangles, written.triangles);
+}
+
+TEST(mesh_file, obj_gives_the_same_mesh_back) {
+  const TemporaryFolder folder;
+  Mesh mesh = tetrahedron();
+  write_mesh_obj(folder / "a.obj", mesh);
+  expect_same_shape(read_mesh(folder / "a.obj"), mesh);
+  mesh.normals.assign(4, Vec3(0, 0, 1));
+  write_mesh_obj(folder / "a.obj", mesh);
+  expect_same_shape(read_mesh(folder / "a.obj"), mesh);
+  EXPECT_NE(content_of(folder / "a.obj").find("f 1//1 3//3 2//2\n"), std::string::npos);
+}
+
+TEST(mesh_file, ply_gives_the_same_mesh_back_with_normals_and_materials) {
+  const TemporaryFolder folder;
+  Mesh mesh = tetrahedron();
+  write_mesh_ply(folder / "a.ply", mesh);
+  Mesh read = read_mesh(folder / "a.ply");
+  expect_same_shape(read, mesh);
+  EXPECT_TRUE(read.normals.empty());
+  EXPECT_TRUE(read.material_ids.empty());
+
+  constexpr float s = std::numbers::inv_sqrt3_v<float>;
+  mesh.normals = {{0, 0, 1}, {1, 0, 0}, {s, s, s}, {0.6f, 0, -0.8f}};
+  mesh.material_ids = {0, 1, 254, 255};
+  write_mesh_ply(folder / "a.ply", mesh);
+  read = read_mesh(folder / "a.ply");
+  expect_same_shape(read, mesh);
+  EXPECT_EQ(read.normals, mesh.normals);
+  EXPECT_EQ(read.material_ids, mesh.material_ids);
+
+  write_mesh_ply(folder / "none.ply", Mesh{});
+  EXPECT_TRUE(read_mesh(folder / "none.ply").triangles.empty());
+}
+
+TEST(mesh_file, columns_of_the_wrong_length_are_not_written) {
+  const TemporaryFolder folder;
+  Mesh mesh = tetrahedron();
+  mesh.normals.resize(3);
+  EXPECT_THROW(write_mesh_ply(folder / "a.ply", mesh), ConfigError);
+  EXPECT_THROW(write_mesh_obj(folder / "a.obj", mesh), ConfigError);
+  mesh.normals.clear();
+  mesh.material_ids.resize(5);
+  EXPECT_THROW(write_mesh_ply(folder / "a.ply", mesh), ConfigError);
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST(mesh_file, obj_knows_all_forms_of_a_corner_and_splits_polygons) {
+  const TemporaryFolder folder;
+  const Mesh mesh =
+      read_mesh(folder.file("a.OBJ",
+                            "\xEF\xBB\xBF# a quad\r\nmtllib x.mtl\r\no thing\r\n"
+                            "v 0 0 0\r\nv +1 0 0 1.0\r\nv 1e0 1 0 0.5 0.5 0.5\r\n\tv 0 1 .0 # last\r\n"
+                            "vt 0 0\r\nvn 0 0 1\r\ng side\r\n"
+                            "f 1 2/1 3//1 4/1/1\r\n"
+                            "f -4 -3/-1 -2//-1 # comment\r\n"
+                            "f 1 2 \\\r\n3\r\n"));
+  EXPECT_EQ(mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 1, 2}}));
+}
+
+TEST(mesh_file, negative_obj_indices_count_from_the_last_vertex_so_far) {
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(
+      folder.file("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -1 -2 -3\nf 1 2 5\nv 6 6 6\n"));
+  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {3, 2, 1}, {0, 1, 4}}));
+}
+
+std::string ply_with_extras(std::endian order) {
+  std::string bytes =
+      std::string("ply\nformat binary_") + (order == std::endian::big ? "big" : "little") +
+      "_endian 1.0\ncomment made by hand\nobj_info nothing\n"
+      "element camera 2\nproperty list ushort double view\nproperty char kind\n"
+      "element face 1\nproperty int flags\nproperty list int short vertex_index\n"
+      "element vertex 4\nproperty double z\nproperty uchar red\nproperty float y\nproperty int x\n"
+      "element edge 1\nproperty int a\nend_header\n";
+  for (const std::uint16_t length : {std::uint16_t{2}, std::uint16_t{0}}) {
+    append_raw(bytes, length, order);
+    for (int k = 0; k < length; ++k) append_raw(bytes, 0.5 * k, order);
+    append_raw(bytes, std::int8_t{-1}, order);
+  }
+  append_raw(bytes, std::int32_t{77}, order);
+  append_raw(bytes, std::int32_t{4}, order);
+  for (std::int16_t index = 0; index < 4; ++index) append_raw(bytes, index, order);
+  for (int v = 0; v < 4; ++v) {
+    append_raw(bytes, 0.25 * v, order);
+    append_raw(bytes, std::uint8_t{200}, order);
+    append_raw(bytes, 1.5f * static_cast<float>(v), order);
+    append_raw(bytes, std::int32_t{-v}, order);
+  }
+  append_raw(bytes, std::int32_t{1}, order);
+  return bytes;
+}
+
+TEST(mesh_file, ply_takes_any_scalar_type_and_passes_over_what_it_does_not_know) {
+  const TemporaryFolder folder;
+  for (const std::endian order : {std::endian::little, std::endian::big}) {
+    const Mesh mesh = read_mesh(folder.file("a.ply", ply_with_extras(order)));
+    EXPECT_EQ(mesh.vertices,
+              (std::vector<Vec3>{{0, 0, 0}, {-1, 1.5f, 0.25f}, {-2, 3, 0.5f}, {-3, 4.5f, 0.75f}}));
+    EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}}));
+  }
+}
+
+TEST(mesh_file, ascii_ply_with_windows_line_ends_and_loose_normals_is_read) {
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(folder.file(
+      "a.ply",
+      "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty float32 x\r\nproperty float64 y\r\n"
+      "property float z\r\nproperty float nx\r\nproperty float ny\r\nproperty float nz\r\n"
+      "element face 1\r\nproperty list uint8 int32 vertex_indices\r\nend_header\r\n"
+      "0 0 0 0 0 0\r\n\r\n1 0 0.5 0 0 1\r\n0 1e-3 -2 0 0 1\r\n3 0 1 2\r\n"));
+  EXPECT_EQ(mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0.5f}, {0, 1e-3f, -2}}));
+  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}}));
+  EXPECT_TRUE(mesh.normals.empty()) << "normals that are not unit vectors are of no use";
+}
+
+std::string binary_stl(const Mesh& mesh, std::string header) {
+  header.resize(80, ' ');
+  append_raw(header, static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const auto& triangle : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) append_raw(header, 0.0f);
+    for (const std::uint32_t v : triangle) {
+      for (const float value : mesh.vertices[v]) append_raw(header, value);
+    }
+    append_raw(header, std::uint16_t{0});
+  }
+  return header;
+}
+
+TEST(mesh_file, stl_corners_at_the_same_place_are_one_vertex) {
+  const TemporaryFolder folder;
+  Mesh mesh = tetrahedron();
+  const Mesh read = read_mesh(folder.file("a.stl", binary_stl(mesh, "made by hand")));
+  EXPECT_EQ(read.vertices.size(), 4u);
+  EXPECT_EQ(why_not_closed(read), "");
+  EXPECT_EQ(read.vertices[read.triangles[3][2]], mesh.vertices[3]);
+
+  // The next float is another place; -0 and 0 are the same.
+  mesh.vertices.push_back(mesh.vertices[3]);
+  mesh.vertices[4].x() = std::nextafter(mesh.vertices[4].x(), 1.0f);
+  mesh.triangles[3][2] = 4;
+  EXPECT_EQ(read_mesh(folder.file("b.stl", binary_stl(mesh, ""))).vertices.size(), 5u);
+  mesh = tetrahedron();
+  mesh.vertices.push_back({mesh.vertices[1].x(), -0.0f, mesh.vertices[1].z()});
+  mesh.triangles[2][0] = 4;
+  EXPECT_EQ(why_not_closed(read_mesh(folder.file("c.stl", binary_stl(mesh, "")))), "");
+}
+
+TEST(mesh_file, a_binary_stl_may_begin_with_solid) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(read_mesh(folder.file("a.stl", binary_stl(tetrahedron(), "solid work"))).triangles.size(), 4u);
+}
+
+TEST(mesh_file, ascii_stl_is_read_in_any_case_and_with_several_solids) {
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(folder.file(
+      "a.stl",
+      "solid first part\r\n facet normal 0 0 1\r\n  outer loop\r\n   vertex 0 0 0\r\n   vertex 1 0 0\r\n"
+      "   vertex 0 1 0\r\n  endloop\r\n endfacet\r\nendsolid first part\r\n"
+      "SOLID\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 1 0 0\nVERTEX 1 1 0\nVERTEX 0 1 "
+      "-0\nENDLOOP\nENDFACET\nENDSOLID"));
+  EXPECT_EQ(mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
+  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {1, 3, 2}}));
+}
+
+TEST(mesh_file, off_is_read_in_its_variants) {
+  const TemporaryFolder folder;
+  const Triangles quad = {{0, 1, 2}, {0, 2, 3}};
+  for (const char* text : {
+           "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n",
+           "OFF 4 1\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3",
+           "# first\n\nOFF # header\n# counts\n4 1 4\n\n0 0 0\n1 0 0 # second\n1 1 0\n\n0 1 0\n# faces\n4 0 "
+           "1 2 3 255 0 0\n",
+           "COFF\r\n4 1 0\r\n0 0 0 1 2 3 4\r\n1 0 0 1 2 3 4\r\n1 1 0 1 2 3 4\r\n0 1 0 1 2 3 4\r\n4 0 1 2 "
+           "3\r\n",
+           "NOFF\n4 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n4 0 1 2 3\n",
+       }) {
+    const Mesh mesh = read_mesh(folder.file("a.off", text));
+    EXPECT_EQ(mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}})) << text;
+    EXPECT_EQ(mesh.triangles, quad) << text;
+  }
+}
+
+struct CommaPoint : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(mesh_file, numbers_do_not_depend_on_the_locale) {
+  const TemporaryFolder folder;
+  write_mesh_obj(folder / "plain.obj", tetrahedron());
+  const std::string c_before = std::setlocale(LC_ALL, nullptr);
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new CommaPoint));
+  // The C library's own, where one with a decimal comma is installed.
+  for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8"}) {
+    if (std::setlocale(LC_ALL, name)) break;
+  }
+  write_mesh_obj(folder / "a.obj", tetrahedron());
+  const Mesh read = read_mesh(folder / "a.obj");
+  std::locale::global(before);
+  std::setlocale(LC_ALL, c_before.c_str());
+  expect_same_shape(read, tetrahedron());
+  EXPECT_EQ(content_of(folder / "a.obj"), content_of(folder / "plain.obj"));
+}
+
+}  // namespace
+}  // namespace mallow

@@ -1,0 +1,91 @@
+#include <cstring>
+#include <limits>
+
+#include "files/file_fixture.h"
+
+namespace mallow {
+namespace {
+
+bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0);
+}
+
+TEST(particle_file, gives_the_same_frame_back_to_the_bit) {
+  const TemporaryFolder folder;
+  const ParticleFrame frame = three_particles();
+  write_particles(folder / "a.ply", frame);
+  const ParticleFrame read = read_particles(folder / "a.ply");
+  EXPECT_TRUE(same_bits(read.positions, frame.positions));
+  EXPECT_TRUE(same_bits(read.velocities, frame.velocities));
+  EXPECT_EQ(read.groups, frame.groups);
+  EXPECT_EQ(read.time, frame.time);
+  EXPECT_EQ(read.step, frame.step);
+  write_particles(folder / "none.ply", ParticleFrame{});
+  EXPECT_TRUE(read_particles(folder / "none.ply").positions.empty());
+}
+
+TEST(particle_file, state_csv_is_what_printf_would_write) {
+  const TemporaryFolder folder;
+  const ParticleFrame frame = three_particles();
+  write_state_csv(folder / "a.csv", frame);
+  std::string expected = "id,x,y,z,vx,vy,vz\n";
+  for (std::size_t i = 0; i < frame.positions.size(); ++i) {
+    std::array<char, 200> row{};
+    const Vec3& x = frame.positions[i];
+    const Vec3& v = frame.velocities[i];
+    std::snprintf(row.data(), row.size(), "%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", i, double{x[0]},
+                  double{x[1]}, double{x[2]}, double{v[0]}, double{v[1]}, double{v[2]});
+    expected += row.data();
+  }
+  EXPECT_EQ(content_of(folder / "a.csv"), expected);
+}
+
+TEST(particle_file, columns_of_the_wrong_length_are_not_written) {
+  const TemporaryFolder folder;
+  ParticleFrame frame = three_particles();
+  frame.velocities.pop_back();
+  EXPECT_THROW(write_particles(folder / "a.ply", frame), ConfigError);
+  EXPECT_THROW(write_state_csv(folder / "a.csv", frame), ConfigError);
+  frame = three_particles();
+  frame.groups.clear();
+  EXPECT_THROW(write_particles(folder / "a.ply", frame), ConfigError);
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST(particle_file, every_truncation_is_refused) {
+  const TemporaryFolder folder;
+  write_particles(folder / "a.ply", three_particles());
+  const std::string whole = content_of(folder / "a.ply");
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const auto cut = folder.file("cut.ply", std::string_view(whole).substr(0, length));
+    EXPECT_THROW(read_particles(cut), IoError) << length << " bytes of " << whole.size();
+  }
+}
+
+TEST(particle_file, a_frame_that_is_none_is_refused) {
+  const TemporaryFolder folder;
+  write_mesh_ply(folder / "mesh.ply", tetrahedron());
+  EXPECT_NE(io_problem([&] { read_particles(folder / "mesh.ply"); }).message.find("comment mallow time"),
+            std::string::npos);
+  write_particles(folder / "a.ply", three_particles());
+  const std::string whole = content_of(folder / "a.ply");
+  const auto problem = [&](const std::string& what, const std::string& with) {
+    std::string changed = whole;
+    changed.replace(changed.find(what), what.size(), with);
+    return to_string(io_problem([&] { read_particles(folder.file("b.ply", changed)); }));
+  };
+  EXPECT_NE(problem("0.30000000000000004", "nan").find("time 'nan'"), std::string::npos);
+  EXPECT_NE(problem("123456789012", "1.5").find("step '1.5'"), std::string::npos);
+  EXPECT_NE(problem("123456789012", "-1").find("step '-1'"), std::string::npos);
+  EXPECT_NE(problem("uchar group", "uchar grump").find("lacks 'group'"), std::string::npos);
+  EXPECT_NE(problem("float vy", "float wy").find("lacks 'vy'"), std::string::npos);
+  EXPECT_NE(problem("float x", "list uchar float x").find("'x' must not be a list"), std::string::npos);
+
+  ParticleFrame frame = three_particles();
+  frame.velocities[1].z() = std::numeric_limits<float>::quiet_NaN();
+  write_particles(folder / "c.ply", frame);
+  EXPECT_EQ(io_problem([&] { read_particles(folder / "c.ply"); }).field, "vertex 1, vz");
+}
+
+}  // namespace
+}  // namespace mallow
