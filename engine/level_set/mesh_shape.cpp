@@ -1,0 +1,81 @@
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Interpolation.h>
+#include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/util/NullInterrupter.h>
+
+#include <string>
+
+#include "core/checks.h"
+#include "level_set/arena.h"
+#include "mallow/level_set.h"
+
+namespace mallow {
+namespace {
+
+/// Voxels on each side of the surface that hold a distance; further away only the sign is known.
+constexpr float k_half_band = 3.0f;
+
+void check(const Mesh& mesh, int voxels, int threads) {
+  Checks checks;
+  checks.number("voxels", voxels, voxels >= 8 && voxels <= 2048, "8 to 2048");
+  checks.number("threads", threads, threads >= 0, "0 (all there are) or more");
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (mesh.vertices[i].allFinite()) continue;
+    checks.vector("mesh.vertices[" + std::to_string(i) + "]", mesh.vertices[i]);
+    break;
+  }
+  checks.finish();
+  const std::string open = why_not_closed(mesh);
+  if (!open.empty()) throw ConfigError("mesh", "does not enclose a volume: " + open);
+}
+
+/// A level set in voxel units about a near origin, so that single precision holds far from the world's.
+class SampledMesh {
+ public:
+  SampledMesh(const Mesh& mesh, const Aabb& box, double voxel_size)
+      : origin_(box.min.cast<double>()), voxel_size_(voxel_size) {
+    std::vector<openvdb::Vec3s> points;
+    points.reserve(mesh.vertices.size());
+    for (const Vec3& vertex : mesh.vertices) {
+      const openvdb::Vec3d p = to_voxels(vertex);
+      points.emplace_back(p);
+    }
+    std::vector<openvdb::Vec3I> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (const auto& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
+    openvdb::util::NullInterrupter interrupter;
+    grid_ = openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
+        interrupter, *openvdb::math::Transform::createLinearTransform(1.0), points, triangles, k_half_band);
+  }
+
+  float distance(const Vec3& x) const {
+    // An accessor that the tree does not register: made and dropped per call at no cost, by any thread.
+    const openvdb::FloatGrid::ConstUnsafeAccessor accessor(grid_->tree());
+    return static_cast<float>(voxel_size_ * openvdb::tools::BoxSampler::sample(accessor, to_voxels(x)));
+  }
+
+ private:
+  openvdb::Vec3d to_voxels(const Vec3& x) const {
+    const Eigen::Vector3d p = (x.cast<double>() - origin_) / voxel_size_;
+    return {p.x(), p.y(), p.z()};
+  }
+
+  Eigen::Vector3d origin_;
+  double voxel_size_;  ///< [m]
+  openvdb::FloatGrid::Ptr grid_;
+};
+
+}  // namespace
+
+ImplicitShape mesh_shape(const Mesh& mesh, int voxels, int threads) {
+  check(mesh, voxels, threads);
+  const Aabb box = bounds(mesh);
+  const double longest_side = (box.max.cast<double>() - box.min.cast<double>()).maxCoeff();
+  if (!(longest_side > 0))
+    throw ConfigError("mesh", "does not enclose a volume: all vertices are at one point");
+  const auto sampled = run_with_threads(
+      threads, [&] { return std::make_shared<const SampledMesh>(mesh, box, longest_side / voxels); });
+  return {[sampled](const Vec3& x) { return sampled->distance(x); }, box};
+}
+
+}  // namespace mallow

@@ -1,0 +1,51 @@
+#include "scene/nearest_name.h"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace mallow::scene_file {
+namespace {
+
+/// Levenshtein distance: inserted, removed and replaced characters each count one.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, diagonal + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string suggestion(std::string_view name, std::span<const std::string> known) {
+  if (known.empty()) return {};
+  // Longer names are no names anyone mistyped; the bound keeps the distance cheap on hostile input.
+  constexpr std::size_t k_longest_name = 128;
+  if (name.size() <= k_longest_name) {
+    const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
+      return edit_distance(name, a) < edit_distance(name, b);
+    });
+    // A third of the letters may be wrong, but two in any case (two that changed places count two) unless
+    // that is most of the name.
+    const std::size_t allowed = std::max(std::min<std::size_t>(2, nearest->size() / 2), nearest->size() / 3);
+    if (edit_distance(name, *nearest) <= allowed) return "; did you mean '" + *nearest + "'?";
+  }
+  constexpr std::size_t k_most_listed = 20;
+  std::string text = known.size() == 1 ? "; the only one known is " : "; known are ";
+  const std::size_t listed = std::min(known.size(), k_most_listed);
+  for (std::size_t i = 0; i < listed; ++i) {
+    if (i > 0) text += i + 1 == known.size() ? " and " : ", ";
+    text += known[i];
+  }
+  return known.size() > listed ? text + ", ..." : text;
+}
+
+}  // namespace mallow::scene_file

@@ -1,0 +1,130 @@
+#include "scene/overrides.h"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "scene/field_reader.h"
+
+namespace mallow::scene_file {
+namespace {
+
+/// A step into a table (by key), a list of named tables (by name) or a list (by number).
+struct Segment {
+  std::string key;
+  std::optional<std::size_t> index;
+};
+
+/// "body[0].box.count[2]" as body, 0, box, count, 2; nothing where that is no path.
+std::optional<std::vector<Segment>> parse_path(std::string_view text) {
+  std::vector<Segment> segments;
+  bool key_expected = true;
+  while (!text.empty() || key_expected) {
+    if (key_expected) {
+      const std::size_t length = std::min(text.find_first_of(".[]"), text.size());
+      if (length == 0) return std::nullopt;
+      segments.push_back({std::string(text.substr(0, length)), std::nullopt});
+      text.remove_prefix(length);
+      key_expected = false;
+    } else if (text.front() == '.') {
+      text.remove_prefix(1);
+      key_expected = true;
+    } else {
+      std::size_t index = 0;
+      const std::size_t close = text.find(']');
+      if (text.front() != '[' || close == std::string_view::npos) return std::nullopt;
+      const auto [end, error] = std::from_chars(text.data() + 1, text.data() + close, index);
+      if (error != std::errc() || end != text.data() + close) return std::nullopt;
+      segments.push_back({{}, index});
+      text.remove_prefix(close + 1);
+    }
+  }
+  return segments;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr const char* k_blank = " \t\r\n";
+  const std::size_t begin = std::min(text.find_first_not_of(k_blank), text.size());
+  const std::size_t end = text.find_last_not_of(k_blank);
+  return end == std::string_view::npos ? std::string_view{} : text.substr(begin, end + 1 - begin);
+}
+
+/// Throws ConfigError where the text starts like a string, list or table but is none.
+Node parse_value(std::string_view text) {
+  constexpr const char* k_key = "value";
+  const std::string_view value = trimmed(text);
+  try {
+    Node document = parse_document(std::string(k_key) + " = " + std::string(value), {});
+    if (document.get_if<Table>()->size() == 1) return std::move(*find(document, k_key));
+  } catch (const ConfigError&) {
+    constexpr std::string_view k_opening = "\"'[{";
+    if (value.empty() || k_opening.find(value.front()) != std::string_view::npos) throw;
+  }
+  return {.place = {}, .value = std::string(value)};
+}
+
+void set_place(Node& node, const Place& place) {
+  node.place = place;
+  if (Array* array = node.get_if<Array>())
+    for (Node& element : *array) set_place(element, place);
+  if (Table* table = node.get_if<Table>())
+    for (Entry& entry : *table) {
+      entry.place = place;
+      set_place(entry.node, place);
+    }
+}
+
+/// What `segment` leads to, or nullptr and the reason. Keys that a table does not hold are added to it.
+Node* enter(Node& node, const Segment& segment, const Place& place, std::string& why_not) {
+  if (segment.index) {
+    Array* list = node.get_if<Array>();
+    if (list && *segment.index < list->size()) return &(*list)[*segment.index];
+    why_not = list ? "there are " + std::to_string(list->size()) + ", counted from 0" : "this is not a list";
+    return nullptr;
+  }
+  if (Table* table = node.get_if<Table>()) {
+    if (Node* value = find(node, segment.key)) return value;
+    table->push_back({segment.key, place, {.place = place, .value = Table{}}});
+    return &table->back().node;
+  }
+  if (Array* list = node.get_if<Array>()) {
+    for (Node& element : *list) {
+      const Node* name = find(element, "name");
+      const std::string* text = name ? name->get_if<std::string>() : nullptr;
+      if (text && *text == segment.key) return &element;
+    }
+    why_not = "none of these has the name '" + segment.key + "'";
+    return nullptr;
+  }
+  why_not = "this is not a table";
+  return nullptr;
+}
+
+}  // namespace
+
+void apply_override(Node& root, const std::string& override_text, Problems& problems) {
+  const Place place{.given_by = "--set " + override_text};
+  const std::size_t equals = override_text.find('=');
+  const std::string path(trimmed(std::string_view(override_text).substr(0, equals)));
+  const auto segments = parse_path(path);
+  if (equals == std::string::npos || !segments)
+    return problems.add(place, {}, "is not of the form section.key=value or list[0].key=value");
+
+  std::optional<Node> value;
+  try {
+    value = parse_value(std::string_view(override_text).substr(equals + 1));
+  } catch (const ConfigError& error) {
+    return problems.add(place, path, error.problems().front().message);
+  }
+  set_place(*value, place);
+
+  Node* node = &root;
+  for (const Segment& segment : *segments) {
+    std::string why_not;
+    node = enter(*node, segment, place, why_not);
+    if (!node) return problems.add(place, path, "does not exist: " + why_not);
+  }
+  *node = std::move(*value);
+}
+
+}  // namespace mallow::scene_file

@@ -1,0 +1,138 @@
+#include <map>
+
+#include "mallow/files.h"
+#include "mallow/level_set.h"
+#include "mallow/scene.h"
+#include "scene/field_reader.h"
+#include "scene/scene_fields.h"
+
+namespace mallow {
+namespace scene_file {
+namespace {
+
+/// The groups of a scene in the order in which its bodies name them.
+struct Groups {
+  struct Group {
+    std::string name;
+    std::size_t material;
+  };
+  std::vector<Group> list;
+  std::vector<std::size_t> of_body;
+};
+
+/// Throws ConfigError where a body names a material that is not there, or a group changes its material. What
+/// read_scene() gives has neither; a scene that was put together in code may.
+Groups groups_of(const Scene& scene) {
+  std::map<std::string, std::size_t> material_index;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) material_index.emplace(scene.materials[i].name, i);
+  Groups groups;
+  std::map<std::string, std::size_t> named;
+  Problems problems(scene.file.string());
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const SceneBody& body = scene.bodies[i];
+    const Place place{.line = body.line};
+    const std::string path = element_path("body", i);
+    const auto material = material_index.find(body.material);
+    if (material == material_index.end()) {
+      problems.add(place, path + ".material", "unknown material '" + body.material + "'");
+      continue;
+    }
+    const auto [known, added] = named.emplace(body.group.empty() ? path : body.group, groups.list.size());
+    const bool own = body.group.empty();
+    const std::size_t group = own ? groups.list.size() : known->second;
+    if (own || added)
+      groups.list.push_back({own ? path : body.group, material->second});
+    else if (groups.list[group].material != material->second)
+      problems.add(place, path + ".material",
+                   "'" + body.material + "' is not allowed: group '" + body.group + "' is of '" +
+                       scene.materials[groups.list[group].material].name + "'");
+    groups.of_body.push_back(group);
+  }
+  problems.finish();
+  return groups;
+}
+
+/// Runs what adds one thing of a scene to a simulation; what is wrong with it becomes a problem of that
+/// place.
+template <class Add>
+void collect(Problems& problems, int line, const std::string& path, const Add& add) {
+  try {
+    add();
+  } catch (const ConfigError& error) {
+    for (const Problem& problem : error.problems()) problems.add({.line = line}, path, to_string(problem));
+  } catch (const IoError& error) {
+    problems.add({.line = line}, path, to_string(error.problem()));
+  }
+}
+
+struct Sample {
+  const std::filesystem::path& folder;
+  int threads;
+
+  Body operator()(const Lattice& lattice) const { return mallow::sample(lattice); }
+  Body operator()(const SphereSource& source) const {
+    return mallow::sample(sphere_shape(source.center, source.radius), source.sampling);
+  }
+  Body operator()(const MeshSource& source) const {
+    // A finer level set than the default follows features no lattice of particles can show.
+    constexpr int k_voxels = 192;
+    const ImplicitShape shape = mesh_shape(read_mesh(folder / source.file), k_voxels, threads);
+    return mallow::sample(place(shape, source.placement), source.sampling);
+  }
+  Body operator()(const PointsSource& source) const {
+    return read_points(folder / source.file, source.spacing);
+  }
+  Body operator()(const ImplicitSource& source) const {
+    return mallow::sample(place(implicit_shape(source.shape), source.placement), source.sampling);
+  }
+};
+
+}  // namespace
+}  // namespace scene_file
+
+Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int threads) {
+  const std::filesystem::path folder = scene_file.parent_path();
+  Body points = std::visit(scene_file::Sample{folder, threads}, body.source);
+  points.velocity += body.velocity;
+  return points;
+}
+
+Simulation build(const Scene& scene, int threads) {
+  using namespace scene_file;
+  const Groups groups = groups_of(scene);
+  SolverConfig config = scene.solver;
+  if (threads != 0) config.threads = threads;
+  Simulation simulation(config);
+  Problems problems(scene.file.string());
+
+  std::vector<GroupId> ids;
+  for (const auto& group : groups.list)
+    collect(problems, 0, "material." + scene.materials[group.material].name, [&] {
+      ids.push_back(simulation.add_group(scene.materials[group.material].material, group.name));
+    });
+  problems.finish();
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const SceneBody& body = scene.bodies[i];
+    collect(problems, body.line, element_path("body", i) + '.' + key_of(body.source), [&] {
+      simulation.add_body(mallow::sample(body, scene.file, config.threads), ids[groups.of_body[i]]);
+    });
+  }
+  for (std::size_t i = 0; i < scene.colliders.size(); ++i)
+    collect(problems, 0, element_path("collider", i), [&] { simulation.add_collider(scene.colliders[i]); });
+  // Without all of its bodies, whatever else a scene says of itself would be beside the point.
+  problems.finish();
+  for (std::size_t i = 0; i < scene.pins.size(); ++i)
+    collect(problems, scene.pins[i].line, element_path("pin", i),
+            [&] { simulation.pin(scene.pins[i].box, scene.pins[i].velocity); });
+  collect(problems, 0, {}, [&] { simulation.prepare(); });
+  problems.finish();
+  return simulation;
+}
+
+std::vector<std::size_t> group_materials(const Scene& scene) {
+  std::vector<std::size_t> materials;
+  for (const auto& group : scene_file::groups_of(scene).list) materials.push_back(group.material);
+  return materials;
+}
+
+}  // namespace mallow

@@ -1,0 +1,207 @@
+#include "scene/scene_fields.h"
+
+#include <limits>
+
+namespace mallow::scene_file {
+namespace {
+
+constexpr double k_largest_int = std::numeric_limits<int>::max();
+constexpr Range k_count = between(1, k_most_particles);
+
+FieldTable joined(FieldTable first, const FieldTable& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+FieldTable fields(Sampling& sampling) {
+  return {
+      {"spacing", &sampling.spacing, k_positive, "m",
+       "distance of neighbouring particles, h; give this or count", "from count"},
+      {"count", &sampling.count, k_count, "",
+       "wanted number of particles, met within 1%; give this or spacing", "from spacing"},
+      {"jitter", &sampling.jitter, between(0, 0.5), "h",
+       "random displacement of every particle along each axis, at most"},
+  };
+}
+
+FieldTable fields(Placement& placement) {
+  return {
+      {"rotate", &placement.rotate, k_finite, "degrees", "turn about x, then y, then z"},
+      {"size", &placement.size, k_positive, "m", "longest side of the bounding box", "as the shape is"},
+      {"center", &placement.center, k_finite, "m", "middle of the bounding box", "where the shape is"},
+  };
+}
+
+}  // namespace
+
+FieldTable fields(SolverConfig& config) {
+  return {
+      {"time_step", &config.time_step, k_positive, "s", "upper bound of a step, Δt0"},
+      {"support_radius", &config.support_radius, k_positive, "m", "radius of the SPH kernels, σ", k_required},
+      {"gravity", &config.gravity, k_finite, "m/s²", "acceleration of every particle"},
+      {"update_interval", &config.update_interval, between(1, k_largest_int), "steps",
+       "steps between the checks that update reference shapes, m_u"},
+      {"formulation", &config.formulation, k_any, "",
+       "SPH sums that keep momentum, or the paper's to the letter"},
+      {"acoustic_limit", &config.acoustic_limit, k_any, "",
+       "also bound the step by the speed of sound and by viscous diffusion"},
+      {"contact_offset", &config.contact_offset, k_not_negative, "m",
+       "distance from a collider at which a particle touches it", "half the spacing"},
+  };
+}
+
+FieldTable fields(SceneMaterial& material) {
+  Material& m = material.material;
+  return {
+      {"name", &material.name, k_any, "", "what bodies call it", k_required},
+      {"alpha", &m.alpha, between(0, 1), "", "elastic solid (0) to fluid (1), or keyframes of it over time"},
+      {"update_threshold", &m.update_threshold, k_not_negative, "m/s²",
+       "mean external acceleration that updates the reference shape, at alpha 0, γ_u"},
+      {"pressure_coefficient", &m.pressure_coefficient, k_not_negative, "m²/s²",
+       "pressure by excess density, k"},
+      {"viscosity", &m.viscosity, k_not_negative, "Pa s", "viscosity coefficient, μ"},
+      {"elastic_time_step", &m.elastic_time_step, k_positive, "s", "Δt_SM, shorter is stiffer",
+       "solver.time_step"},
+      {"particle_mass", &m.particle_mass, k_positive, "kg", "mass of a particle, m",
+       "from rest_density, or 1"},
+      {"rest_density", &m.rest_density, k_positive, "kg/m³", "density at rest, ρ0", "from particle_mass"},
+      {"cohesion", &m.cohesion, between(0, 1), "", "share of a negative pressure that acts"},
+      {"region_radius", &m.region_radius, k_positive, "m", "radius of the shape matching regions",
+       "solver.support_radius"},
+      {"color", &material.color, between(0, 1), "", "red, green and blue in pictures, linear",
+       "one of a palette"},
+  };
+}
+
+FieldTable fields(SceneBody& body) {
+  return {
+      {"material", &body.material, k_any, "", "name of its [[material]]", k_required},
+      {"group", &body.group, k_any, "", "bodies of one group share a reference shape and can merge",
+       "a group of its own"},
+      {"velocity", &body.velocity, k_finite, "m/s", "of every particle at the start"},
+  };
+}
+
+FieldTable fields(Lattice& lattice) {
+  return {
+      {"count", &lattice.count, k_count, "", "cells along x, y and z, a particle each", k_required},
+      {"spacing", &lattice.spacing, k_positive, "m", "side of a cell, h", k_required},
+      {"corner", &lattice.corner, k_finite, "m", "lowest corner, half a cell from the first particle"},
+      {"jitter", &lattice.jitter, between(0, 0.5), "h", "random displacement of every particle, per axis"},
+  };
+}
+
+FieldTable fields(SphereSource& source) {
+  return joined({{"center", &source.center, k_finite, "m", "middle of the ball"},
+                 {"radius", &source.radius, k_positive, "m", "of the ball", k_required}},
+                fields(source.sampling));
+}
+
+FieldTable fields(MeshSource& source) {
+  return joined({{"file", &source.file, k_any, "", "closed mesh, OBJ, PLY, STL or OFF, relative to the scene",
+                  k_required}},
+                joined(fields(source.sampling), fields(source.placement)));
+}
+
+FieldTable fields(PointsSource& source) {
+  return {
+      {"file", &source.file, k_any, "",
+       "points x,y,z and optionally vx,vy,vz, PLY or CSV with a header, relative to the scene", k_required},
+      {"spacing", &source.spacing, k_positive, "m", "distance of neighbouring particles, h", k_required},
+  };
+}
+
+FieldTable fields(ImplicitSource& source) {
+  return joined({{"shape", &source.shape, k_any, "", "name of a built-in shape: moai", k_required}},
+                joined(fields(source.sampling), fields(source.placement)));
+}
+
+FieldTable fields(Collider& collider) {
+  return {
+      {"velocity", &collider.velocity, k_finite, "m/s", "the obstacle moves with it"},
+      {"restitution", &collider.restitution, between(0, 1), "",
+       "share of the normal velocity that bounces back, e"},
+      {"friction", &collider.friction, k_not_negative, "", "Coulomb's μ_f"},
+  };
+}
+
+FieldTable fields(Plane& plane) {
+  return {
+      {"normal", &plane.normal, k_finite, "", "towards the free side, of any length but 0"},
+      {"offset", &plane.offset, k_finite, "m", "normal · x >= offset is free"},
+  };
+}
+
+FieldTable fields(Sphere& sphere) {
+  return {
+      {"center", &sphere.center, k_finite, "m", "middle of the ball"},
+      {"radius", &sphere.radius, k_positive, "m", "of the ball", k_required},
+      {"inside", &sphere.inside, k_any, "", "particles are kept in, not out"},
+  };
+}
+
+FieldTable fields(Box& box) {
+  return {
+      {"min", &box.min, k_finite, "m", "lowest corner", k_required},
+      {"max", &box.max, k_finite, "m", "highest corner", k_required},
+      {"inside", &box.inside, k_any, "", "particles are kept in, not out"},
+  };
+}
+
+FieldTable fields(ScenePin& pin) {
+  return {{"velocity", &pin.velocity, k_finite, "m/s",
+           "with which the particles in the box at the start move for good"}};
+}
+
+FieldTable fields(Aabb& box) {
+  return {
+      {"min", &box.min, k_finite, "m", "lowest corner", k_required},
+      {"max", &box.max, k_finite, "m", "highest corner", k_required},
+  };
+}
+
+FieldTable fields(SurfaceConfig& config) {
+  return {
+      {"voxels", &config.voxels, between(8, 1024), "",
+       "voxels along the longest side of the particles' box, where voxel_size is left out"},
+      {"voxel_size", &config.voxel_size, k_positive, "m", "side of a voxel", "from voxels"},
+      {"kernel_radius", &config.kernel_radius, between(1, 4), "h", "radius in which particles are blended"},
+      {"particle_radius", &config.particle_radius, between(0.1, 1), "h",
+       "distance of the surface from the outermost particles"},
+  };
+}
+
+FieldTable fields(RunConfig& config) {
+  return {
+      {"frames", &config.frames, between(0, k_largest_int), "", "frames that are written"},
+      {"frame_time", &config.frame_time, k_positive, "s", "simulated time of a frame", "one step a frame"},
+  };
+}
+
+FieldTable fields(RenderConfig& config) {
+  return {
+      {"width", &config.width, between(16, 8192), "pixels", "of a picture"},
+      {"height", &config.height, between(16, 8192), "pixels", "of a picture"},
+      {"samples", &config.samples, between(1, 256), "", "rays per pixel"},
+      {"eye", &config.eye, k_finite, "m", "where the camera is", "chosen to show the scene"},
+      {"target", &config.target, k_finite, "m", "what it looks at", "chosen to show the scene"},
+      {"field_of_view", &config.field_of_view, between(1, 120), "degrees", "vertical"},
+      {"frames_per_second", &config.frames_per_second, between(1, 120), "", "of the film"},
+  };
+}
+
+const std::vector<Kind<BodySource>>& source_kinds() {
+  static const std::vector<Kind<BodySource>> kinds{{"box", Lattice{}},
+                                                   {"sphere", SphereSource{}},
+                                                   {"mesh", MeshSource{}},
+                                                   {"points", PointsSource{}},
+                                                   {"implicit", ImplicitSource{}}};
+  return kinds;
+}
+
+const std::vector<Kind<Primitive>>& primitive_kinds() {
+  static const std::vector<Kind<Primitive>> kinds{{"plane", Plane{}}, {"sphere", Sphere{}}, {"box", Box{}}};
+  return kinds;
+}
+
+}  // namespace mallow::scene_file

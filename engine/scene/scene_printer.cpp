@@ -1,0 +1,111 @@
+#include <string_view>
+
+#include "scene/document.h"
+#include "scene/scene_fields.h"
+
+namespace mallow {
+namespace scene_file {
+namespace {
+
+/// "name = value" lines, with a comment for what is left out.
+std::string lines_of(const FieldTable& fields) {
+  std::string text;
+  for (const Field& field : fields) {
+    const std::string value = value_text(field);
+    text += value.empty() ? "# " + std::string(field.name) + ": " + field.left_out
+                          : std::string(field.name) + " = " + value;
+    text += '\n';
+  }
+  return text;
+}
+
+/// "{ name = value, ... }".
+std::string inline_table(const FieldTable& fields) {
+  std::string text;
+  for (const Field& field : fields) {
+    const std::string value = value_text(field);
+    if (!value.empty()) text += std::string(text.empty() ? " " : ", ") + field.name + " = " + value;
+  }
+  return "{" + text + " }";
+}
+
+std::string shape_line(Collider& collider) {
+  struct Print {
+    std::string operator()(Primitive primitive) const {
+      return std::string(key_of(primitive)) + " = " + inline_table(fields(primitive));
+    }
+    std::string operator()(const Union& parts) const {
+      std::string text;
+      for (const Primitive& part : parts.parts)
+        text += (text.empty() ? " { " : ", { ") + (*this)(part) + " }";
+      return std::string(k_union_key) + " = [" + text + " ]";
+    }
+  };
+  return std::visit(Print{}, collider.shape) + '\n';
+}
+
+/// A line of describe_scene_keys(), in columns.
+std::string key_line(const std::string& key, const Field& field) {
+  const auto padded = [](std::string text, std::size_t width) {
+    text.resize(std::max(text.size(), width), ' ');
+    return text + "  ";
+  };
+  const std::string value = value_text(field);
+  const std::string initially = field.required() ? k_required
+                                : value.empty()  ? std::string("left out: ") + field.left_out
+                                                 : "default " + value;
+  const std::string unit = *field.unit ? " [" + std::string(field.unit) + "]" : "";
+  return padded(key, 34) + padded(initially, 34) + field.doc + unit + "; " + allowed(field) + '\n';
+}
+
+std::string key_lines(const std::string& path, const FieldTable& fields) {
+  std::string text;
+  for (const Field& field : fields) text += key_line(path + '.' + field.name, field);
+  return text;
+}
+
+}  // namespace
+}  // namespace scene_file
+
+std::string print_scene(const Scene& scene) {
+  using namespace scene_file;
+  Scene copy = scene;  // field tables point to what can be written
+  std::string text = "[solver]\n" + lines_of(fields(copy.solver));
+  for (SceneMaterial& material : copy.materials) text += "\n[[material]]\n" + lines_of(fields(material));
+  for (SceneBody& body : copy.bodies)
+    text += "\n[[body]]\n" + lines_of(fields(body)) + key_of(body.source) + " = " +
+            inline_table(fields(body.source)) + '\n';
+  for (Collider& collider : copy.colliders)
+    text += "\n[[collider]]\n" + shape_line(collider) + lines_of(fields(collider));
+  for (ScenePin& pin : copy.pins)
+    text += "\n[[pin]]\nbox = " + inline_table(fields(pin.box)) + '\n' + lines_of(fields(pin));
+  text += "\n[surface]\n" + lines_of(fields(copy.surface));
+  text += "\n[run]\n" + lines_of(fields(copy.run));
+  return text + "\n[render]\n" + lines_of(fields(copy.render));
+}
+
+std::string describe_scene_keys() {
+  using namespace scene_file;
+  Scene scene;
+  SceneMaterial material;
+  SceneBody body;
+  Collider collider;
+  ScenePin pin;
+  std::string text = key_lines("solver", fields(scene.solver)) + key_lines("material[]", fields(material)) +
+                     key_lines("body[]", fields(body));
+  for (const auto& kind : source_kinds()) {
+    BodySource source = kind.value;
+    text += key_lines(std::string("body[].") + kind.key, fields(source));
+  }
+  text += key_lines("collider[]", fields(collider));
+  for (const std::string prefix : {"collider[].", "collider[].union[]."})
+    for (const auto& kind : primitive_kinds()) {
+      Primitive primitive = kind.value;
+      text += key_lines(prefix + kind.key, fields(primitive));
+    }
+  text += key_lines("pin[]", fields(pin)) + key_lines("pin[].box", fields(pin.box));
+  return text + key_lines("surface", fields(scene.surface)) + key_lines("run", fields(scene.run)) +
+         key_lines("render", fields(scene.render));
+}
+
+}  // namespace mallow

@@ -1,0 +1,201 @@
+#include <cerrno>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <system_error>
+
+#include "scene/document.h"
+#include "scene/field_reader.h"
+#include "scene/nearest_name.h"
+#include "scene/overrides.h"
+#include "scene/scene_fields.h"
+#include "scene/shape_reader.h"
+
+namespace mallow {
+namespace scene_file {
+namespace {
+
+/// Turns a document into a scene and collects what is wrong with it.
+class SceneReader {
+ public:
+  SceneReader(const Node& root, const std::filesystem::path& file, Problems& problems)
+      : root_(root), folder_(file.parent_path()), problems_(problems) {
+    scene_.file = file;
+  }
+
+  Scene read() {
+    const std::vector<std::string> sections{"solver", "material", "body", "collider",
+                                            "pin",    "surface",  "run",  "render"};
+    read_fields(root_, "", {}, sections, problems_);
+    read_section("solver", fields(scene_.solver));
+    read_list("material", 1, &SceneReader::read_material);
+    read_list("body", 1, &SceneReader::read_body);
+    read_list("collider", 0, &SceneReader::read_collider);
+    read_list("pin", 0, &SceneReader::read_pin);
+    read_section("surface", fields(scene_.surface));
+    read_section("run", fields(scene_.run));
+    read_section("render", fields(scene_.render));
+    check_materials();
+    check_groups();
+    return std::move(scene_);
+  }
+
+ private:
+  void read_section(const char* key, const FieldTable& table) {
+    static const Node k_nothing_given{.place = {}, .value = Table{}};
+    const Node* node = find(root_, key);
+    read_fields(node ? *node : k_nothing_given, key, table, {}, problems_);
+  }
+
+  void read_list(const char* key, std::size_t at_least,
+                 void (SceneReader::*read_element)(const Node&, const std::string&)) {
+    const Node* node = find(root_, key);
+    if (!node) {
+      if (at_least > 0)
+        problems_.add({}, key, "is missing: at least one [[" + std::string(key) + "]] is needed");
+      return;
+    }
+    const Array* list = node->get_if<Array>();
+    if (!list)
+      return problems_.add(
+          node->place, key,
+          not_allowed(describe(*node), "a list of tables, each under [[" + std::string(key) + "]]"));
+    if (list->size() < at_least || list->size() > k_most_entries)
+      return problems_.add(node->place, key,
+                           not_allowed(describe(*node), "a list of " + std::to_string(at_least) + " to " +
+                                                            std::to_string(k_most_entries)));
+    for (std::size_t i = 0; i < list->size(); ++i) (this->*read_element)((*list)[i], element_path(key, i));
+  }
+
+  void read_material(const Node& node, const std::string& path) {
+    read_fields(node, path, fields(scene_.materials.emplace_back()), {}, problems_);
+  }
+
+  void read_body(const Node& node, const std::string& path) {
+    SceneBody& body = scene_.bodies.emplace_back();
+    body.line = node.place.line;
+    read_fields(node, path, fields(body), source_keys(), problems_);
+    read_source(node, path, folder_, body.source, problems_);
+  }
+
+  void read_collider(const Node& node, const std::string& path) {
+    Collider& collider = scene_.colliders.emplace_back();
+    read_fields(node, path, fields(collider), shape_keys(), problems_);
+    read_shape(node, path, collider, problems_);
+  }
+
+  void read_pin(const Node& node, const std::string& path) {
+    ScenePin& pin = scene_.pins.emplace_back();
+    pin.line = node.place.line;
+    read_fields(node, path, fields(pin), std::vector<std::string>{"box"}, problems_);
+    if (!node.get_if<Table>()) return;
+    const std::string box_path = join_path(path, "box");
+    const Node* box = find(node, "box");
+    if (!box) return problems_.add(node.place, box_path, "is missing: { min = [...], max = [...] }");
+    if (read_whole(*box, box_path, fields(pin.box), {}, problems_))
+      check_box(pin.box.min, pin.box.max, true, *box, box_path, problems_);
+  }
+
+  /// Names are unique, bodies use names that there are, and every material is used.
+  void check_materials() {
+    std::map<std::string, std::size_t> index_of;
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
+      const std::string& name = scene_.materials[i].name;
+      if (name.empty()) continue;
+      const auto [first, added] = index_of.emplace(name, i);
+      if (added)
+        known.push_back(name);
+      else
+        problems_.add(
+            place_of("material", i, "name"), element_path("material", i) + ".name",
+            "'" + name + "' is not allowed: " + element_path("material", first->second) + " has that name");
+    }
+    std::vector<bool> used(scene_.materials.size(), false);
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      const std::string& name = scene_.bodies[i].material;
+      if (name.empty()) continue;
+      const auto material = index_of.find(name);
+      if (material != index_of.end())
+        used[material->second] = true;
+      else
+        problems_.add(place_of("body", i, "material"), element_path("body", i) + ".material",
+                      "unknown material '" + name + "'" + suggestion(name, known));
+    }
+    if (scene_.bodies.empty()) return;
+    for (const auto& [name, i] : index_of)
+      if (!used[i])
+        problems_.add(place_of("material", i, "name"), element_path("material", i),
+                      "material '" + name + "' is not used by any body");
+  }
+
+  /// A group has one material, and there are not more groups than a simulation takes.
+  void check_groups() {
+    std::map<std::string, std::size_t> first_body;
+    std::size_t groups = 0;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      const SceneBody& body = scene_.bodies[i];
+      const bool named = !body.group.empty();
+      const bool first = !named || first_body.emplace(body.group, i).second;
+      if (first && ++groups == k_most_groups + 1)
+        problems_.add(place_of("body", i, named ? "group" : "material"), element_path("body", i) + ".group",
+                      "is one group too many: at most " + std::to_string(k_most_groups) +
+                          " are allowed, and a body without a group is a group of its own");
+      if (first || body.material.empty()) continue;
+      const std::size_t earlier = first_body[body.group];
+      const std::string& material = scene_.bodies[earlier].material;
+      if (!material.empty() && material != body.material)
+        problems_.add(place_of("body", i, "material"), element_path("body", i) + ".material",
+                      "'" + body.material + "' is not allowed: group '" + body.group + "' is of '" +
+                          material + "' since " + element_path("body", earlier));
+    }
+  }
+
+  /// Of a value in a list that was read, or of its table where it is not given.
+  const Place& place_of(const char* list, std::size_t index, const char* key) const {
+    const Node& table = (*find(root_, list)->get_if<Array>())[index];
+    const Node* value = find(table, key);
+    return value ? value->place : table.place;
+  }
+
+  const Node& root_;
+  std::filesystem::path folder_;
+  Problems& problems_;
+  Scene scene_;
+};
+
+/// Throws ConfigError where the file cannot be read or is larger than any scene.
+std::string read_text(const std::filesystem::path& file) {
+  constexpr std::size_t k_most_bytes = std::size_t{16} << 20;
+  const auto fail = [&](std::string why) {
+    throw ConfigError(std::vector<Problem>{{.file = file.string(), .field = {}, .message = std::move(why)}});
+  };
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) fail("cannot be read: it is a folder, not a scene file");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail("cannot be read: " + std::generic_category().message(errno));
+  std::string text;
+  std::vector<char> block(std::size_t{1} << 16);
+  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) || stream.gcount() > 0) {
+    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > k_most_bytes) fail("is too large for a scene: at most 16 MiB are allowed");
+  }
+  if (stream.bad()) fail("cannot be read: " + std::generic_category().message(errno));
+  return text;
+}
+
+}  // namespace
+}  // namespace scene_file
+
+Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  using namespace scene_file;
+  Node root = parse_document(read_text(file), file.string());
+  Problems problems(file.string());
+  for (const std::string& override_text : overrides) apply_override(root, override_text, problems);
+  Scene scene = SceneReader(root, file, problems).read();
+  problems.finish();
+  return scene;
+}
+
+}  // namespace mallow

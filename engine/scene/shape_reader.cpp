@@ -1,0 +1,246 @@
+#include "scene/shape_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <system_error>
+
+#include "scene/field_reader.h"
+#include "scene/nearest_name.h"
+
+namespace mallow::scene_file {
+namespace {
+
+template <class Variant>
+std::vector<std::string> keys_of(const std::vector<Kind<Variant>>& kinds) {
+  std::vector<std::string> keys;
+  for (const auto& kind : kinds) keys.emplace_back(kind.key);
+  return keys;
+}
+
+const std::vector<std::string>& primitive_keys() {
+  static const std::vector<std::string> keys = keys_of(primitive_kinds());
+  return keys;
+}
+
+/// The kind of a key that is known to be one.
+template <class Variant>
+const Variant& kind_of(const std::vector<Kind<Variant>>& kinds, const std::string& key) {
+  return std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) { return kind.key == key; })->value;
+}
+
+std::string listed(const std::vector<std::string>& keys) {
+  std::string text;
+  for (const std::string& key : keys) text += (text.empty() ? "" : ", ") + key;
+  return text;
+}
+
+/// Six digits, enough for numbers that are estimates or far too large.
+std::string rounded_text(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string text_of(Vec3 v) {
+  return value_text({"", &v, k_finite, "", ""});
+}
+
+/// The one entry of a table that has one of `keys`; nullptr where there is none. More than one is a problem
+/// too.
+const Entry* only_one(const Node& node, const std::string& path, const std::vector<std::string>& keys,
+                      Problems& problems) {
+  const Table* table = node.get_if<Table>();
+  if (!table) return nullptr;
+  const Entry* found = nullptr;
+  for (const Entry& entry : *table) {
+    if (std::find(keys.begin(), keys.end(), entry.key) == keys.end()) continue;
+    if (found)
+      problems.add(entry.place, join_path(path, entry.key),
+                   "is not allowed beside " + found->key + ": exactly one of " + listed(keys));
+    else
+      found = &entry;
+  }
+  if (!found) problems.add(node.place, path, "has no shape: exactly one of " + listed(keys) + " is needed");
+  return found;
+}
+
+/// Checks of one value against another, or against what is on the disk.
+class ShapeCheck {
+ public:
+  ShapeCheck(const Node& table, const std::string& path, const std::filesystem::path& folder,
+             Problems& problems)
+      : table_(table), path_(path), folder_(folder), problems_(problems) {}
+
+  void operator()(const Lattice& lattice) const {
+    double particles = 1;
+    for (const int count : lattice.count) particles *= count;
+    if (particles > k_most_particles)
+      complain("count", rounded_text(particles) + " particles", at_most_particles());
+  }
+
+  void operator()(const SphereSource& sphere) const {
+    (*this)(sphere.sampling);
+    if (!sphere.sampling.spacing) return;
+    const float spacing = *sphere.sampling.spacing;
+    constexpr double k_unit_ball = 4.18879;  // 4/3 π, its volume
+    const double particles = k_unit_ball * std::pow(static_cast<double>(sphere.radius) / spacing, 3);
+    if (particles > k_most_particles)
+      complain("spacing", number_text(spacing) + ", for about " + rounded_text(particles) + " particles,",
+               at_most_particles());
+  }
+
+  void operator()(const MeshSource& mesh) const {
+    (*this)(mesh.sampling);
+    check_file(mesh.file);
+  }
+
+  void operator()(const PointsSource& points) const { check_file(points.file); }
+
+  void operator()(const ImplicitSource& implicit) const {
+    (*this)(implicit.sampling);
+    check_name(implicit.shape, "shape");
+  }
+
+  void operator()(const Plane& plane) const {
+    // Outside these lengths the square of the normal leaves single precision, and its direction is lost.
+    const float length = plane.normal.stableNorm();
+    if (length >= 1e-15f && length <= 1e15f) return;
+    complain("normal", text_of(plane.normal), "a direction, of length in [1e-15, 1e15]");
+  }
+
+  void operator()(const Sphere&) const {}
+
+  void operator()(const Box& box) const { check_box(box.min, box.max, false, table_, path_, problems_); }
+
+  /// key: where the name stands, empty where it is the whole value.
+  void check_name(const std::string& shape, const std::string& key) const {
+    const auto names = implicit_shape_names();
+    const std::vector<std::string> known(names.begin(), names.end());
+    if (std::find(known.begin(), known.end(), shape) == known.end())
+      problems_.add(place_of(key), key.empty() ? path_ : join_path(path_, key),
+                    "unknown shape '" + shape + "'" + suggestion(shape, known));
+  }
+
+ private:
+  static std::string at_most_particles() { return "at most " + std::to_string(k_most_particles); }
+
+  void operator()(const Sampling& sampling) const {
+    if (sampling.spacing && sampling.count)
+      problems_.add(place_of("count"), join_path(path_, "count"),
+                    "is not allowed beside spacing: exactly one of the two");
+    if (!sampling.spacing && !sampling.count)
+      problems_.add(table_.place, path_, "has neither spacing nor count: exactly one of the two is needed");
+  }
+
+  void check_file(const std::filesystem::path& name) const {
+    const std::filesystem::path file = folder_ / name;
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (std::filesystem::is_regular_file(status)) return;
+    complain("file", toml_string(name.string()),
+             std::filesystem::exists(status) ? file.string() + " is not a file"
+                                             : "there is no file " + file.string());
+  }
+
+  void complain(const std::string& key, const std::string& given, const std::string& allowed) const {
+    problems_.add(place_of(key), join_path(path_, key), not_allowed(given, allowed));
+  }
+
+  const Place& place_of(const std::string& key) const {
+    const Node* value = find(table_, key);
+    return value ? value->place : table_.place;
+  }
+
+  const Node& table_;
+  const std::string& path_;
+  const std::filesystem::path& folder_;
+  Problems& problems_;
+};
+
+Primitive read_primitive(const Entry& entry, const std::string& path, Problems& problems) {
+  Primitive primitive = kind_of(primitive_kinds(), entry.key);
+  if (read_whole(entry.node, path, fields(primitive), {}, problems))
+    std::visit(ShapeCheck(entry.node, path, {}, problems), primitive);
+  return primitive;
+}
+
+Union read_union(const Node& node, const std::string& path, Problems& problems) {
+  Union shapes;
+  const Array* list = node.get_if<Array>();
+  if (!list || list->empty() || list->size() > k_most_entries) {
+    problems.add(node.place, path,
+                 not_allowed(describe(node), "a list of 1 to " + std::to_string(k_most_entries) +
+                                                 " tables, each with one of " + listed(primitive_keys())));
+    return shapes;
+  }
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const std::string part_path = element_path(path, i);
+    if (!read_whole((*list)[i], part_path, {}, primitive_keys(), problems)) continue;
+    if (const Entry* entry = only_one((*list)[i], part_path, primitive_keys(), problems))
+      shapes.parts.push_back(read_primitive(*entry, join_path(part_path, entry->key), problems));
+  }
+  return shapes;
+}
+
+}  // namespace
+
+const std::vector<std::string>& source_keys() {
+  static const std::vector<std::string> keys = keys_of(source_kinds());
+  return keys;
+}
+
+const std::vector<std::string>& shape_keys() {
+  static const std::vector<std::string> keys = [] {
+    std::vector<std::string> all = primitive_keys();
+    all.emplace_back(k_union_key);
+    return all;
+  }();
+  return keys;
+}
+
+void read_source(const Node& body, const std::string& body_path, const std::filesystem::path& folder,
+                 BodySource& source, Problems& problems) {
+  const Entry* entry = only_one(body, body_path, source_keys(), problems);
+  if (!entry) return;
+  const std::string path = join_path(body_path, entry->key);
+  const ShapeCheck check(entry->node, path, folder, problems);
+  source = kind_of(source_kinds(), entry->key);
+  ImplicitSource* implicit = std::get_if<ImplicitSource>(&source);
+  if (const std::string* name = entry->node.get_if<std::string>(); implicit && name) {
+    implicit->shape = *name;
+    implicit->sampling.count = k_implicit_count;
+    check.check_name(*name, {});
+  } else if (read_whole(entry->node, path, fields(source), {}, problems)) {
+    std::visit(check, source);
+  }
+}
+
+void read_shape(const Node& table, const std::string& collider_path, Collider& collider, Problems& problems) {
+  const Entry* entry = only_one(table, collider_path, shape_keys(), problems);
+  if (!entry) return;
+  const std::string path = join_path(collider_path, entry->key);
+  if (entry->key == k_union_key)
+    collider.shape = read_union(entry->node, path, problems);
+  else
+    std::visit([&](const auto& primitive) { collider.shape = primitive; },
+               read_primitive(*entry, path, problems));
+}
+
+bool read_whole(const Node& table, const std::string& path, const FieldTable& fields,
+                const std::vector<std::string>& also, Problems& problems) {
+  const std::size_t problems_before = problems.count();
+  read_fields(table, path, fields, also, problems);
+  return problems.count() == problems_before;
+}
+
+void check_box(const Vec3& min, const Vec3& max, bool may_be_flat, const Node& table, const std::string& path,
+               Problems& problems) {
+  const auto size = (max - min).array();
+  if (may_be_flat ? (size >= 0).all() : (size > 0).all()) return;
+  problems.add(find(table, "max")->place, join_path(path, "max"),
+               not_allowed(text_of(max), std::string(may_be_flat ? "at least" : "above") + " min, " +
+                                             text_of(min) + ", along every axis"));
+}
+
+}  // namespace mallow::scene_file

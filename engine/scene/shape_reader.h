@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/document.h"
+#include "scene/scene_fields.h"
+
+/// The parts of bodies and colliders that say what shape they have: one key of several, with a table of its
+/// own.
+namespace mallow::scene_file {
+
+const std::vector<std::string>& source_keys();  ///< of a body
+const std::vector<std::string>& shape_keys();   ///< of a collider
+
+/// body: the table of a [[body]]; folder: what file names in it are relative to.
+void read_source(const Node& body, const std::string& path, const std::filesystem::path& folder,
+                 BodySource& source, Problems& problems);
+/// table: that of a [[collider]].
+void read_shape(const Node& table, const std::string& path, Collider& collider, Problems& problems);
+
+/// Reads fields and says whether nothing was wrong with them, so that checks of one against another make
+/// sense.
+bool read_whole(const Node& table, const std::string& path, const FieldTable& fields,
+                const std::vector<std::string>& also, Problems& problems);
+/// A box of which each side may be empty (`may_be_flat`) or not, but never negative.
+void check_box(const Vec3& min, const Vec3& max, bool may_be_flat, const Node& table, const std::string& path,
+               Problems& problems);
+
+}  // namespace mallow::scene_file

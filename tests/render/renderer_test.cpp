@@ -1,0 +1,239 @@
+#include "render/renderer.h"
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <string>
+
+#include "mallow/errors.h"
+#include "mallow/files.h"
+
+namespace mallow::render {
+namespace {
+
+// A ball of 2 n² quads.
+Mesh ball(const Vec3& center, float radius, std::uint32_t n, std::uint8_t group) {
+  Mesh mesh;
+  for (std::uint32_t row = 0; row <= n; ++row) {
+    for (std::uint32_t column = 0; column <= 2 * n; ++column) {
+      const float polar = std::numbers::pi_v<float> * (1 - static_cast<float>(row) / static_cast<float>(n));
+      const float around = std::numbers::pi_v<float> * static_cast<float>(column) / static_cast<float>(n);
+      mesh.vertices.push_back(center + radius * Vec3(std::sin(polar) * std::cos(around),
+                                                     std::sin(polar) * std::sin(around), std::cos(polar)));
+      mesh.material_ids.push_back(group);
+      if (row == n || column == 2 * n) continue;
+      const std::uint32_t a = row * (2 * n + 1) + column;
+      const std::uint32_t above = a + 2 * n + 1;
+      mesh.triangles.push_back({a, a + 1, above + 1});
+      mesh.triangles.push_back({a, above + 1, above});
+    }
+  }
+  return mesh;
+}
+
+RenderConfig small() {
+  return {.width = 160, .height = 90, .samples = 2, .eye = {}, .target = {}};
+}
+
+const std::vector<Vec3> k_palette{{0.7f, 0.08f, 0.06f}, {0.06f, 0.25f, 0.6f}};
+const std::vector<Collider> k_floor{{.shape = Plane{}}};
+const Aabb k_bounds{{-3, -3, 0}, {3, 3, 6}};
+
+std::array<int, 3> pixel(const Image& image, int x, int y) {
+  const auto* p = &image.rgb[3 * static_cast<std::size_t>(y * image.width + x)];
+  return {p[0], p[1], p[2]};
+}
+
+// Where the camera sees a point: x to the right, y up, the picture being [-1, 1] in both.
+Eigen::Vector2f project(const Camera& camera, const RenderConfig& config, const Vec3& point) {
+  const Vec3 forward = (camera.target - camera.eye).normalized();
+  const Vec3 right = forward.cross(camera.up).normalized();
+  const Vec3 offset = point - camera.eye;
+  const float slope = std::tan(camera.field_of_view * std::numbers::pi_v<float> / 360) * offset.dot(forward);
+  const float aspect = static_cast<float>(config.width) / static_cast<float>(config.height);
+  return {offset.dot(right) / (slope * aspect), offset.dot(right.cross(forward)) / slope};
+}
+
+TEST(renderer, same_bits_for_any_thread_count) {
+  const Mesh mesh = ball({0, 0, 3}, 3, 40, 0);
+  const std::vector<Collider> colliders{
+      {.shape = Plane{}}, {.shape = Sphere{{4, 2, 1}, 1.5f}}, {.shape = Box{{-6, -6, 0}, {6, 6, 7}, true}}};
+  const Camera camera = frame_camera(k_bounds, small());
+  const Image one = Renderer(small(), 1).render(mesh, k_palette, colliders, camera);
+  for (const int threads : {2, 3}) {
+    Renderer renderer(small(), threads);
+    EXPECT_EQ(renderer.render(mesh, k_palette, colliders, camera).rgb, one.rgb) << threads << " threads";
+    EXPECT_EQ(renderer.render(mesh, k_palette, colliders, camera).rgb, one.rgb) << "second frame";
+  }
+}
+
+TEST(renderer, bodies_have_the_hue_of_their_group) {
+  const Camera camera = frame_camera(k_bounds, small());
+  Renderer renderer(small(), 1);
+  const std::vector<Vec3> center{{0, 0, 3}};
+  for (const std::uint8_t group : std::array<std::uint8_t, 2>{0, 1}) {
+    const std::size_t strong = group == 0 ? 0 : 2;
+    const Image mesh = renderer.render(ball(center[0], 3, 40, group), k_palette, k_floor, camera);
+    const Image points = renderer.render_points(center, 3, std::array{group}, k_palette, k_floor, camera);
+    for (const Image* image : {&mesh, &points}) {
+      const auto color = pixel(*image, 80, 50);
+      EXPECT_GT(color[strong], 110);
+      EXPECT_GT(color[strong], color[2 - strong] + 60);
+      EXPECT_GE(color[strong], color[1] + 40);
+    }
+  }
+}
+
+TEST(renderer, points_and_a_fine_mesh_of_one_ball_look_the_same) {
+  const Camera camera = frame_camera(k_bounds, small());
+  Renderer renderer(small(), 1);
+  const Image mesh = renderer.render(ball({0, 0, 3}, 3, 200, 0), k_palette, k_floor, camera);
+  const Image points =
+      renderer.render_points(std::vector<Vec3>{{0, 0, 3}}, 3, {}, k_palette, k_floor, camera);
+  double difference = 0;
+  for (std::size_t i = 0; i < mesh.rgb.size(); ++i) difference += std::abs(mesh.rgb[i] - points.rgb[i]);
+  EXPECT_LT(difference / static_cast<double>(mesh.rgb.size()), 0.3);
+}
+
+TEST(renderer, no_frame_means_an_empty_bright_studio) {
+  const Camera camera = frame_camera(k_bounds, small());
+  Renderer renderer(small(), 1);
+  for (const std::vector<Collider>& colliders : {k_floor, std::vector<Collider>{}}) {
+    const Image mesh = renderer.render({}, {}, colliders, camera);
+    ASSERT_EQ(mesh.rgb.size(), 3u * 160 * 90);
+    EXPECT_GT(*std::min_element(mesh.rgb.begin(), mesh.rgb.end()), 215);
+    EXPECT_LT(*std::max_element(mesh.rgb.begin(), mesh.rgb.end()), 255) << "burnt out";
+    EXPECT_EQ(renderer.render_points({}, 1, {}, {}, colliders, camera).rgb, mesh.rgb);
+  }
+}
+
+TEST(renderer, a_body_shades_the_floor_softly) {
+  const Camera camera = frame_camera(k_bounds, small());
+  Renderer renderer(small(), 1);
+  const Image bare = renderer.render({}, {}, k_floor, camera);
+  const Image with_ball = renderer.render(ball({0, 0, 1.5f}, 1.5f, 40, 0), k_palette, k_floor, camera);
+  int shaded = 0;
+  int dimmed = 0;
+  for (int y = 0; y < 90; ++y) {
+    for (int x = 0; x < 160; ++x) {
+      const auto [r, g, b] = pixel(with_ball, x, y);
+      if (r > b + 30) continue;  // the ball, or its glow
+      const int loss = pixel(bare, x, y)[1] - g;
+      shaded += loss > 40;
+      dimmed += loss > 10 && loss <= 40;
+    }
+  }
+  EXPECT_GT(shaded, 60);
+  EXPECT_GT(dimmed, 60);
+}
+
+TEST(renderer, a_flat_lit_wall_has_no_acne) {
+  const Camera camera = frame_camera(k_bounds, small());
+  Mesh quad{.vertices = {{-4, -4, 0.5f}, {4, -4, 0.5f}, {4, 4, 0.5f}, {-4, 4, 0.5f}},
+            .triangles = {{0, 1, 2}, {0, 2, 3}},
+            .normals = {},
+            .material_ids = {}};
+  const Image image = Renderer(small(), 1).render(quad, k_palette, {}, camera);
+  int lowest = 255, highest = 0;
+  for (int k = -6; k <= 6; ++k) {
+    const Eigen::Vector2f at = project(camera, small(), {0.25f * static_cast<float>(k), 0, 0.5f});
+    const int red = pixel(image, static_cast<int>(80 * (1 + at.x())), static_cast<int>(45 * (1 - at.y())))[0];
+    lowest = std::min(lowest, red);
+    highest = std::max(highest, red);
+  }
+  EXPECT_GT(lowest, 150);
+  EXPECT_LE(highest - lowest, 12);
+}
+
+TEST(renderer, looks_into_kept_in_shapes_through_their_front) {
+  const Camera camera = frame_camera(k_bounds, small());
+  Renderer renderer(small(), 1);
+  for (const Collider& shell : {Collider{.shape = Box{{-4, -4, 0}, {4, 4, 6}, true}},
+                                Collider{.shape = Sphere{{0, 0, 3}, 5, true}}}) {
+    const Image image = renderer.render(ball({0, 0, 3}, 2, 40, 0), k_palette, {&shell, 1}, camera);
+    const auto color = pixel(image, 80, 50);
+    EXPECT_GT(color[0], color[2] + 60);
+  }
+}
+
+TEST(renderer, refuses_what_it_cannot_draw) {
+  EXPECT_THROW(Renderer({.width = 8, .height = 90, .samples = 300, .eye = {}, .target = {}}, 1), ConfigError);
+  Renderer renderer(small(), 1);
+  const Camera camera = frame_camera(k_bounds, small());
+  EXPECT_THROW(renderer.render(ball({0, 0, 3}, 3, 8, 2), k_palette, {}, camera), ConfigError);
+  EXPECT_THROW(renderer.render_points(std::vector<Vec3>{{0, 0, 0}}, 0, {}, k_palette, {}, camera),
+               ConfigError);
+  EXPECT_THROW(renderer.render({}, {}, {}, {.eye = {1, 1, 1}, .target = {1, 1, 1}}), ConfigError);
+}
+
+TEST(camera, has_all_corners_in_view_with_a_margin_and_fills_the_picture) {
+  const std::array<Aabb, 4> boxes{k_bounds, Aabb{{-1, -1, 0}, {1, 1, 40}}, Aabb{{-30, -2, 0}, {30, 2, 1}},
+                                  Aabb{{100, 100, 7}, {110, 104, 12}}};
+  for (const Aabb& box : boxes) {
+    for (RenderConfig config :
+         {RenderConfig{}, RenderConfig{.width = 300, .height = 600, .eye = {}, .target = {}},
+          RenderConfig{.eye = {}, .target = Vec3((box.min + box.max) / 2)}}) {
+      for (const float angle : {20.0f, 35.0f, 60.0f}) {
+        config.field_of_view = angle;
+        const Camera camera = frame_camera(box, config);
+        float reach = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+          const Vec3 point(corner & 1 ? box.max.x() : box.min.x(), corner & 2 ? box.max.y() : box.min.y(),
+                           corner & 4 ? box.max.z() : box.min.z());
+          EXPECT_GT((point - camera.eye).dot(camera.target - camera.eye), 0);
+          reach = std::max(reach, project(camera, config, point).cwiseAbs().maxCoeff());
+        }
+        EXPECT_LT(reach, 0.95f);
+        EXPECT_GT(reach, 0.55f);
+      }
+    }
+  }
+}
+
+TEST(camera, survives_bounds_without_size_and_keeps_what_the_config_gives) {
+  const Camera point = frame_camera({{1, 2, 3}, {1, 2, 3}}, {});
+  EXPECT_GT((point.eye - point.target).norm(), 0);
+  EXPECT_TRUE(point.eye.allFinite());
+  const Camera given = frame_camera(k_bounds, {.eye = Vec3(9, 8, 7), .target = Vec3(1, 2, 3)});
+  EXPECT_EQ(given.eye, Vec3(9, 8, 7));
+  EXPECT_EQ(given.target, Vec3(1, 2, 3));
+}
+
+TEST(camera, looks_at_ramps_from_their_free_side) {
+  for (const Vec3& normal : {Vec3(-0.5f, 0, 1), Vec3(0.5f, 0, 1), Vec3(0, 1, 0.2f), Vec3(-1, -1, 0.5f)}) {
+    const Collider ramp{.shape = Plane{normal, 0}};
+    const Camera camera = frame_camera(k_bounds, {}, {&ramp, 1});
+    EXPECT_GT(normal.dot(camera.eye - camera.target), 0) << normal.transpose();
+  }
+}
+
+TEST(png, reads_back_equal) {
+  Image image{37, 19, {}};
+  for (std::size_t i = 0; i < 3u * 37 * 19; ++i) image.rgb.push_back(static_cast<std::uint8_t>(i * i / 7));
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "mallow_render_test.png";
+  write_png(file, image);
+
+  png_image read{};
+  read.version = PNG_IMAGE_VERSION;
+  ASSERT_NE(png_image_begin_read_from_file(&read, file.c_str()), 0) << read.message;
+  EXPECT_EQ(read.width, 37u);
+  EXPECT_EQ(read.height, 19u);
+  read.format = PNG_FORMAT_RGB;
+  std::vector<std::uint8_t> bytes(PNG_IMAGE_SIZE(read));
+  ASSERT_NE(png_image_finish_read(&read, nullptr, bytes.data(), 0, nullptr), 0) << read.message;
+  EXPECT_EQ(bytes, image.rgb);
+  std::filesystem::remove(file);
+}
+
+TEST(png, a_folder_that_is_not_there_is_an_io_error) {
+  EXPECT_THROW(write_png("/nowhere/at/all/frame.png", {1, 1, {1, 2, 3}}), IoError);
+}
+
+}  // namespace
+}  // namespace mallow::render

@@ -1,0 +1,62 @@
+#include "mallow/cached_run.h"
+
+#include <cstdio>
+#include <string_view>
+
+#include "mallow/errors.h"
+#include "mallow/failure.h"
+#include "mallow/interrupt.h"
+#include "mallow/progress.h"
+#include "mallow/summary.h"
+
+namespace mallow::cli {
+namespace {
+
+void check_overrides(std::span<const std::string> overrides, const std::string& section) {
+  std::vector<Problem> problems;
+  for (const std::string& setting : overrides) {
+    if (setting.starts_with(section + ".")) continue;
+    problems.push_back({"", 0, 0, "--set " + setting, "only keys of " + section + " can be changed here"});
+  }
+  if (!problems.empty()) throw ConfigError(std::move(problems));
+}
+
+}  // namespace
+
+CachedRun open_cached_run(const CachedRunOptions& options, const std::string& section) {
+  check_overrides(options.overrides, section);
+  Cache cache = Cache::open(options.folder);
+  Scene scene = read_scene(cache.scene_file(), options.overrides);
+  nlohmann::ordered_json report = read_report(cache.report_file());
+  std::vector<float> spacings = group_spacings(report, cache.report_file());
+  if (spacings.size() != group_materials(scene).size()) {
+    throw IoError({cache.report_file().string(), 0, 0, "groups", "does not have the groups of scene.toml"});
+  }
+  check_writable(cache.scene_file());
+  return {std::move(cache), std::move(scene), std::move(report), std::move(spacings),
+          resolve_threads(options.threads)};
+}
+
+std::size_t for_each_frame(const CachedRun& run, const char* verb,
+                           const std::function<void(int frame)>& work) {
+  watch_for_interrupt();
+  const std::vector<int> frames = run.cache.particle_frames();
+  Progress progress(verb, static_cast<long long>(frames.size()), "frames");
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (interrupted()) throw RunFailure("interrupted after " + std::to_string(i) + " frames");
+    work(frames[i]);
+    progress.show(static_cast<long long>(i) + 1);
+  }
+  return frames.size();
+}
+
+void close_cached_run(CachedRun& run, const StageTimes& seconds, std::span<const Stage> stages) {
+  for (const Stage stage : stages) {
+    run.report["stage_seconds"][name(stage)] = seconds[static_cast<std::size_t>(stage)];
+  }
+  run.cache.write_scene(run.scene);
+  write_report(run.cache.report_file(), run.report);
+  write_summary(run.cache, run.scene, run.report);
+}
+
+}  // namespace mallow::cli

@@ -1,0 +1,85 @@
+#include "mallow/info_command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mallow/run_report.h"
+#include "mallow/scene.h"
+
+namespace mallow::cli {
+namespace {
+
+struct InfoOptions {
+  std::string scene;
+  std::vector<std::string> overrides;
+  int threads = 0;
+  bool print = false;
+};
+
+void print_groups(const Scene& scene, const SimulationInfo& info) {
+  const std::vector<std::size_t> materials = group_materials(scene);
+  std::printf("\n%-16s %-16s %10s %10s %10s %12s %12s  %s\n", "group", "material", "particles", "spacing",
+              "mass", "rest density", "neighbours", "shape matching");
+  for (std::size_t i = 0; i < info.groups.size(); ++i) {
+    const GroupInfo& group = info.groups[i];
+    char neighbors[32] = "-";
+    if (group.average_neighbors > 0)
+      std::snprintf(neighbors, sizeof neighbors, "%.2f", group.average_neighbors);
+    std::printf("%-16s %-16s %10zu %10.5g %10.5g %12.5g %12s  %s\n", group.name.c_str(),
+                scene.materials[materials[i]].name.c_str(), group.particles,
+                static_cast<double>(group.spacing), static_cast<double>(group.particle_mass),
+                static_cast<double>(group.rest_density), neighbors, group.shape_matching ? "on" : "off");
+  }
+}
+
+void info(const InfoOptions& options) {
+  const Scene scene = read_scene(options.scene, options.overrides);
+  if (options.print) {
+    std::fputs(print_scene(scene).c_str(), stdout);
+    return;
+  }
+  Simulation simulation = build(scene, resolve_threads(options.threads));
+  const SimulationInfo info = simulation.info();
+  const bool shape_matching = std::any_of(info.groups.begin(), info.groups.end(),
+                                          [](const GroupInfo& group) { return group.shape_matching; });
+  const auto on_off = [](bool on) { return on ? "on" : "off"; };
+  std::printf("scene            %s\n", options.scene.c_str());
+  std::printf("particles        %zu in %zu group%s\n", info.particles, info.groups.size(),
+              info.groups.size() == 1 ? "" : "s");
+  std::printf("shape matching   %s\n", on_off(shape_matching));
+  std::printf("SPH              %s\n", on_off(info.sph));
+  std::printf("viscosity        %s\n", on_off(info.viscosity));
+  std::printf("group contact    %s\n", on_off(info.cross_group));
+  std::printf("colliders        %zu\n", scene.colliders.size());
+  std::printf("pins             %zu\n", scene.pins.size());
+  std::printf("memory           %.1f MiB\n", static_cast<double>(info.bytes) / (1024.0 * 1024.0));
+  if (scene.run.frame_time) {
+    std::printf("frames           %d of %g s\n", scene.run.frames,
+                static_cast<double>(*scene.run.frame_time));
+  } else {
+    std::printf("frames           %d of one step\n", scene.run.frames);
+  }
+  print_groups(scene, info);
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+  const auto options = std::make_shared<InfoOptions>();
+  CLI::App* command = app.add_subcommand("info", "Say what would run: particles, neighbours, phases, memory");
+  command->add_option("SCENE", options->scene, "Scene file (TOML)")->required();
+  command
+      ->add_option("--set", options->overrides,
+                   "Change a value of the scene: section.key=value, any number of times")
+      ->allow_extra_args(false);
+  command->add_option("--threads", options->threads, "Threads; 0 takes all there are")
+      ->check(CLI::Range(0, 1024));
+  command->add_flag("--print", options->print,
+                    "Print the scene with every value in it, defaults too, and nothing else");
+  command->callback([options] { info(*options); });
+}
+
+}  // namespace mallow::cli

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace mallow::cli {
+
+/// mallow info SCENE: what would run.
+void add_info_command(CLI::App& app);
+
+}  // namespace mallow::cli

@@ -1,0 +1,67 @@
+#include "mallow/render_command.h"
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "mallow/cached_run.h"
+#include "mallow/failure.h"
+#include "mallow/files.h"
+#include "mallow/film.h"
+#include "mallow/stills.h"
+
+namespace mallow::cli {
+namespace {
+
+struct RenderOptions : CachedRunOptions {
+  bool no_film = false;
+};
+
+/// The surface of a frame; an empty mesh where the run has none, which shows the particles.
+Mesh surface_of(const Cache& cache, int frame) {
+  const std::filesystem::path file = cache.surface_file(frame);
+  return std::filesystem::exists(file) ? read_mesh(file) : Mesh{};
+}
+
+void render_cache(const RenderOptions& options) {
+  CachedRun run = open_cached_run(options, "render");
+  const Cache& cache = run.cache;
+  const ParticleFrame first = read_particles(cache.particles_file(cache.particle_frames().front()));
+  Stills stills(run.scene, first, run.spacings, run.threads);
+  StageTimes seconds{};
+  std::size_t count = 0;
+  try {
+    std::filesystem::create_directories(cache.images_folder());
+    count = for_each_frame(run, "rendering", [&](int number) {
+      const StageTimer timer(seconds, Stage::pictures);
+      stills.take(read_particles(cache.particles_file(number)), surface_of(cache, number),
+                  cache.image_file(number));
+    });
+    if (!options.no_film) {
+      const StageTimer timer(seconds, Stage::film);
+      make_film(cache, run.scene.render.frames_per_second, run.threads);
+    }
+    close_cached_run(run, seconds, std::array{Stage::pictures, Stage::film});
+  } catch (const std::exception& error) {
+    throw RunFailure(error.what());
+  }
+  std::printf("pictures %zu\n", count);
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+  const auto options = std::make_shared<RenderOptions>();
+  CLI::App* command =
+      app.add_subcommand("render", "Take the pictures of an earlier run again, and make its film");
+  command->add_option("DIR", options->folder, "The --out folder of a run")->required();
+  command->add_option("--set", options->overrides, "Change how pictures are taken: render.key=value")
+      ->allow_extra_args(false);
+  command->add_option("--threads", options->threads, "Threads; 0 takes all there are")
+      ->check(CLI::Range(0, 1024));
+  command->add_flag("--no-film", options->no_film, "No film");
+  command->callback([options] { render_cache(*options); });
+}
+
+}  // namespace mallow::cli

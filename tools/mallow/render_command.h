@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace mallow::cli {
+
+/// mallow render DIR: takes the pictures of a cache again.
+void add_render_command(CLI::App& app);
+
+}  // namespace mallow::cli

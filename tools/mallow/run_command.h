@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace mallow::cli {
+
+/// mallow run SCENE: simulates, and writes what is asked for.
+void add_run_command(CLI::App& app);
+
+}  // namespace mallow::cli

@@ -1,0 +1,99 @@
+#include "mallow/run_loop.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mallow/failure.h"
+#include "mallow/frame_surface.h"
+#include "mallow/interrupt.h"
+#include "mallow/progress.h"
+#include "mallow/stills.h"
+
+namespace mallow::cli {
+namespace {
+
+/// Writes particles, surface and picture of a frame, and keeps the time of each.
+class FrameWriter {
+ public:
+  FrameWriter(const Scene& scene, const RunPlan& plan, const Cache& cache, const ParticleFrame& first,
+              RunReport& report)
+      : scene_(scene), plan_(plan), cache_(cache), report_(report) {
+    for (const GroupInfo& group : report.info.groups) spacings_.push_back(group.spacing);
+    if (plan.surface) std::filesystem::create_directories(cache.surface_file(0).parent_path());
+    if (plan.images) {
+      std::filesystem::create_directories(cache.images_folder());
+      stills_.emplace(scene, first, spacings_, plan.threads);
+    }
+  }
+
+  void write(int number, const ParticleFrame& frame) {
+    {
+      const StageTimer timer(report_.stage_seconds, Stage::particles);
+      write_particles(cache_.particles_file(number), frame);
+    }
+    Mesh mesh;
+    if (plan_.surface) {
+      const StageTimer timer(report_.stage_seconds, Stage::surface);
+      mesh = frame_surface(frame, spacings_, scene_.surface, plan_.threads);
+      write_mesh_ply(cache_.surface_file(number), mesh);
+    }
+    if (stills_) {
+      const StageTimer timer(report_.stage_seconds, Stage::pictures);
+      stills_->take(frame, mesh, cache_.image_file(number));
+    }
+  }
+
+ private:
+  const Scene& scene_;
+  const RunPlan& plan_;
+  const Cache& cache_;
+  RunReport& report_;
+  std::vector<float> spacings_;
+  std::optional<Stills> stills_;
+};
+
+/// Whether the simulation has come to frame `number`; without a frame time every step is a frame.
+bool at_frame(const Simulation& simulation, const Scene& scene, int number) {
+  if (!scene.run.frame_time) return simulation.step_count() >= number;
+  // The step that ends nearest to the frame's time is its last one.
+  const double half_step = 0.5 * static_cast<double>(scene.solver.time_step);
+  return simulation.time() >= number * static_cast<double>(*scene.run.frame_time) - half_step;
+}
+
+}  // namespace
+
+ParticleFrame snapshot(const Simulation& simulation) {
+  return {simulation.positions_by_id(), simulation.velocities_by_id(), simulation.groups_by_id(),
+          simulation.time(), simulation.step_count()};
+}
+
+void run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan, const Cache* cache,
+                RunReport& report) {
+  std::optional<FrameWriter> writer;
+  if (cache) {
+    const ParticleFrame first = snapshot(simulation);
+    writer.emplace(scene, plan, *cache, first, report);
+    writer->write(0, first);
+  }
+
+  Progress progress("simulating", plan.steps.value_or(plan.frames), plan.steps ? "steps" : "frames");
+  const auto steps_left = [&] { return !plan.steps || report.steps < *plan.steps; };
+  const auto ended = [&] { return plan.steps ? !steps_left() : report.frames >= plan.frames; };
+  while (!ended()) {
+    const int number = report.frames + 1;
+    while (!at_frame(simulation, scene, number) && steps_left()) {
+      if (interrupted()) throw RunFailure("interrupted after " + std::to_string(report.steps) + " steps");
+      const StageTimer timer(report.stage_seconds, Stage::motion);
+      report.add(simulation.step());
+      if (plan.steps) progress.show(report.steps);
+    }
+    if (!at_frame(simulation, scene, number)) break;
+    if (writer) writer->write(number, snapshot(simulation));
+    report.frames = number;
+    if (!plan.steps) progress.show(number);
+  }
+}
+
+}  // namespace mallow::cli

@@ -1,0 +1,142 @@
+#include "mallow/run_report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <thread>
+
+#include "mallow/errors.h"
+#include "mallow/files.h"
+
+namespace mallow::cli {
+namespace {
+
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const auto colon = line.find(':');
+    if (line.starts_with("model name") && colon + 2 < line.size()) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+nlohmann::ordered_json groups_json(const RunReport& report) {
+  nlohmann::ordered_json groups = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < report.info.groups.size(); ++i) {
+    const GroupInfo& group = report.info.groups[i];
+    groups.push_back({{"name", group.name},
+                      {"material", report.group_materials[i]},
+                      {"particles", group.particles},
+                      {"spacing", group.spacing},
+                      {"particle_mass", group.particle_mass},
+                      {"rest_density", group.rest_density},
+                      {"region_radius", group.region_radius},
+                      {"average_neighbors", group.average_neighbors},
+                      {"shape_matching", group.shape_matching}});
+  }
+  return groups;
+}
+
+nlohmann::ordered_json phases_json(const RunReport& report) {
+  nlohmann::ordered_json phases = nlohmann::ordered_json::array();
+  const double steps = static_cast<double>(std::max<std::int64_t>(report.steps, 1));
+  for (std::size_t i = 0; i < k_phase_count; ++i) {
+    phases.push_back({{"name", name(static_cast<Phase>(i))},
+                      {"seconds", report.phase_seconds[i]},
+                      {"ms_per_step", 1000 * report.phase_seconds[i] / steps}});
+  }
+  return phases;
+}
+
+nlohmann::ordered_json stages_json(const RunReport& report) {
+  nlohmann::ordered_json stages;
+  for (std::size_t i = 0; i < k_stage_count; ++i)
+    stages[name(static_cast<Stage>(i))] = report.stage_seconds[i];
+  return stages;
+}
+
+}  // namespace
+
+const char* name(Stage stage) {
+  static constexpr std::array<const char*, k_stage_count> k_names = {"build",   "motion",   "particles",
+                                                                     "surface", "pictures", "film"};
+  return k_names[static_cast<std::size_t>(stage)];
+}
+
+void RunReport::add(const StepReport& step) {
+  ++steps;
+  smallest_step = steps == 1 ? step.time_step : std::min(smallest_step, step.time_step);
+  largest_step = std::max(largest_step, step.time_step);
+  if (step.limited) ++limited_steps;
+  if (step.updated_references > 0) reference_updates.push_back({steps, step.updated_references});
+  for (std::size_t i = 0; i < k_phase_count; ++i) phase_seconds[i] += step.seconds[i];
+}
+
+nlohmann::ordered_json to_json(const RunReport& report) {
+  nlohmann::ordered_json updates = nlohmann::ordered_json::array();
+  for (const auto& update : report.reference_updates) {
+    updates.push_back({{"step", update.step}, {"groups", update.groups}});
+  }
+  const double mean_step = report.steps > 0 ? report.simulated_time / static_cast<double>(report.steps) : 0;
+  return {{"version", MALLOW_VERSION},
+          {"scene", report.scene},
+          {"overrides", report.overrides},
+          {"complete", report.complete},
+          {"error", report.error},
+          {"machine", {{"processor", processor_name()}, {"cores", std::thread::hardware_concurrency()}}},
+          {"threads", report.threads},
+          {"particles", report.info.particles},
+          {"groups", groups_json(report)},
+          {"sph", report.info.sph},
+          {"viscosity", report.info.viscosity},
+          {"cross_group", report.info.cross_group},
+          {"bytes", report.info.bytes},
+          {"frames", report.frames},
+          {"steps", report.steps},
+          {"simulated_time", report.simulated_time},
+          {"time_step",
+           {{"smallest", report.smallest_step},
+            {"mean", mean_step},
+            {"largest", report.largest_step},
+            {"limited_steps", report.limited_steps}}},
+          {"reference_updates", updates},
+          {"phases", phases_json(report)},
+          {"stage_seconds", stages_json(report)},
+          {"state_hash", hash_text(report.state_hash)}};
+}
+
+std::string hash_text(std::uint64_t hash) {
+  char text[24];
+  std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+nlohmann::ordered_json read_report(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw IoError({file.string(), 0, 0, "", "cannot be read"});
+  try {
+    return nlohmann::ordered_json::parse(stream);
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw IoError({file.string(), 0, 0, "", error.what()});
+  }
+}
+
+void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report) {
+  write_whole(file, report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+}
+
+std::vector<float> group_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
+  std::vector<float> spacings;
+  try {
+    for (const auto& group : report.at("groups")) spacings.push_back(group.at("spacing").get<float>());
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw IoError({file.string(), 0, 0, "groups", error.what()});
+  }
+  return spacings;
+}
+
+int resolve_threads(int threads) {
+  return threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+}  // namespace mallow::cli

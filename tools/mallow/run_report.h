@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mallow/report.h"
+#include "mallow/scene.h"
+#include "mallow/simulation.h"
+
+namespace mallow::cli {
+
+/// The parts of a run, in the order in which a frame passes them.
+enum class Stage { build, motion, particles, surface, pictures, film };
+inline constexpr std::size_t k_stage_count = 6;
+const char* name(Stage stage);
+using StageTimes = std::array<double, k_stage_count>;  ///< wall time [s]
+
+/// Adds the time of a scope to a stage.
+class StageTimer {
+ public:
+  StageTimer(StageTimes& times, Stage stage) : seconds_(times[static_cast<std::size_t>(stage)]) {}
+  ~StageTimer() { seconds_ += std::chrono::duration<double>(Clock::now() - started_).count(); }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double& seconds_;
+  Clock::time_point started_ = Clock::now();
+};
+
+/// What a run did: report.json.
+struct RunReport {
+  std::string scene;
+  std::vector<std::string> overrides;
+  int threads = 0;
+  SimulationInfo info;
+  std::vector<std::string> group_materials;  ///< name of each group's material
+
+  bool complete = false;
+  std::string error;  ///< why the run ended early; empty where it did not
+  int frames = 0;     ///< frames of the film after frame 0
+  std::int64_t steps = 0;
+  double simulated_time = 0;  ///< [s]
+  double smallest_step = 0;   ///< Δt [s]
+  double largest_step = 0;
+  std::int64_t limited_steps = 0;  ///< steps with Δt below Δt0
+  struct ReferenceUpdate {
+    std::int64_t step;  ///< counted from 1
+    int groups;
+  };
+  std::vector<ReferenceUpdate> reference_updates;
+  PhaseTimes phase_seconds{};
+  StageTimes stage_seconds{};
+  std::uint64_t state_hash = 0;
+
+  /// Takes in a step that has just been made.
+  void add(const StepReport& step);
+};
+
+nlohmann::ordered_json to_json(const RunReport& report);
+
+/// 16 digits after 0x.
+std::string hash_text(std::uint64_t hash);
+/// The report of a cache. Throws IoError where it cannot be read.
+nlohmann::ordered_json read_report(const std::filesystem::path& file);
+/// Whole or not at all.
+void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report);
+/// What later commands need of a report: h of each group [m]. Throws IoError where the report does not fit
+/// the scene.
+std::vector<float> group_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file);
+
+/// 0 stands for all the machine has.
+int resolve_threads(int threads);
+
+}  // namespace mallow::cli

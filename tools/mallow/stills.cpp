@@ -1,0 +1,126 @@
+#include "mallow/stills.h"
+
+#include <algorithm>
+#include <array>
+#include <variant>
+
+namespace mallow::cli {
+namespace {
+
+/// Linear RGB; for materials that name no colour.
+const std::array<Vec3, 8> k_palette = {
+    Vec3{0.80f, 0.24f, 0.09f}, Vec3{0.05f, 0.36f, 0.55f}, Vec3{0.85f, 0.55f, 0.08f},
+    Vec3{0.18f, 0.48f, 0.14f}, Vec3{0.50f, 0.12f, 0.42f}, Vec3{0.03f, 0.45f, 0.42f},
+    Vec3{0.75f, 0.30f, 0.34f}, Vec3{0.35f, 0.25f, 0.16f},
+};
+
+std::vector<Vec3> group_colors(const Scene& scene) {
+  std::vector<Vec3> colors;
+  for (const std::size_t material : group_materials(scene)) {
+    colors.push_back(scene.materials[material].color.value_or(k_palette[material % k_palette.size()]));
+  }
+  return colors;
+}
+
+void extend(Aabb& box, const Aabb& other) {
+  box.min = box.min.cwiseMin(other.min);
+  box.max = box.max.cwiseMax(other.max);
+}
+
+void move(Primitive& shape, const Vec3& by) {
+  if (auto* plane = std::get_if<Plane>(&shape)) plane->offset += plane->normal.dot(by);
+  if (auto* sphere = std::get_if<Sphere>(&shape)) sphere->center += by;
+  if (auto* box = std::get_if<Box>(&shape)) {
+    box->min += by;
+    box->max += by;
+  }
+}
+
+std::vector<Primitive> primitives(const Collider& collider) {
+  return std::visit(
+      [](const auto& shape) -> std::vector<Primitive> {
+        if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Union>) {
+          return shape.parts;
+        } else {
+          return {Primitive(shape)};
+        }
+      },
+      collider.shape);
+}
+
+/// The colliders of a scene where they are at a time.
+std::vector<Collider> colliders_at(const Scene& scene, double time) {
+  std::vector<Collider> colliders = scene.colliders;
+  for (Collider& collider : colliders) {
+    std::vector<Primitive> parts = primitives(collider);
+    for (Primitive& part : parts) move(part, static_cast<float>(time) * collider.velocity);
+    collider.shape = Union{std::move(parts)};
+  }
+  return colliders;
+}
+
+/// A plane that things come to rest on.
+bool is_ground(const Plane& plane) {
+  return plane.normal.z() > 0.7f * plane.normal.norm();
+}
+
+/// Height of a ground plane below (or above) a point.
+float ground_height(const Plane& plane, const Vec3& x) {
+  return (plane.offset - plane.normal.x() * x.x() - plane.normal.y() * x.y()) / plane.normal.z();
+}
+
+}  // namespace
+
+Aabb view_bounds(const Scene& scene, const ParticleFrame& first) {
+  Aabb box{first.positions.at(0), first.positions.at(0)};
+  for (const Vec3& x : first.positions) extend(box, {x, x});
+  const Vec3 middle = 0.5f * (box.min + box.max);
+  const float side = (box.max - box.min).maxCoeff();
+
+  std::vector<Primitive> shapes;
+  for (const Collider& collider : scene.colliders) {
+    for (const Primitive& part : primitives(collider)) shapes.push_back(part);
+  }
+  float lowest = -std::numeric_limits<float>::infinity();
+  for (const Primitive& shape : shapes) {
+    const auto* plane = std::get_if<Plane>(&shape);
+    if (!plane || !is_ground(*plane)) continue;
+    const Vec3 foot(middle.x(), middle.y(), ground_height(*plane, middle));
+    // What falls spreads: to about twice its width.
+    const Vec3 spread(side, side, 0.0f);
+    extend(box, {foot - spread, foot + spread});
+    lowest = std::max(lowest, std::min(foot.z(), box.min.z()));
+  }
+
+  // A collider far larger than what moves is a part of the room and does not have to be seen whole.
+  const Vec3 reach = Vec3::Constant(0.5f * (box.max - box.min).maxCoeff());
+  const Aabb near{box.min - reach, box.max + reach};
+  const auto clamped = [&](const Vec3& x) -> Vec3 { return x.cwiseMax(near.min).cwiseMin(near.max); };
+  for (const Primitive& shape : shapes) {
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+      const Vec3 radius = Vec3::Constant(sphere->radius);
+      extend(box, {clamped(sphere->center - radius), clamped(sphere->center + radius)});
+    } else if (const auto* solid = std::get_if<Box>(&shape)) {
+      extend(box, {clamped(solid->min), clamped(solid->max)});
+    }
+  }
+  box.min.z() = std::max(box.min.z(), lowest);  // what is below the ground is not seen
+  return box;
+}
+
+Stills::Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads)
+    : scene_(scene),
+      renderer_(scene.render, threads),
+      camera_(render::frame_camera(view_bounds(scene, first), scene.render)),
+      palette_(group_colors(scene)),
+      ball_radius_(0.5f * *std::min_element(spacings.begin(), spacings.end())) {}
+
+void Stills::take(const ParticleFrame& frame, const Mesh& surface, const std::filesystem::path& file) {
+  const std::vector<Collider> colliders = colliders_at(scene_, frame.time);
+  render::write_png(file, surface.triangles.empty()
+                              ? renderer_.render_points(frame.positions, ball_radius_, frame.groups, palette_,
+                                                        colliders, camera_)
+                              : renderer_.render(surface, palette_, colliders, camera_));
+}
+
+}  // namespace mallow::cli

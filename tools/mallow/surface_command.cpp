@@ -1,0 +1,49 @@
+#include "mallow/surface_command.h"
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "mallow/cached_run.h"
+#include "mallow/failure.h"
+#include "mallow/files.h"
+#include "mallow/frame_surface.h"
+
+namespace mallow::cli {
+namespace {
+
+void draw_surfaces(const CachedRunOptions& options) {
+  CachedRun run = open_cached_run(options, "surface");
+  StageTimes seconds{};
+  std::size_t count = 0;
+  try {
+    std::filesystem::create_directories(run.cache.surface_file(0).parent_path());
+    count = for_each_frame(run, "surfacing", [&](int number) {
+      const StageTimer timer(seconds, Stage::surface);
+      const ParticleFrame frame = read_particles(run.cache.particles_file(number));
+      write_mesh_ply(run.cache.surface_file(number),
+                     frame_surface(frame, run.spacings, run.scene.surface, run.threads));
+    });
+    close_cached_run(run, seconds, std::array{Stage::surface});
+  } catch (const std::exception& error) {
+    throw RunFailure(error.what());
+  }
+  std::printf("surfaces %zu\n", count);
+}
+
+}  // namespace
+
+void add_surface_command(CLI::App& app) {
+  const auto options = std::make_shared<CachedRunOptions>();
+  CLI::App* command =
+      app.add_subcommand("surface", "Draw the surfaces of an earlier run again, from its particles");
+  command->add_option("DIR", options->folder, "The --out folder of a run")->required();
+  command->add_option("--set", options->overrides, "Change how surfaces are drawn: surface.key=value")
+      ->allow_extra_args(false);
+  command->add_option("--threads", options->threads, "Threads; 0 takes all there are")
+      ->check(CLI::Range(0, 1024));
+  command->callback([options] { draw_surfaces(*options); });
+}
+
+}  // namespace mallow::cli

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace mallow::cli {
+
+/// mallow surface DIR: draws the surfaces of a cache again.
+void add_surface_command(CLI::App& app);
+
+}  // namespace mallow::cli

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "mallow/collider.h"
+#include "render/renderer.h"
+
+namespace mallow::render {
+
+struct Ray {
+  Vec3 origin;
+  Vec3 direction;  ///< unit length
+  Vec3 at(float t) const { return origin + t * direction; }
+};
+inline constexpr float k_far = std::numeric_limits<float>::infinity();
+
+/// A plane that is not the floor: a board of finite size in it.
+struct Board {
+  Vec3 center, normal, u, v;
+  float half_side;
+  bool seen;  ///< the eye is on its free side; otherwise it is no more than a veil, to the light too
+};
+
+/// The colliders as a picture shows them. One rule makes kept-in shapes, walls and ramps all look right: a
+/// face is there only for what comes from its free side, for eye and light alike. So one looks into a pool
+/// through its front walls, and light falls in.
+class Obstacles {
+ public:
+  Obstacles(std::span<const Collider> colliders, const Camera& camera);
+
+  /// Height of the floor: the highest horizontal plane that is free above.
+  std::optional<float> floor() const { return floor_; }
+
+  struct Hit {
+    float t;
+    Vec3 normal;  ///< towards the free side
+    std::uint32_t shape;
+  };
+  /// The nearest face seen from its free side, nearer than t_max.
+  std::optional<Hit> nearest(const Ray& ray, float t_max) const;
+  /// Whether a ray towards the light leaves the free side of a face behind it, that is: is shaded by it.
+  bool shades(const Ray& to_light) const;
+
+  /// The trace of a face that is looked through: how much it covers, and whose it is.
+  struct Veil {
+    float cover = 0;  ///< in [0, 1]
+    float light = 0;  ///< linear grey of the veil
+    std::uint32_t shape = 0;
+  };
+  Veil veil(const Ray& ray, float t_max) const;
+
+ private:
+  using Shape = std::variant<Sphere, Box, Board>;
+  void add(const Plane& plane, const Camera& camera);
+  void add(const Sphere& sphere, const Camera&) { shapes_.push_back(sphere); }
+  void add(const Box& box, const Camera&) { shapes_.push_back(box); }
+  void add(const Union& shapes, const Camera& camera);
+  Veil look(const Shape& shape, const Vec3& position, float cosine) const;
+  std::vector<Shape> shapes_;
+  std::optional<float> floor_;
+  float view_size_;
+};
+
+/// Half the height of what the camera sees at its target [m]: the length that the look is measured in.
+float view_size(const Camera& camera);
+
+}  // namespace mallow::render
