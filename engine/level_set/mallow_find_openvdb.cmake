@@ -5,4 +5,8 @@ mark_as_advanced(MALLOW_OPENVDB_MODULE)
 if(MALLOW_OPENVDB_MODULE)
   list(APPEND CMAKE_MODULE_PATH ${MALLOW_OPENVDB_MODULE})
 endif()
+# The module, and the Imath that it looks for, print notes that mean nothing to a user.
+set(MALLOW_LOG_LEVEL ${CMAKE_MESSAGE_LOG_LEVEL})
+set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
 find_package(OpenVDB QUIET COMPONENTS openvdb)
+set(CMAKE_MESSAGE_LOG_LEVEL ${MALLOW_LOG_LEVEL})

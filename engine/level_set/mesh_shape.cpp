@@ -3,6 +3,7 @@
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/util/NullInterrupter.h>
 
+#include <memory>
 #include <string>
 
 #include "core/checks.h"

@@ -1,6 +1,5 @@
 #include "level_set/particle_cells.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>

@@ -1,0 +1,144 @@
+#include <cstdlib>
+#include <sstream>
+
+#include "cli/program.h"
+#include "mallow/files.h"
+#include "mallow/scene.h"
+
+namespace mallow::test {
+namespace {
+
+using cli_run = CliTest;
+
+TEST_F(cli_run, state_is_what_the_library_computes_to_the_last_bit) {
+  const Outcome outcome = run({"--steps", "7", "--state-out", at("state.csv")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+
+  Simulation simulation = build(read_scene(scene_), 1);
+  for (int step = 0; step < 7; ++step) simulation.step();
+  std::istringstream lines(read_text(at("state.csv")));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "id,x,y,z,vx,vy,vz");
+  for (std::size_t id = 0; id < 125; ++id) {
+    ASSERT_TRUE(std::getline(lines, line));
+    std::istringstream cells(line);
+    std::string cell;
+    std::getline(cells, cell, ',');
+    EXPECT_EQ(cell, std::to_string(id));
+    for (const Vec3& vector : {simulation.positions_by_id()[id], simulation.velocities_by_id()[id]}) {
+      for (const float value : vector) {
+        std::getline(cells, cell, ',');
+        EXPECT_EQ(std::strtof(cell.c_str(), nullptr), value);
+      }
+    }
+  }
+  EXPECT_FALSE(std::getline(lines, line));
+}
+
+TEST_F(cli_run, one_and_two_threads_give_the_same_bytes) {
+  ASSERT_EQ(
+      run_mallow({"run", scene_, "--steps", "12", "--threads", "1", "--state-out", at("one.csv")}).exit_code,
+      0);
+  ASSERT_EQ(
+      run_mallow({"run", scene_, "--steps", "12", "--threads", "2", "--state-out", at("two.csv")}).exit_code,
+      0);
+  EXPECT_EQ(read_text(at("one.csv")), read_text(at("two.csv")));
+}
+
+TEST_F(cli_run, without_out_no_frame_is_written) {
+  ASSERT_EQ(run({"--report", at("report.json")}).exit_code, 0);
+  EXPECT_EQ(names_in(folder_), (std::vector<std::string>{"cube.toml", "report.json"}));
+}
+
+TEST_F(cli_run, report_says_what_ran) {
+  ASSERT_EQ(run({"--report", at("report.json"), "--set", "material[0].alpha=0.5"}).exit_code, 0);
+  const nlohmann::json report = read_json(at("report.json"));
+  EXPECT_EQ(report.at("complete"), true);
+  EXPECT_EQ(report.at("error"), "");
+  EXPECT_EQ(report.at("scene"), scene_);
+  EXPECT_EQ(report.at("overrides"), nlohmann::json::array({"material[0].alpha=0.5"}));
+  EXPECT_EQ(report.at("particles"), 125);
+  EXPECT_EQ(report.at("frames"), 2);
+  EXPECT_EQ(report.at("threads"), 1);
+  EXPECT_EQ(report.at("groups").at(0).at("name"), "cube");
+  EXPECT_EQ(report.at("groups").at(0).at("material"), "paste");
+  EXPECT_EQ(report.at("phases").size(), k_phase_count);
+  EXPECT_GT(report.at("stage_seconds").at("motion").get<double>(), 0);
+  EXPECT_GE(report.at("simulated_time").get<double>(), 2 * 0.45 - 0.075);
+  EXPECT_LE(report.at("time_step").at("largest").get<double>(), 0.150001);
+
+  Simulation simulation = build(read_scene(scene_, std::vector<std::string>{"material[0].alpha=0.5"}), 1);
+  while (simulation.step_count() < report.at("steps").get<std::int64_t>()) simulation.step();
+  EXPECT_EQ(std::strtoull(report.at("state_hash").get<std::string>().c_str(), nullptr, 16),
+            simulation.state_hash());
+}
+
+TEST_F(cli_run, a_frame_ends_with_the_step_nearest_to_its_time) {
+  ASSERT_EQ(run({"--out", at("out"), "--no-surface", "--frames", "3"}).exit_code, 0);
+  for (int frame = 0; frame <= 3; ++frame) {
+    const auto particles =
+        read_particles(folder_ / "out/particles" / ("frame_00000" + std::to_string(frame) + ".ply"));
+    EXPECT_NEAR(particles.time, 0.45 * frame, 0.0751) << "frame " << frame;
+    EXPECT_EQ(particles.positions.size(), 125u);
+  }
+}
+
+TEST_F(cli_run, steps_are_kept_to_exactly) {
+  ASSERT_EQ(run({"--out", at("out"), "--no-surface", "--steps", "4"}).exit_code, 0);
+  EXPECT_EQ(read_json(at("out/report.json")).at("steps"), 4);
+  EXPECT_EQ(names_in(at("out/particles")),
+            (std::vector<std::string>{"frame_000000.ply", "frame_000001.ply"}));
+}
+
+TEST_F(cli_run, results_go_to_stdout_and_progress_to_stderr) {
+  const Outcome outcome = run({});
+  EXPECT_NE(outcome.out.find("particles 125\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("state_hash 0x"), std::string::npos);
+  EXPECT_NE(outcome.err.find("simulating 2/2 frames"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find('\r'), std::string::npos) << "a bar belongs on a terminal only";
+}
+
+TEST_F(cli_run, info_names_what_would_run) {
+  const Outcome outcome = run_mallow({"info", scene_, "--set", "material[0].viscosity=0.0"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("particles        125 in 1 group"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("SPH              on"), std::string::npos);
+  EXPECT_NE(outcome.out.find("viscosity        off"), std::string::npos);
+}
+
+TEST_F(cli_run, info_print_is_a_scene_that_gives_the_same_state) {
+  const Outcome printed = run_mallow({"info", scene_, "--print"});
+  ASSERT_EQ(printed.exit_code, 0) << printed.err;
+  const std::string again = write("again.toml", printed.out).string();
+  ASSERT_EQ(run({"--state-out", at("a.csv")}).exit_code, 0);
+  ASSERT_EQ(run_mallow({"run", again, "--state-out", at("b.csv")}).exit_code, 0);
+  EXPECT_EQ(read_text(at("a.csv")), read_text(at("b.csv")));
+}
+
+TEST_F(cli_run, sample_writes_points_that_a_scene_reads) {
+  // A cube of side 10 as OFF: 1,000 cells of side 1.
+  const std::string mesh =
+      write("cube.off",
+            "OFF\n8 6 0\n0 0 0\n10 0 0\n10 10 0\n0 10 0\n0 0 10\n10 0 10\n10 10 10\n0 10 10\n"
+            "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n")
+          .string();
+  const Outcome outcome =
+      run_mallow({"sample", mesh, "--count", "1000", "--radius", "1.5", "--out", at("p.csv")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Body points = read_points(folder_ / "p.csv", 1.0f);
+  EXPECT_NEAR(static_cast<double>(points.positions.size()), 1000, 10);
+  EXPECT_NE(outcome.out.find("points " + std::to_string(points.positions.size()) + "\n"), std::string::npos);
+  EXPECT_NE(outcome.out.find("average_neighbors "), std::string::npos);
+}
+
+TEST_F(cli_run, keys_lists_every_section) {
+  const Outcome outcome = run_mallow({"keys"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* key : {"time_step", "update_threshold", "voxel_size", "frame_time", "field_of_view"}) {
+    EXPECT_NE(outcome.out.find(key), std::string::npos) << key;
+  }
+}
+
+}  // namespace
+}  // namespace mallow::test

@@ -1,0 +1,294 @@
+#include "scene/scene_fixture.h"
+
+namespace mallow {
+namespace {
+
+using bad_scene = SceneFixture;
+
+/// A scene of the minimal sections, each of which a case can replace.
+struct Parts {
+  std::string solver = "support_radius = 2.0";
+  std::string material = "name = \"jelly\"";
+  std::string body = "material = \"jelly\"";
+  std::string source = "box = { count = [2, 2, 2], spacing = 1.0 }";
+  std::string rest{};
+
+  /// Line 2: solver, 4: material, 6: body, 7: source, 8: rest.
+  std::string text() const {
+    return "[solver]\n" + solver + "\n[[material]]\n" + material + "\n[[body]]\n" + body + "\n" + source +
+           "\n" + rest + "\n";
+  }
+};
+
+struct Case {
+  Parts scene;
+  std::string problem;
+};
+
+const Case k_cases[] = {
+    // Keys.
+    {{.solver = "suport_radius = 2.0\nsupport_radius = 2.0"},
+     "scene.toml:2:1: solver: unknown key 'suport_radius'; did you mean 'support_radius'?"},
+    {{.solver = "support_radius = 2.0\nfoo = 1"},
+     "scene.toml:3:1: solver: unknown key 'foo'; known are time_step, support_radius, gravity, "
+     "update_interval, "
+     "formulation, acoustic_limit and contact_offset"},
+    {{.rest = "[colider]"}, "scene.toml:8:2: unknown key 'colider'; did you mean 'collider'?"},
+    {{.source = "bax = { count = [2, 2, 2], spacing = 1.0 }\nbox = { count = [2, 2, 2], spacing = 1.0 }"},
+     "scene.toml:7:1: body[0]: unknown key 'bax'; did you mean 'box'?"},
+    {{.source = "box = { count = [2, 2, 2], spacing = 1.0, cornr = [0, 0, 0] }"},
+     "scene.toml:7:43: body[0].box: unknown key 'cornr'; did you mean 'corner'?"},
+    {{.solver = ""}, "scene.toml:1:1: solver.support_radius: is missing: a number > 0"},
+    {{.source = "box = { spacing = 1.0 }"},
+     "scene.toml:7:7: body[0].box.count: is missing: 3 whole numbers in [1, 100000000]"},
+    // Types.
+    {{.solver = "support_radius = \"wide\""},
+     "scene.toml:2:18: solver.support_radius: \"wide\" (a string) is not allowed: a number > 0"},
+    {{.solver = "support_radius = 2.0\nupdate_interval = 10.0"},
+     "scene.toml:3:19: solver.update_interval: 10.0 is not allowed: a whole number in [1, 2147483647]"},
+    {{.solver = "support_radius = 2.0\nacoustic_limit = 1"},
+     "scene.toml:3:18: solver.acoustic_limit: 1 is not allowed: true or false"},
+    {{.solver = "support_radius = 2.0\ngravity = [0, -1]"},
+     "scene.toml:3:11: solver.gravity: an array of 2 is not allowed: 3 finite numbers [x, y, z]"},
+    {{.solver = "support_radius = 2.0\nformulation = \"print\""},
+     "scene.toml:3:15: solver.formulation: \"print\" (a string) is not allowed: \"conservative\" or "
+     "\"printed\""},
+    {{.material = "name = 3\nalpha = 0.5", .body = "material = \"jelly\""},
+     "scene.toml:4:8: material[0].name: 3 is not allowed: a string"},
+    {{.material = "name = \"jelly\"\nalpha = 2024-01-01"},
+     "scene.toml:5:9: material[0].alpha: a date or time is not allowed: a number in [0, 1], or [[time, "
+     "alpha], ...] "
+     "with times that increase and alphas in [0, 1]"},
+    {{.source = "box = 3"}, "scene.toml:7:7: body[0].box: 3 is not allowed: a table"},
+    {{.rest = "[collider]\nplane = {}"},
+     "scene.toml:8:1: collider: a table is not allowed: a list of tables, each under [[collider]]"},
+    // Ranges.
+    {{.solver = "support_radius = 0"},
+     "scene.toml:2:18: solver.support_radius: 0 is not allowed: a number > 0"},
+    {{.solver = "support_radius = nan"},
+     "scene.toml:2:18: solver.support_radius: nan is not allowed: a number > 0"},
+    {{.solver = "support_radius = inf"},
+     "scene.toml:2:18: solver.support_radius: inf is not allowed: a number > 0"},
+    {{.solver = "support_radius = 1e39"},
+     "scene.toml:2:18: solver.support_radius: 1e+39 is not allowed: a number of single precision, at most "
+     "3.4028235e+38"},
+    {{.solver = "support_radius = 1e-60"},
+     "scene.toml:2:18: solver.support_radius: 1e-60 is not allowed: a number of single precision, at least "
+     "1e-45"},
+    {{.solver = "support_radius = 2.0\ngravity = [0, 0, -inf]"},
+     "scene.toml:3:18: solver.gravity[2]: -inf is not allowed: a finite number"},
+    {{.solver = "support_radius = 2.0\nupdate_interval = 3000000000"},
+     "scene.toml:3:19: solver.update_interval: 3000000000 is not allowed: a whole number in [1, 2147483647]"},
+    {{.material = "name = \"jelly\"\nalpha = 1.5"},
+     "scene.toml:5:9: material[0].alpha: 1.5 is not allowed: a number in [0, 1]"},
+    {{.material = "name = \"jelly\"\nalpha = [[0.0, 0.5], [1.0, -0.25]]"},
+     "scene.toml:5:28: material[0].alpha[1][1]: -0.25 is not allowed: a number in [0, 1]"},
+    {{.material = "name = \"jelly\"\nalpha = [[1.0, 0.5], [1.0, 0.25]]"},
+     "scene.toml:5:22: material[0].alpha[1]: time 1.0 is not allowed: a time after 1.0, that of the key "
+     "before"},
+    {{.material = "name = \"jelly\"\nalpha = [[1.0, 0.5], 0.5]"},
+     "scene.toml:5:22: material[0].alpha[1]: 0.5 is not allowed: two numbers [time, alpha]"},
+    {{.material = "name = \"jelly\"\nalpha = []"},
+     "scene.toml:5:9: material[0].alpha: an array of 0 is not allowed: a number in [0, 1], or [[time, "
+     "alpha], ...] "
+     "with times that increase and alphas in [0, 1]"},
+    {{.material = "name = \"jelly\"\ncolor = [0, 0, 1.5]"},
+     "scene.toml:5:16: material[0].color[2]: 1.5 is not allowed: a number in [0, 1]"},
+    {{.rest = "[surface]\nvoxels = 4"},
+     "scene.toml:9:10: surface.voxels: 4 is not allowed: a whole number in [8, 1024]"},
+    {{.rest = "[run]\nframes = -1"},
+     "scene.toml:9:10: run.frames: -1 is not allowed: a whole number in [0, 2147483647]"},
+    // Bodies.
+    {{.source = ""},
+     "scene.toml:5:1: body[0]: has no shape: exactly one of box, sphere, mesh, points, implicit is needed"},
+    {{.source = "box = { count = [2, 2, 2], spacing = 1.0 }\nimplicit = \"moai\""},
+     "scene.toml:8:1: body[0].implicit: is not allowed beside box: exactly one of box, sphere, mesh, points, "
+     "implicit"},
+    {{.source = "box = { count = [2, 0, 2], spacing = 1.0 }"},
+     "scene.toml:7:21: body[0].box.count[1]: 0 is not allowed: a whole number in [1, 100000000]"},
+    {{.source = "box = { count = [1000, 1000, 1000], spacing = 1.0 }"},
+     "scene.toml:7:17: body[0].box.count: 1e+09 particles is not allowed: at most 100000000"},
+    {{.source = "sphere = { radius = 1.0 }"},
+     "scene.toml:7:10: body[0].sphere: has neither spacing nor count: exactly one of the two is needed"},
+    {{.source = "sphere = { radius = 1.0, spacing = 0.5, count = 9 }"},
+     "scene.toml:7:49: body[0].sphere.count: is not allowed beside spacing: exactly one of the two"},
+    {{.source = "sphere = { radius = 1000.0, spacing = 0.5 }"},
+     "scene.toml:7:39: body[0].sphere.spacing: 0.5, for about 3.35103e+10 particles, is not allowed: at "
+     "most "
+     "100000000"},
+    {{.source = "sphere = { radius = 1.0, count = 9, jitter = 0.75 }"},
+     "scene.toml:7:46: body[0].sphere.jitter: 0.75 is not allowed: a number in [0, 0.5]"},
+    {{.source = "mesh = { file = \"none.off\", count = 9 }"},
+     "scene.toml:7:17: body[0].mesh.file: \"none.off\" is not allowed: there is no file none.off"},
+    {{.source = "points = { file = \".\", spacing = 1.0 }"},
+     "scene.toml:7:19: body[0].points.file: \".\" is not allowed: . is not a file"},
+    {{.source = "points = { file = \"a\\u0000b\", spacing = 1.0 }"},
+     "scene.toml:7:19: body[0].points.file: \"a\\u0000b\" (a string) is not allowed: the name of a file, a "
+     "string "
+     "without control characters"},
+    {{.source = "implicit = \"maoi\""},
+     "scene.toml:7:12: body[0].implicit: unknown shape 'maoi'; did you mean 'moai'?"},
+    {{.source = "implicit = { shape = \"maoi\", count = 9 }"},
+     "scene.toml:7:22: body[0].implicit.shape: unknown shape 'maoi'; did you mean 'moai'?"},
+    // References.
+    {{.rest = "[[body]]\nmaterial = \"jely\"\nbox = { count = [2, 2, 2], spacing = 1.0 }"},
+     "scene.toml:9:12: body[1].material: unknown material 'jely'; did you mean 'jelly'?"},
+    {{.rest = "[[body]]\nmaterial = \"cream\"\nbox = { count = [2, 2, 2], spacing = 1.0 }"},
+     "scene.toml:9:12: body[1].material: unknown material 'cream'; the only one known is jelly"},
+    {{.rest = "[[material]]\nname = \"cream\""},
+     "scene.toml:9:8: material[1]: material 'cream' is not used by any body"},
+    {{.rest = "[[material]]\nname = \"jelly\""},
+     "scene.toml:9:8: material[1].name: 'jelly' is not allowed: material[0] has that name"},
+    {{.body = "material = \"jelly\"\ngroup = \"g\"",
+      .rest = "[[material]]\nname = \"cream\"\n[[body]]\nmaterial = \"cream\"\ngroup = \"g\"\n"
+              "box = { count = [2, 2, 2], spacing = 1.0 }"},
+     "scene.toml:12:12: body[1].material: 'cream' is not allowed: group 'g' is of 'jelly' since body[0]"},
+    // Colliders and pins.
+    {{.rest = "[[collider]]\nfriction = 0.1"},
+     "scene.toml:8:1: collider[0]: has no shape: exactly one of plane, sphere, box, union is needed"},
+    {{.rest = "[[collider]]\nplane = { normal = [0, 0, 0] }"},
+     "scene.toml:9:20: collider[0].plane.normal: [0.0, 0.0, 0.0] is not allowed: a direction, of length in "
+     "[1e-15, 1e15]"},
+    {{.rest = "[[collider]]\nbox = { min = [0, 0, 0], max = [1, 1, 0] }"},
+     "scene.toml:9:32: collider[0].box.max: [1.0, 1.0, 0.0] is not allowed: above min, [0.0, 0.0, 0.0], "
+     "along every "
+     "axis"},
+    {{.rest = "[[collider]]\nunion = []"},
+     "scene.toml:9:9: collider[0].union: an array of 0 is not allowed: a list of 1 to 10000 tables, each "
+     "with one of "
+     "plane, sphere, box"},
+    {{.rest = "[[collider]]\nunion = [{ sphere = { radius = 0 } }]"},
+     "scene.toml:9:32: collider[0].union[0].sphere.radius: 0 is not allowed: a number > 0"},
+    {{.rest = "[[collider]]\nunion = [{ sphere = { radius = 1 }, plane = {} }]"},
+     "scene.toml:9:37: collider[0].union[0].plane: is not allowed beside sphere: exactly one of plane, "
+     "sphere, box"},
+    {{.rest = "[[collider]]\nplane = {}\nrestitution = 1.5"},
+     "scene.toml:10:15: collider[0].restitution: 1.5 is not allowed: a number in [0, 1]"},
+    {{.rest = "[[pin]]\nvelocity = [0, 0, 1]"},
+     "scene.toml:8:1: pin[0].box: is missing: { min = [...], max = [...] }"},
+    {{.rest = "[[pin]]\nbox = { min = [0, 0, 0], max = [1, -1, 0] }"},
+     "scene.toml:9:32: pin[0].box.max: [1.0, -1.0, 0.0] is not allowed: at least min, [0.0, 0.0, 0.0], along "
+     "every "
+     "axis"},
+};
+
+TEST_F(bad_scene, names_place_field_value_and_what_is_allowed) {
+  for (const Case& bad : k_cases) {
+    std::vector<std::string> found = problems(bad.scene.text());
+    // A wrong name leaves the body's material unknown, which is said as well.
+    if (bad.scene.material.starts_with("name = 3")) found.resize(1);
+    EXPECT_EQ(found, std::vector<std::string>{bad.problem}) << bad.scene.text();
+  }
+}
+
+TEST_F(bad_scene, shows_all_problems_in_the_order_of_lines) {
+  const std::vector<std::string> found = problems(R"([run]
+frames = "many"
+[[body]]
+material = "clay"
+box = { count = [2, 2, 2], spacing = -1.0 }
+[[material]]
+name = "jelly"
+alfa = 0.5
+[solver]
+time_step = 0
+)");
+  const std::vector<std::string> expected{
+      "scene.toml:2:10: run.frames: \"many\" (a string) is not allowed: a whole number in [0, 2147483647]",
+      "scene.toml:4:12: body[0].material: unknown material 'clay'; the only one known is jelly",
+      "scene.toml:5:38: body[0].box.spacing: -1.0 is not allowed: a number > 0",
+      "scene.toml:7:8: material[0]: material 'jelly' is not used by any body",
+      "scene.toml:8:1: material[0]: unknown key 'alfa'; did you mean 'alpha'?",
+      "scene.toml:9:1: solver.support_radius: is missing: a number > 0",
+      "scene.toml:10:13: solver.time_step: 0 is not allowed: a number > 0",
+  };
+  EXPECT_EQ(found, expected);
+}
+
+TEST_F(bad_scene, misses_what_every_scene_needs) {
+  const std::vector<std::string> expected{
+      "scene.toml: solver.support_radius: is missing: a number > 0",
+      "scene.toml: material: is missing: at least one [[material]] is needed",
+      "scene.toml: body: is missing: at least one [[body]] is needed",
+  };
+  EXPECT_EQ(problems(""), expected);
+}
+
+TEST_F(bad_scene, refuses_duplicate_keys_and_broken_toml_with_line_and_column) {
+  const auto duplicate = problems("[solver]\nsupport_radius = 2.0\nsupport_radius = 3.0\n");
+  ASSERT_EQ(duplicate.size(), 1u);
+  EXPECT_TRUE(duplicate[0].starts_with("scene.toml:3:")) << duplicate[0];
+  EXPECT_NE(duplicate[0].find("support_radius"), std::string::npos) << duplicate[0];
+
+  const auto broken = problems("[solver]\nsupport_radius = 2.0.0\n");
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_TRUE(broken[0].starts_with("scene.toml:2:")) << broken[0];
+
+  const auto keyless = problems("[solver]\n[= 3]\n");
+  ASSERT_EQ(keyless.size(), 1u);
+  EXPECT_TRUE(keyless[0].starts_with("scene.toml:2:")) << keyless[0];
+}
+
+TEST_F(bad_scene, keeps_letters_beyond_ascii_to_comments_and_strings) {
+  const std::string message =
+      "a character beyond ASCII is not allowed: outside of comments and strings of one line";
+  EXPECT_EQ(problems("# \"γ\n[solver] # 'ρ\nσ = 2.0\n"),
+            std::vector<std::string>{"scene.toml:3:1: " + message});
+  EXPECT_EQ(problems("a = \"γ\\\"γ\" γ"), std::vector<std::string>{"scene.toml:1:12: " + message});
+  EXPECT_EQ(problems("a = \"\"\"\n'\"\" γ"), std::vector<std::string>{"scene.toml:2:5: " + message});
+
+  std::string text = k_small_scene;
+  for (std::size_t at = text.find("jelly"); at != std::string::npos; at = text.find("jelly"))
+    text.replace(at, 5, "gelée");
+  EXPECT_EQ(read("\xEF\xBB\xBF# σ\n" + text).materials[0].name, "gelée");
+}
+
+TEST_F(bad_scene, limits_the_size_of_what_is_read) {
+  const auto large = problems("# " + std::string(std::size_t{17} << 20, 'x') + "\n");
+  EXPECT_EQ(large,
+            std::vector<std::string>{"scene.toml: is too large for a scene: at most 16 MiB are allowed"});
+
+  std::string many = k_small_scene;
+  for (int i = 0; i < 10'000; ++i) many += "[[body]]\n";
+  EXPECT_EQ(problems(many),
+            std::vector<std::string>{
+                "scene.toml:5:1: body: an array of 10001 is not allowed: a list of 1 to 10000"});
+}
+
+TEST_F(bad_scene, has_at_most_256_groups) {
+  std::string text = k_small_scene;
+  const std::string body = "[[body]]\nmaterial = \"jelly\"\nbox = { count = [2, 2, 2], spacing = 1.0 }\n";
+  for (int i = 1; i < 256; ++i) text += body;
+  EXPECT_EQ(problems(text), std::vector<std::string>{});
+  EXPECT_EQ(
+      problems(text + body),
+      std::vector<std::string>{"scene.toml:774:12: body[256].group: is one group too many: at most 256 are "
+                               "allowed, and a body without a group is a group of its own"});
+}
+
+TEST_F(bad_scene, lists_no_more_problems_than_anyone_reads) {
+  std::string text = k_small_scene + "[render]\n";
+  for (int i = 0; i < 1500; ++i) text += "unknown_" + std::to_string(i) + " = 1\n";
+  const auto found = problems(text);
+  ASSERT_EQ(found.size(), 1001u);
+  EXPECT_EQ(found.back(), "scene.toml: and 500 problems more");
+}
+
+TEST_F(bad_scene, cannot_be_a_folder_or_a_missing_file) {
+  try {
+    read_scene(folder_);
+    FAIL() << "a folder was read";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("cannot be read: it is a folder, not a scene file"),
+              std::string::npos);
+  }
+  try {
+    read_scene(folder_ / "none.toml");
+    FAIL() << "a missing file was read";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(shown(error), std::vector<std::string>{"none.toml: cannot be read: No such file or directory"});
+  }
+}
+
+}  // namespace
+}  // namespace mallow

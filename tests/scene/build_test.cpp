@@ -1,0 +1,137 @@
+#include <algorithm>
+
+#include "scene/scene_fixture.h"
+
+namespace mallow {
+namespace {
+
+using build_scene = SceneFixture;
+
+const std::string k_two_groups = R"([solver]
+support_radius = 2.1
+[[material]]
+name = "jelly"
+alpha = 0.5
+[[material]]
+name = "cream"
+alpha = 1.0
+[[body]]
+material = "cream"
+box = { count = [2, 2, 2], spacing = 1.0, corner = [0, 0, 1] }
+velocity = [1, 0, 0]
+[[body]]
+material = "jelly"
+group = "pair"
+box = { count = [3, 1, 1], spacing = 1.0, corner = [10, 0, 1] }
+[[body]]
+material = "jelly"
+group = "pair"
+points = { file = "points.csv", spacing = 1.0 }
+velocity = [0, 0, 1]
+[[collider]]
+plane = { normal = [0, 0, 1], offset = 0 }
+[[pin]]
+box = { min = [0, 0, 0], max = [1, 1, 2] }
+)";
+
+std::string build_error(const Scene& scene) {
+  try {
+    build(scene, 1);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST_F(build_scene, puts_bodies_into_groups_in_the_order_of_the_file) {
+  write("points.csv", "x,y,z,vx,vy,vz\n20,0,1,0.5,0,0\n21,0,1,0,0.5,0\n");
+  const Scene scene = read(k_two_groups);
+  Simulation simulation = build(scene, 1);
+  EXPECT_EQ(simulation.particle_count(), 13u);
+  EXPECT_EQ(simulation.config().threads, 1);
+  EXPECT_EQ(simulation.colliders().size(), 1u);
+  const std::vector<std::uint8_t> expected{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1};
+  EXPECT_EQ(simulation.groups_by_id(), expected);
+  EXPECT_EQ(group_materials(scene), (std::vector<std::size_t>{1, 0}));
+
+  const SimulationInfo info = simulation.info();
+  ASSERT_EQ(info.groups.size(), 2u);
+  EXPECT_EQ(info.groups[0].name, "body[0]");
+  EXPECT_EQ(info.groups[1].name, "pair");
+
+  const std::vector<Vec3> positions = simulation.positions_by_id();
+  EXPECT_EQ(positions[0], Vec3(0.5f, 0.5f, 1.5f));
+  EXPECT_EQ(positions[11], Vec3(20, 0, 1));
+  const std::vector<Vec3> velocities = simulation.velocities_by_id();
+  EXPECT_EQ(velocities[7], Vec3(1, 0, 0));
+  EXPECT_EQ(velocities[8], Vec3(0, 0, 0));
+  EXPECT_EQ(velocities[11], Vec3(0.5f, 0, 1));
+  EXPECT_EQ(velocities[12], Vec3(0, 0.5f, 1));
+}
+
+TEST_F(build_scene, samples_every_source) {
+  write("tetra.off", "OFF\n4 4 0\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+  const auto points = [&](const BodySource& source) {
+    return sample(SceneBody{.material = {}, .group = {}, .source = source}, folder_ / "scene.toml", 1);
+  };
+  EXPECT_EQ(points(Lattice{{2, 3, 4}, 1.0f, {0, 0, 0}, 0.0f}).positions.size(), 24u);
+  const Body ball = points(SphereSource{{1, 2, 3}, 4.0f, {.spacing = {}, .count = 2000}});
+  EXPECT_NEAR(static_cast<double>(ball.positions.size()), 2000, 20);
+  for (const Vec3& x : ball.positions) ASSERT_LE((x - Vec3(1, 2, 3)).norm(), 4.0f);
+  const Body mesh = points(MeshSource{
+      "tetra.off", {.spacing = {}, .count = 1000}, {.rotate = {10, 20, 30}, .size = {}, .center = {}}});
+  EXPECT_NEAR(static_cast<double>(mesh.positions.size()), 1000, 10);
+  const Body moai = points(ImplicitSource{"moai", {.spacing = {}, .count = 3764}, {}});
+  EXPECT_NEAR(static_cast<double>(moai.positions.size()), 3764, 37);
+}
+
+TEST_F(build_scene, says_which_body_has_a_file_that_cannot_be_read) {
+  write("points.csv", "x,y,z\n1,2,abc\n");
+  write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const Scene scene =
+      read(k_two_groups + "[[body]]\nmaterial = \"jelly\"\nmesh = { file = \"open.off\", spacing = 0.1 }\n");
+  const std::string error = build_error(scene);
+  EXPECT_NE(error.find("scene.toml:17: body[2].points: "), std::string::npos) << error;
+  EXPECT_NE(error.find("points.csv:2"), std::string::npos) << error;
+  EXPECT_NE(error.find("scene.toml:26: body[3].mesh: "), std::string::npos) << error;
+}
+
+TEST_F(build_scene, reports_overlapping_groups_and_empty_pins_together) {
+  const Scene scene = read(k_small_scene +
+                           "[[body]]\nmaterial = \"jelly\"\nbox = { count = [2, 2, 2], spacing = 1.0 }\n"
+                           "[[pin]]\nbox = { min = [50, 50, 50], max = [60, 60, 60] }\n");
+  try {
+    build(scene, 1);
+    FAIL() << "overlapping bodies were taken";
+  } catch (const ConfigError& error) {
+    const std::vector<std::string> found = shown(error);
+    ASSERT_EQ(found.size(), 2u) << error.what();
+    EXPECT_TRUE(std::any_of(found.begin(), found.end(), [](const auto& text) {
+      return text.starts_with("scene.toml:11: pin[0]: ");
+    })) << error.what();
+  }
+}
+
+TEST_F(build_scene, of_a_scene_made_in_code_names_what_is_wrong) {
+  Scene scene;
+  scene.solver.support_radius = 2.0f;
+  scene.bodies.push_back({.material = "jelly", .group = {}, .source = Lattice{}});
+  EXPECT_EQ(build_error(scene), "body[0].material: unknown material 'jelly'");
+}
+
+TEST_F(build_scene, runs_and_comes_to_the_same_state_from_the_printed_scene) {
+  const std::vector<std::string> small{"body[0].box.count=[5,5,5]",
+                                       "material[0].alpha=[[0.0,0.2],[1.5,0.8]]"};
+  const Scene scene = read_scene(MALLOW_DATA_DIR "/scenes/cube.toml", small);
+  Simulation first = build(scene, 1);
+  Simulation second = build(read_scene(write("printed.toml", print_scene(scene))), 2);
+  for (int step = 0; step < 20; ++step) {
+    first.step();
+    second.step();
+  }
+  EXPECT_EQ(first.state_hash(), second.state_hash());
+  EXPECT_NE(first.positions_by_id()[0], build(scene, 1).positions_by_id()[0]);
+}
+
+}  // namespace
+}  // namespace mallow

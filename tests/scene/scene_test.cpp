@@ -1,0 +1,349 @@
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "scene/scene_fixture.h"
+
+namespace mallow {
+namespace {
+
+using scene = SceneFixture;
+
+/// Uses every key of every table. points.csv and tetra.off need to be beside it only to be there.
+const std::string k_every_key = R"([solver]
+time_step = 0.1
+support_radius = 2
+gravity = [0, 0, -1]
+update_interval = 7
+formulation = "printed"
+acoustic_limit = false
+contact_offset = 0.25
+[[material]]
+name = "jelly \"red\""
+alpha = [[0.0, 0.1], [1.5, 1]]
+update_threshold = 1.5
+pressure_coefficient = 2.5
+viscosity = 0.75
+elastic_time_step = 0.05
+particle_mass = 1.25
+rest_density = 1.125
+cohesion = 0.5
+region_radius = 2.25
+color = [1, 0.5, 0]
+[[body]]
+material = "jelly \"red\""
+group = "g"
+velocity = [1, 2, 3]
+box = { count = [2, 3, 4], spacing = 0.1, corner = [5, 6, 7], jitter = 0.0625 }
+[[body]]
+material = "jelly \"red\""
+sphere = { center = [20, 0, 0], radius = 2, count = 30, jitter = 0.125 }
+[[body]]
+material = "jelly \"red\""
+sphere = { radius = 2, spacing = 0.5 }
+[[body]]
+material = "jelly \"red\""
+mesh = { file = "tetra.off", spacing = 0.5, jitter = 0.25, rotate = [90, 0, 0], size = 3, center = [9, 9, 9] }
+[[body]]
+material = "jelly \"red\""
+mesh = { file = "tetra.off", count = 50 }
+[[body]]
+material = "jelly \"red\""
+points = { file = "points.csv", spacing = 0.1 }
+[[body]]
+material = "jelly \"red\""
+implicit = { shape = "moai", spacing = 0.5, jitter = 0.25, rotate = [90, 0, 0], size = 3, center = [9, 9, 9] }
+[[body]]
+material = "jelly \"red\""
+implicit = { shape = "moai", count = 500 }
+[[collider]]
+plane = { normal = [0, 1, 0], offset = -3 }
+velocity = [0, 0, 0.5]
+restitution = 0.25
+friction = 0.125
+[[collider]]
+sphere = { center = [1, 2, 3], radius = 4, inside = true }
+[[collider]]
+box = { min = [-1, -2, -3], max = [1, 2, 3], inside = true }
+[[collider]]
+union = [
+  { plane = { normal = [1, 0, 0], offset = 2 } },
+  { sphere = { center = [1, 2, 3], radius = 4, inside = true } },
+  { box = { min = [-1, -2, -3], max = [1, 2, 3], inside = true } },
+]
+[[pin]]
+box = { min = [0, 0, 0], max = [1, 1, 0] }
+velocity = [0, 0, 2]
+[surface]
+voxels = 64
+voxel_size = 0.5
+kernel_radius = 3
+particle_radius = 0.25
+[run]
+frames = 0
+frame_time = 0.3
+[render]
+width = 320
+height = 240
+samples = 1
+eye = [1, 2, 3]
+target = [4, 5, 6]
+field_of_view = 50
+frames_per_second = 24
+)";
+
+class every_key : public SceneFixture {
+ protected:
+  every_key() {
+    write("tetra.off", "OFF\n4 4 0\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+    write("points.csv", "x,y,z\n0,0,0\n0.1,0,0\n");
+  }
+};
+
+TEST_F(scene, fills_in_the_defaults_of_the_configs) {
+  const Scene read = SceneFixture::read(k_small_scene);
+  EXPECT_EQ(read.solver.support_radius, 2.0f);
+  EXPECT_EQ(read.solver.time_step, SolverConfig{}.time_step);
+  EXPECT_EQ(read.solver.gravity, SolverConfig{}.gravity);
+  EXPECT_EQ(read.run.frames, RunConfig{}.frames);
+  EXPECT_FALSE(read.run.frame_time);
+  ASSERT_EQ(read.materials.size(), 1u);
+  EXPECT_EQ(read.materials[0].material.update_threshold, Material{}.update_threshold);
+  ASSERT_EQ(read.bodies.size(), 1u);
+  EXPECT_EQ(read.bodies[0].group, "");
+  EXPECT_EQ(read.bodies[0].line, 5);
+  EXPECT_TRUE(read.colliders.empty());
+}
+
+TEST_F(every_key, reaches_its_member) {
+  const Scene read = SceneFixture::read(k_every_key);
+  EXPECT_EQ(read.solver.time_step, 0.1f);
+  EXPECT_EQ(read.solver.gravity, Vec3(0, 0, -1));
+  EXPECT_EQ(read.solver.update_interval, 7);
+  EXPECT_EQ(read.solver.formulation, Formulation::printed);
+  EXPECT_FALSE(read.solver.acoustic_limit);
+  EXPECT_EQ(read.solver.contact_offset, 0.25f);
+
+  const SceneMaterial& material = read.materials.at(0);
+  EXPECT_EQ(material.name, "jelly \"red\"");
+  ASSERT_EQ(material.material.alpha.keys().size(), 2u);
+  EXPECT_EQ(material.material.alpha.keys()[1].time, 1.5f);
+  EXPECT_EQ(material.material.alpha.keys()[1].alpha, 1.0f);
+  EXPECT_EQ(material.material.update_threshold, 1.5f);
+  EXPECT_EQ(material.material.pressure_coefficient, 2.5f);
+  EXPECT_EQ(material.material.viscosity, 0.75f);
+  EXPECT_EQ(material.material.elastic_time_step, 0.05f);
+  EXPECT_EQ(material.material.particle_mass, 1.25f);
+  EXPECT_EQ(material.material.rest_density, 1.125f);
+  EXPECT_EQ(material.material.cohesion, 0.5f);
+  EXPECT_EQ(material.material.region_radius, 2.25f);
+  EXPECT_EQ(material.color, Vec3(1, 0.5f, 0));
+
+  ASSERT_EQ(read.bodies.size(), 8u);
+  EXPECT_EQ(read.bodies[0].group, "g");
+  EXPECT_EQ(read.bodies[0].velocity, Vec3(1, 2, 3));
+  const auto& lattice = std::get<Lattice>(read.bodies[0].source);
+  EXPECT_EQ(lattice.count, (std::array<int, 3>{2, 3, 4}));
+  EXPECT_EQ(lattice.spacing, 0.1f);
+  EXPECT_EQ(lattice.corner, Vec3(5, 6, 7));
+  EXPECT_EQ(lattice.jitter, 0.0625f);
+  const auto& ball = std::get<SphereSource>(read.bodies[1].source);
+  EXPECT_EQ(ball.center, Vec3(20, 0, 0));
+  EXPECT_EQ(ball.radius, 2.0f);
+  EXPECT_EQ(ball.sampling.count, 30);
+  EXPECT_FALSE(ball.sampling.spacing);
+  EXPECT_EQ(ball.sampling.jitter, 0.125f);
+  const auto& mesh = std::get<MeshSource>(read.bodies[3].source);
+  EXPECT_EQ(mesh.file, "tetra.off");
+  EXPECT_EQ(mesh.sampling.spacing, 0.5f);
+  EXPECT_EQ(mesh.placement.rotate, Vec3(90, 0, 0));
+  EXPECT_EQ(mesh.placement.size, 3.0f);
+  EXPECT_EQ(mesh.placement.center, Vec3(9, 9, 9));
+  EXPECT_EQ(std::get<PointsSource>(read.bodies[5].source).spacing, 0.1f);
+  EXPECT_EQ(std::get<ImplicitSource>(read.bodies[7].source).sampling.count, 500);
+
+  ASSERT_EQ(read.colliders.size(), 4u);
+  EXPECT_EQ(std::get<Plane>(read.colliders[0].shape).offset, -3.0f);
+  EXPECT_EQ(read.colliders[0].velocity, Vec3(0, 0, 0.5f));
+  EXPECT_EQ(read.colliders[0].restitution, 0.25f);
+  EXPECT_EQ(read.colliders[0].friction, 0.125f);
+  EXPECT_TRUE(std::get<Sphere>(read.colliders[1].shape).inside);
+  EXPECT_EQ(std::get<Box>(read.colliders[2].shape).min, Vec3(-1, -2, -3));
+  const auto& parts = std::get<Union>(read.colliders[3].shape).parts;
+  ASSERT_EQ(parts.size(), 3u);
+  EXPECT_EQ(std::get<Box>(parts[2]).max, Vec3(1, 2, 3));
+
+  EXPECT_EQ(read.pins.at(0).box.max, Vec3(1, 1, 0));
+  EXPECT_EQ(read.pins.at(0).velocity, Vec3(0, 0, 2));
+  EXPECT_EQ(read.surface.voxels, 64);
+  EXPECT_EQ(read.surface.voxel_size, 0.5f);
+  EXPECT_EQ(read.surface.kernel_radius, 3.0f);
+  EXPECT_EQ(read.surface.particle_radius, 0.25f);
+  EXPECT_EQ(read.run.frames, 0);
+  EXPECT_EQ(read.run.frame_time, 0.3f);
+  EXPECT_EQ(read.render.width, 320);
+  EXPECT_EQ(read.render.height, 240);
+  EXPECT_EQ(read.render.samples, 1);
+  EXPECT_EQ(read.render.eye, Vec3(1, 2, 3));
+  EXPECT_EQ(read.render.target, Vec3(4, 5, 6));
+  EXPECT_EQ(read.render.field_of_view, 50.0f);
+  EXPECT_EQ(read.render.frames_per_second, 24);
+}
+
+/// The first column of describe_scene_keys().
+std::set<std::string> described_keys() {
+  std::set<std::string> keys;
+  std::istringstream lines(describe_scene_keys());
+  for (std::string line; std::getline(lines, line);) keys.insert(line.substr(0, line.find(' ')));
+  return keys;
+}
+
+TEST_F(every_key, that_is_described_is_known_to_the_reader) {
+  // A key that is known complains about the value alone; one that is not says so.
+  for (std::string key : described_keys()) {
+    const std::string path = key;
+    std::map<std::string, int> index{{"sphere", 1}, {"mesh", 3}, {"points", 5}, {"implicit", 6}};
+    int element = 0;
+    if (key.starts_with("body[].") && key.find('.', 7) != std::string::npos)
+      element = index[key.substr(7, key.find('.', 7) - 7)];
+    if (key.starts_with("collider[].sphere")) element = 1;
+    if (key.starts_with("collider[].box")) element = 2;
+    if (key.starts_with("collider[].union")) element = 3;
+    if (const auto at = key.find("union[]"); at != std::string::npos)
+      key.insert(at + 6, key.find("sphere") != std::string::npos ? "1"
+                         : key.find("box") != std::string::npos  ? "2"
+                                                                 : "0");
+    if (const auto at = key.find("[]"); at != std::string::npos) key.insert(at + 1, std::to_string(element));
+    const auto found = problems(k_every_key, {key + "=1979-05-27"});
+    ASSERT_FALSE(found.empty()) << key;
+    const std::string start = "--set " + key + "=1979-05-27: " + key + ": a date or time is not allowed: ";
+    EXPECT_TRUE(
+        std::any_of(found.begin(), found.end(), [&](const auto& text) { return text.starts_with(start); }))
+        << path << '\n'
+        << found.front();
+  }
+}
+
+TEST_F(every_key, is_described_once_and_printed) {
+  std::istringstream lines(describe_scene_keys());
+  std::set<std::string> keys;
+  const std::string printed = print_scene(SceneFixture::read(k_every_key));
+  for (std::string line; std::getline(lines, line);) {
+    const std::string key = line.substr(0, line.find(' '));
+    EXPECT_TRUE(keys.insert(key).second) << key << " is described twice";
+    EXPECT_NE(printed.find(key.substr(key.rfind('.') + 1) + " = "), std::string::npos) << key;
+  }
+  for (const char* deep :
+       {"solver.time_step", "body[].implicit.jitter", "collider[].union[].box.inside", "pin[].box.max"})
+    EXPECT_TRUE(keys.contains(deep)) << deep;
+}
+
+TEST_F(every_key, survives_printing) {
+  const std::string printed = print_scene(SceneFixture::read(k_every_key));
+  EXPECT_EQ(print_scene(read_scene(write("printed.toml", printed))), printed);
+  EXPECT_NE(printed.find("alpha = [[0.0, 0.1], [1.5, 1.0]]"), std::string::npos) << printed;
+}
+
+TEST_F(scene, prints_what_is_left_out_as_a_comment) {
+  const std::string printed = print_scene(SceneFixture::read(k_small_scene));
+  EXPECT_NE(printed.find("\n# frame_time: one step a frame\n"), std::string::npos) << printed;
+  const Scene again = read_scene(write("printed.toml", printed));
+  EXPECT_FALSE(again.run.frame_time);
+  EXPECT_EQ(print_scene(again), printed);
+}
+
+TEST_F(scene, prints_floats_that_read_back_to_the_bit) {
+  for (const float value : {0.1f, 1.4666667f, 1e-7f, 3.4028235e38f, 1e-45f, 16777216.0f, 0.33333334f}) {
+    Scene read = SceneFixture::read(k_small_scene);
+    read.solver.time_step = value;
+    const Scene again = read_scene(write("printed.toml", print_scene(read)));
+    EXPECT_EQ(again.solver.time_step, value);
+  }
+}
+
+TEST_F(scene, takes_the_short_form_of_an_implicit_shape) {
+  const Scene read =
+      SceneFixture::read(k_small_scene, {"body[0]={ material = \"jelly\", implicit = \"moai\" }"});
+  const auto& source = std::get<ImplicitSource>(read.bodies[0].source);
+  EXPECT_EQ(source.shape, "moai");
+  EXPECT_EQ(source.sampling.count, 3764);
+}
+
+TEST_F(scene, can_be_overridden) {
+  const Scene read =
+      SceneFixture::read(k_small_scene, {"solver.time_step=0.1", "material[0].alpha=0.5", "run.frames = 10",
+                                         "solver.formulation=printed", "solver.gravity=[0, 0, -1]",
+                                         "body[0].box.count[2]=5", "material.jelly.viscosity=0.25"});
+  EXPECT_EQ(read.solver.time_step, 0.1f);
+  EXPECT_EQ(read.materials[0].material.alpha.at(0), 0.5f);
+  EXPECT_EQ(read.run.frames, 10);
+  EXPECT_EQ(read.solver.formulation, Formulation::printed);
+  EXPECT_EQ(read.solver.gravity, Vec3(0, 0, -1));
+  EXPECT_EQ(std::get<Lattice>(read.bodies[0].source).count[2], 5);
+  EXPECT_EQ(read.materials[0].material.viscosity, 0.25f);
+}
+
+TEST_F(scene, takes_the_last_of_two_overrides) {
+  EXPECT_EQ(SceneFixture::read(k_small_scene, {"run.frames=10", "run.frames=20"}).run.frames, 20);
+}
+
+TEST_F(scene, names_the_override_that_is_wrong) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"solver.time_step=-1", "solver.time_step: -1 is not allowed: a number > 0"},
+      {"solver.tim_step=1", "solver: unknown key 'tim_step'; did you mean 'time_step'?"},
+      {"run.frames=ten", "run.frames: \"ten\" (a string) is not allowed: a whole number in [0, 2147483647]"},
+      {"material[1].alpha=0", "material[1].alpha: does not exist: there are 1, counted from 0"},
+      {"material.jam.alpha=0", "material.jam.alpha: does not exist: none of these has the name 'jam'"},
+      {"solver.time_step.x=1", "solver.time_step.x: does not exist: this is not a table"},
+      {"solver[0]=1", "solver[0]: does not exist: this is not a list"},
+      {"solver.time_step", "is not of the form section.key=value or list[0].key=value"},
+      {"solver..time_step=1", "is not of the form section.key=value or list[0].key=value"},
+      {"body[x].group=1", "is not of the form section.key=value or list[0].key=value"},
+      {"=1", "is not of the form section.key=value or list[0].key=value"},
+  };
+  const std::string text =
+      "[solver]\ntime_step = 0.15\n" + k_small_scene.substr(k_small_scene.find('\n') + 1);
+  for (const auto& [given, problem] : cases)
+    EXPECT_EQ(problems(text, {given}),
+              std::vector<std::string>{std::string("--set ") + given + ": " + problem});
+  const auto broken = problems(text, {"solver.gravity=[0, 1"});
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_TRUE(broken[0].starts_with("--set solver.gravity=[0, 1: solver.gravity: ")) << broken[0];
+}
+
+TEST_F(scene, shows_problems_of_overrides_after_those_of_the_file) {
+  const auto found = problems(k_small_scene + "[run]\nframes = -2\n", {"solver.time_step=-1"});
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_TRUE(found[0].starts_with("scene.toml:9:10: run.frames: -2 ")) << found[0];
+  EXPECT_TRUE(found[1].starts_with("--set solver.time_step=-1: ")) << found[1];
+}
+
+TEST(scene_files, all_load_and_print) {
+  std::size_t read = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(MALLOW_DATA_DIR "/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    std::string text;
+    try {
+      text = print_scene(read_scene(entry.path()));
+    } catch (const ConfigError& error) {
+      // A mesh that a script fetches may not be there; everything else must be right.
+      for (const Problem& problem : error.problems())
+        EXPECT_NE(problem.message.find("there is no file"), std::string::npos) << to_string(problem);
+      continue;
+    }
+    ++read;
+    EXPECT_FALSE(text.empty()) << entry.path();
+  }
+  EXPECT_GE(read, 6u);
+}
+
+TEST(scene_files, cube_shows_every_key) {
+  std::ifstream stream(MALLOW_DATA_DIR "/scenes/cube.toml");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  for (const std::string& key : described_keys())
+    EXPECT_NE(text.find(key.substr(key.rfind('.') + 1) + " = "), std::string::npos) << key;
+}
+
+}  // namespace
+}  // namespace mallow
