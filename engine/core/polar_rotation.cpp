@@ -10,8 +10,6 @@ namespace {
 /// far above single precision noise in A's sums (1e-6), far below what an honest region has in its weakest
 /// direction.
 constexpr double k_decided = 1e-3;
-/// Weight of the last rotation where A does not.
-constexpr double k_memory = 1e-4;
 
 /// tr(Rᵀ M) = qᵀ K q for the unit quaternion q = (w, x, y, z) of R.
 Eigen::Matrix4d quaternion_matrix(const Eigen::Matrix3d& m) {
@@ -34,11 +32,16 @@ Eigen::Matrix4d quaternion_matrix(const Eigen::Matrix3d& m) {
 
 Eigen::Quaterniond polar_rotation(const Eigen::Matrix3d& a, const Eigen::Quaterniond& last, double scale) {
   if (!(scale > 0) || !a.allFinite()) return last;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(quaternion_matrix(a / scale));
-  if (solver.eigenvalues()[3] - solver.eigenvalues()[2] < k_decided)
-    solver.compute(quaternion_matrix(a / scale + k_memory * last.toRotationMatrix()));
-  const Eigen::Vector4d q = solver.eigenvectors().col(3);
-  if (!q.allFinite() || q.squaredNorm() < 0.5) return last;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(quaternion_matrix(a / scale));
+  const Eigen::Vector4d remembered(last.w(), last.x(), last.y(), last.z());
+  const Eigen::Matrix4d& axes = solver.eigenvectors();
+  // Quaternions that are as good as the best one span a space: of one dimension where A decides, of two where it is a
+  // line, of four where it is nothing. The last rotation's share of that space is the nearest one to it.
+  Eigen::Vector4d q = Eigen::Vector4d::Zero();
+  for (int k = 0; k < 4; ++k)
+    if (solver.eigenvalues()[3] - solver.eigenvalues()[k] < k_decided) q += axes.col(k) * axes.col(k).dot(remembered);
+  if (!(q.norm() > k_decided)) q = axes.col(3);
+  if (!q.allFinite()) return last;
   Eigen::Quaterniond rotation(q[0], q[1], q[2], q[3]);
   rotation.normalize();
   if (rotation.dot(last) < 0) rotation.coeffs() = -rotation.coeffs();

@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(rows, Table1,
                                          Row{"bunny_4185", 4185, 35.1, 0.85f, 6, 192, false},
                                          Row{"bunny_1328", 1328, 26.7, 0.85f, 6, 48, false},
                                          Row{"balls_8264", 8264, 28.3, 0.9f, 10, 224, false}),
-                         [](const auto& info) { return std::string(info.param.scene); });
+                         [](const auto& row) { return std::string(row.param.scene); });
 
 }  // namespace
 }  // namespace mallow
