@@ -74,9 +74,7 @@ struct Sample {
     return mallow::sample(sphere_shape(source.center, source.radius), source.sampling);
   }
   Body operator()(const MeshSource& source) const {
-    // A finer level set than the default follows features no lattice of particles can show.
-    constexpr int k_voxels = 192;
-    const ImplicitShape shape = mesh_shape(read_mesh(folder / source.file), k_voxels, threads);
+    const ImplicitShape shape = mesh_shape(read_mesh(folder / source.file), k_mesh_voxels, threads);
     return mallow::sample(place(shape, source.placement), source.sampling);
   }
   Body operator()(const PointsSource& source) const {

@@ -37,11 +37,49 @@ struct Sum {
   float x = 0, y = 0, z = 0;
 };
 
-/// One particle's sum over its pairs; `select` true: only pairs whose groups are equal (same) or differ
-/// (cross).
-template <bool viscous, bool grouped>
-void conservative_pairs(const SphInput& in, std::size_t i, const float* pressure, const float* volume,
-                        Sum& same, Sum& cross) {
+/// Pressure along x_i − x_j and viscosity of one pair, each per volume of j. Model 1, Mueller 2003.
+struct ConservativePair {
+  static constexpr bool relative_velocity = true;
+
+  static float push(const SphInput& in, float r2, float own_pressure, float pressure) {
+    const float r = __builtin_sqrtf(r2);
+    const float t = falloff(in, r);
+    // Coincident particles have no direction to push each other in.
+    return r > 0 ? 0.5f * (own_pressure + pressure) * in.spiky_gradient * t * t / r : 0.0f;
+  }
+  static float drag(const SphInput& in, float r2) { return in.viscosity * falloff(in, __builtin_sqrtf(r2)); }
+
+ private:
+  static float falloff(const SphInput& in, float r) {
+    const float q = r * in.inverse_radius;
+    return q < 1.0f ? 1.0f - q : 0.0f;
+  }
+};
+
+/// The same as [TK eq. 1, 2] print it.
+struct PrintedPair {
+  static constexpr bool relative_velocity = false;
+
+  static float push(const SphInput& in, float r2, float, float pressure) {
+    const float t = falloff(in, r2);
+    return pressure * in.poly6_gradient * t * t;
+  }
+  static float drag(const SphInput& in, float r2) {
+    const float q2 = r2 * in.inverse_radius * in.inverse_radius;
+    return -in.poly6_laplacian * falloff(in, r2) * (3.0f - 7.0f * q2);
+  }
+
+ private:
+  static float falloff(const SphInput& in, float r2) {
+    const float q2 = r2 * in.inverse_radius * in.inverse_radius;
+    return q2 < 1.0f ? 1.0f - q2 : 0.0f;
+  }
+};
+
+/// One particle's sums over its pairs within its group and with others.
+template <class Pair, bool viscous, bool grouped>
+void sum_pairs(const SphInput& in, std::size_t i, const float* pressure, const float* volume, Sum& same,
+               Sum& cross) {
   const float x = in.position.x[i], y = in.position.y[i], z = in.position.z[i];
   const std::uint32_t* const list = in.indices + in.list_begin[i];
   const std::uint32_t n = in.list_count[i];
@@ -50,67 +88,30 @@ void conservative_pairs(const SphInput& in, std::size_t i, const float* pressure
     const std::uint32_t j = list[k];
     const float dx = x - in.position.x[j], dy = y - in.position.y[j], dz = z - in.position.z[j];
     const float r2 = dx * dx + dy * dy + dz * dz;
-    const float r = __builtin_sqrtf(r2);
-    const float q = r * in.inverse_radius;
-    const float t = q < 1.0f ? 1.0f - q : 0.0f;
-    // Coincident particles have no direction to push each other in.
-    const float push =
-        r > 0 ? volume[j] * 0.5f * (pressure[i] + pressure[j]) * in.spiky_gradient * t * t / r : 0.0f;
+    const float push = volume[j] * Pair::push(in, r2, pressure[i], pressure[j]);
     float ax = push * dx, ay = push * dy, az = push * dz;
-    const bool is_same = !grouped || in.group[j] == own;
+    const std::uint32_t other = grouped ? in.group[j] : own;
     if (viscous) {
-      const float mu =
-          is_same ? in.groups[own].viscosity
-                  : 0.5f * (in.groups[own].viscosity + in.groups[grouped ? in.group[j] : 0].viscosity);
-      const float drag = volume[j] * mu * in.viscosity * t;
-      ax += drag * (in.velocity.x[j] - in.velocity.x[i]);
-      ay += drag * (in.velocity.y[j] - in.velocity.y[i]);
-      az += drag * (in.velocity.z[j] - in.velocity.z[i]);
+      const float mu = other == own ? in.groups[own].viscosity
+                                    : 0.5f * (in.groups[own].viscosity + in.groups[other].viscosity);
+      const float drag = volume[j] * mu * Pair::drag(in, r2);
+      ax += drag * (Pair::relative_velocity ? in.velocity.x[j] - in.velocity.x[i] : in.velocity.x[j]);
+      ay += drag * (Pair::relative_velocity ? in.velocity.y[j] - in.velocity.y[i] : in.velocity.y[j]);
+      az += drag * (Pair::relative_velocity ? in.velocity.z[j] - in.velocity.z[i] : in.velocity.z[j]);
     }
-    Sum& sum = is_same ? same : cross;
+    Sum& sum = other == own ? same : cross;
     sum.x += ax;
     sum.y += ay;
     sum.z += az;
   }
 }
 
-template <bool viscous, bool grouped>
-void printed_pairs(const SphInput& in, std::size_t i, const float* pressure, const float* volume, Sum& same,
-                   Sum& cross) {
-  const float x = in.position.x[i], y = in.position.y[i], z = in.position.z[i];
-  const std::uint32_t* const list = in.indices + in.list_begin[i];
-  const std::uint32_t n = in.list_count[i];
-  const std::uint32_t own = grouped ? in.group[i] : 0;
-  for (std::uint32_t k = 0; k < n; ++k) {
-    const std::uint32_t j = list[k];
-    const float dx = x - in.position.x[j], dy = y - in.position.y[j], dz = z - in.position.z[j];
-    const float q2 = (dx * dx + dy * dy + dz * dz) * in.inverse_radius * in.inverse_radius;
-    const float t = q2 < 1.0f ? 1.0f - q2 : 0.0f;
-    const float push = volume[j] * pressure[j] * in.poly6_gradient * t * t;
-    float ax = push * dx, ay = push * dy, az = push * dz;
-    const bool is_same = !grouped || in.group[j] == own;
-    if (viscous) {
-      const float mu =
-          is_same ? in.groups[own].viscosity
-                  : 0.5f * (in.groups[own].viscosity + in.groups[grouped ? in.group[j] : 0].viscosity);
-      const float drag = -volume[j] * mu * in.poly6_laplacian * t * (3.0f - 7.0f * q2);
-      ax += drag * in.velocity.x[j];
-      ay += drag * in.velocity.y[j];
-      az += drag * in.velocity.z[j];
-    }
-    Sum& sum = is_same ? same : cross;
-    sum.x += ax;
-    sum.y += ay;
-    sum.z += az;
-  }
-}
-
-template <auto pairs, bool grouped>
-void accelerations(const SphInput& in, std::size_t begin, std::size_t end, const float* rho,
-                   const float* pressure, const float* volume, const Vectors& same, const Vectors& cross) {
+template <class Pair, bool viscous, bool grouped>
+void sum_block(const SphInput& in, std::size_t begin, std::size_t end, const float* rho,
+               const float* pressure, const float* volume, const Vectors& same, const Vectors& cross) {
   for (std::size_t i = begin; i < end; ++i) {
     Sum own, other;
-    pairs(in, i, pressure, volume, own, other);
+    sum_pairs<Pair, viscous, grouped>(in, i, pressure, volume, own, other);
     const std::uint32_t row = in.row_of[i];
     same.x[row] = own.x / rho[i];
     same.y[row] = own.y / rho[i];
@@ -123,38 +124,18 @@ void accelerations(const SphInput& in, std::size_t begin, std::size_t end, const
   }
 }
 
-void conservative(const SphInput& in, std::size_t begin, std::size_t end, const float* rho,
-                  const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept {
-  const bool viscous = in.velocity.x != nullptr;
-  if (in.group)
-    viscous ? accelerations<conservative_pairs<true, true>, true>(in, begin, end, rho, pressure, volume, same,
-                                                                  cross)
-            : accelerations<conservative_pairs<false, true>, true>(in, begin, end, rho, pressure, volume,
-                                                                   same, cross);
-  else
-    viscous ? accelerations<conservative_pairs<true, false>, false>(in, begin, end, rho, pressure, volume,
-                                                                    same, cross)
-            : accelerations<conservative_pairs<false, false>, false>(in, begin, end, rho, pressure, volume,
-                                                                     same, cross);
-}
-
-void printed(const SphInput& in, std::size_t begin, std::size_t end, const float* rho, const float* pressure,
-             const float* volume, Vectors same, Vectors cross) noexcept {
-  const bool viscous = in.velocity.x != nullptr;
-  if (in.group)
-    viscous
-        ? accelerations<printed_pairs<true, true>, true>(in, begin, end, rho, pressure, volume, same, cross)
-        : accelerations<printed_pairs<false, true>, true>(in, begin, end, rho, pressure, volume, same, cross);
-  else
-    viscous
-        ? accelerations<printed_pairs<true, false>, false>(in, begin, end, rho, pressure, volume, same, cross)
-        : accelerations<printed_pairs<false, false>, false>(in, begin, end, rho, pressure, volume, same,
-                                                            cross);
+template <class Pair>
+void accelerations(const SphInput& in, std::size_t begin, std::size_t end, const float* rho,
+                   const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept {
+  const bool viscous = in.velocity.x != nullptr, grouped = in.group != nullptr;
+  const auto run = viscous ? (grouped ? sum_block<Pair, true, true> : sum_block<Pair, true, false>)
+                           : (grouped ? sum_block<Pair, false, true> : sum_block<Pair, false, false>);
+  run(in, begin, end, rho, pressure, volume, same, cross);
 }
 
 }  // namespace
 
 extern const SphKernels sph_kernels;
-const SphKernels sph_kernels = {density, conservative, printed};
+const SphKernels sph_kernels = {density, accelerations<ConservativePair>, accelerations<PrintedPair>};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -1,5 +1,6 @@
-
 #include "cli/program.h"
+
+#include <algorithm>
 
 namespace mallow::test {
 namespace {
@@ -83,8 +84,12 @@ TEST_F(cli_bad_input, a_step_that_cannot_be_taken_fails_the_run_and_is_reported)
       "fast.toml",
       "[solver]\nsupport_radius = 2.0\n[[material]]\nname = \"a\"\nalpha = 0.7\n[[body]]\nmaterial = \"a\"\n"
       "box = { count = [3, 3, 3], spacing = 1.0 }\nvelocity = [1e6, 0.0, 0.0]\n");
-  const Outcome outcome = run_mallow({"run", at("fast.toml"), "--report", at("report.json")});
+  const Outcome outcome =
+      run_mallow({"run", at("fast.toml"), "--report", at("report.json"), "--state-out", at("state.csv")});
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  // Header and 27 particles: what was computed is not lost.
+  const std::string state = read_text(at("state.csv"));
+  EXPECT_EQ(std::count(state.begin(), state.end(), '\n'), 28);
   EXPECT_NE(outcome.err.find("particle"), std::string::npos) << outcome.err;
   const nlohmann::json report = read_json(at("report.json"));
   EXPECT_EQ(report.at("complete"), false);

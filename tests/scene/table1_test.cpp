@@ -20,7 +20,8 @@ class Table1 : public testing::TestWithParam<Row> {};
 
 TEST_P(Table1, has_the_particles_and_average_neighbors_of_the_paper) {
   const Row& row = GetParam();
-  const Scene scene = read_scene(std::filesystem::path(MALLOW_DATA_DIR) / "scenes/table1" / (std::string(row.scene) + ".toml"));
+  const Scene scene = read_scene(std::filesystem::path(MALLOW_DATA_DIR) / "scenes/table1" /
+                                 (std::string(row.scene) + ".toml"));
   const SimulationInfo info = build(scene).info();
   ASSERT_EQ(info.groups.size(), 1u);
   EXPECT_NEAR(static_cast<double>(info.particles), row.particles, row.exact ? 0 : 0.01 * row.particles);

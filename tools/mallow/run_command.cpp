@@ -119,6 +119,8 @@ void run(const RunOptions& options) {
   } catch (const std::exception& failure) {
     try {
       close_report(failure.what());
+      // The state before the step that failed: what was computed is not lost.
+      if (!options.state_out.empty()) write_state_csv(options.state_out, snapshot(*simulation));
     } catch (const std::exception&) {
       // Where the disk is full the report written at the start stays, and it says that the run did not end.
     }

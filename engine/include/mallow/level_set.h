@@ -10,9 +10,12 @@
 /// What mallow does with OpenVDB: target mallow::level_set. No OpenVDB type shows here.
 namespace mallow {
 
+/// Voxels along the longest side of a mesh that scenes and the command line sample.
+inline constexpr int k_mesh_voxels = 192;
+
 /// A closed mesh as an implicit shape: a narrow-band level set with `voxels` voxels along its longest side.
 /// Throws ConfigError where the mesh is empty, open (why_not_closed) or has a vertex that is not finite.
-ImplicitShape mesh_shape(const Mesh& mesh, int voxels = 192, int threads = 0);
+ImplicitShape mesh_shape(const Mesh& mesh, int voxels = k_mesh_voxels, int threads = 0);
 
 /// A closed surface around particles: Zhu & Bridson 2005 on a narrow-band level set, then dual contouring.
 /// positions: [m], finite. spacing: h of the sampled body [m], > 0. An empty span gives an empty mesh.
