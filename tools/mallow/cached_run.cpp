@@ -6,6 +6,7 @@
 #include "mallow/errors.h"
 #include "mallow/failure.h"
 #include "mallow/interrupt.h"
+#include "mallow/machine.h"
 #include "mallow/progress.h"
 #include "mallow/summary.h"
 

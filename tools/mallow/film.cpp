@@ -1,48 +1,13 @@
 #include "mallow/film.h"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <sstream>
 #include <string>
-#include <vector>
 
+#include "mallow/external_program.h"
 #include "mallow/failure.h"
 #include "mallow/files.h"
 
 namespace mallow::cli {
-namespace {
-
-bool is_installed(const std::string& program) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    if (::access((folder + "/" + program).c_str(), X_OK) == 0) return true;
-  }
-  return false;
-}
-
-/// Runs a program without a shell; gives its exit status.
-int run_program(std::vector<std::string> arguments) {
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  pid_t child = 0;
-  const int error = ::posix_spawnp(&child, argv[0], nullptr, nullptr, argv.data(), environ);
-  if (error != 0) throw RunFailure(arguments[0] + " cannot be started: " + std::strerror(error));
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
-}  // namespace
-
 void make_film(const Cache& cache, int frames_per_second, int threads) {
   if (!is_installed("ffmpeg")) {
     std::fprintf(stderr, "mallow: no film, because the program ffmpeg is not installed\n");

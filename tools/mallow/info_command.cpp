@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mallow/run_report.h"
+#include "mallow/machine.h"
 #include "mallow/scene.h"
 
 namespace mallow::cli {

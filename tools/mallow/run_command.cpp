@@ -9,8 +9,10 @@
 
 #include "mallow/cache.h"
 #include "mallow/failure.h"
+#include "mallow/files.h"
 #include "mallow/film.h"
 #include "mallow/interrupt.h"
+#include "mallow/machine.h"
 #include "mallow/run_loop.h"
 #include "mallow/run_report.h"
 #include "mallow/scene.h"

@@ -64,11 +64,6 @@ bool at_frame(const Simulation& simulation, const Scene& scene, int number) {
 
 }  // namespace
 
-ParticleFrame snapshot(const Simulation& simulation) {
-  return {simulation.positions_by_id(), simulation.velocities_by_id(), simulation.groups_by_id(),
-          simulation.time(), simulation.step_count()};
-}
-
 void run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan, const Cache* cache,
                 RunReport& report) {
   std::optional<FrameWriter> writer;

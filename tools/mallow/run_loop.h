@@ -20,9 +20,6 @@ struct RunPlan {
   int threads = 1;
 };
 
-/// The particles as they are now, in id order.
-ParticleFrame snapshot(const Simulation& simulation);
-
 /// Runs a scene to its end and writes its frames into `cache`, where there is one. `report` is kept up to
 /// date: it is right also when this throws.
 void run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan, const Cache* cache,

@@ -3,22 +3,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <thread>
 
 #include "mallow/errors.h"
 #include "mallow/files.h"
+#include "mallow/machine.h"
 
 namespace mallow::cli {
 namespace {
-
-std::string processor_name() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    const auto colon = line.find(':');
-    if (line.starts_with("model name") && colon + 2 < line.size()) return line.substr(colon + 2);
-  }
-  return "unknown";
-}
 
 nlohmann::ordered_json groups_json(const RunReport& report) {
   nlohmann::ordered_json groups = nlohmann::ordered_json::array();
@@ -83,7 +74,7 @@ nlohmann::ordered_json to_json(const RunReport& report) {
           {"overrides", report.overrides},
           {"complete", report.complete},
           {"error", report.error},
-          {"machine", {{"processor", processor_name()}, {"cores", std::thread::hardware_concurrency()}}},
+          {"machine", machine_json()},
           {"threads", report.threads},
           {"particles", report.info.particles},
           {"groups", groups_json(report)},
@@ -133,10 +124,6 @@ std::vector<float> group_spacings(const nlohmann::ordered_json& report, const st
     throw IoError({file.string(), 0, 0, "groups", error.what()});
   }
   return spacings;
-}
-
-int resolve_threads(int threads) {
-  return threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
 }  // namespace mallow::cli

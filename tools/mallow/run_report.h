@@ -75,7 +75,4 @@ void write_report(const std::filesystem::path& file, const nlohmann::ordered_jso
 /// the scene.
 std::vector<float> group_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file);
 
-/// 0 stands for all the machine has.
-int resolve_threads(int threads);
-
 }  // namespace mallow::cli

@@ -9,7 +9,7 @@
 #include "mallow/errors.h"
 #include "mallow/failure.h"
 #include "mallow/files.h"
-#include "mallow/run_report.h"
+#include "mallow/machine.h"
 #include "mallow/scene.h"
 #include "mallow/simulation.h"
 

@@ -16,6 +16,8 @@
 /// allowed.
 namespace mallow {
 
+class Simulation;
+
 /// Triangles of an OBJ, PLY, STL or OFF file, by its ending; polygons are split into triangles, equal corners
 /// of an STL are joined.
 Mesh read_mesh(const std::filesystem::path& file);
@@ -32,6 +34,9 @@ struct ParticleFrame {
   double time = 0;                   ///< simulated time [s]
   std::int64_t step = 0;             ///< steps taken
 };
+
+/// The particles of a simulation as they are now.
+ParticleFrame snapshot(const Simulation& simulation);
 
 /// Binary PLY with x y z vx vy vz group, time and step as comments.
 void write_particles(const std::filesystem::path& file, const ParticleFrame& frame);
