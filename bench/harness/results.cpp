@@ -1,0 +1,161 @@
+#include "harness/results.h"
+
+#include <chrono>
+#include <ctime>
+
+#include "core/isa.h"
+#include "mallow/failure.h"
+#include "mallow/files.h"
+#include "mallow/machine.h"
+
+namespace mallow::bench {
+namespace {
+
+const char* name(InstructionLevel level) {
+  switch (level) {
+    case InstructionLevel::v4:
+      return "x86-64-v4";
+    case InstructionLevel::v3:
+      return "x86-64-v3";
+    case InstructionLevel::baseline:
+      break;
+  }
+  return "baseline";
+}
+
+std::string now() {
+  const std::time_t time = std::time(nullptr);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&time));
+  return text;
+}
+
+Json machine() {
+  Json machine = cli::machine_json();
+  machine["instruction_level"] = name(best_instruction_level());
+  machine["compiler"] = MALLOW_COMPILER;
+  return machine;
+}
+
+/// Rows with objects and arrays opened: {"a": {"b": 1}} becomes {"a.b": 1}.
+Json flattened(const Json& row) {
+  Json flat = Json::object();
+  const auto open = [&](const auto& self, const std::string& prefix, const Json& value) -> void {
+    if (!value.is_structured()) {
+      flat[prefix] = value;
+      return;
+    }
+    std::size_t index = 0;
+    for (const auto& [key, item] : value.items())
+      self(self, (prefix.empty() ? "" : prefix + '.') + (value.is_array() ? std::to_string(index++) : key),
+           item);
+  };
+  open(open, "", row);
+  return flat;
+}
+
+std::string csv_cell(const Json& value) {
+  if (value.is_null()) return "";
+  if (!value.is_string()) return value.dump();
+  const std::string text = value.get<std::string>();
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string csv(const Json& rows) {
+  std::vector<std::string> columns;
+  std::vector<Json> flat;
+  for (const Json& row : rows) {
+    flat.push_back(flattened(row));
+    for (const auto& [key, value] : flat.back().items())
+      if (std::find(columns.begin(), columns.end(), key) == columns.end()) columns.push_back(key);
+  }
+  std::string text;
+  for (std::size_t c = 0; c < columns.size(); ++c) text += (c > 0 ? "," : "") + columns[c];
+  for (const Json& row : flat) {
+    text += '\n';
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      text += (c > 0 ? "," : "") + (row.contains(columns[c]) ? csv_cell(row[columns[c]]) : "");
+  }
+  return text + '\n';
+}
+
+std::string table_cell(const Json& value, int decimals) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_number_integer()) return value.dump();
+  if (!value.is_number()) return "";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value.get<double>());
+  return text;
+}
+
+}  // namespace
+
+Results::Results(std::string command, const Output& output, int threads, Json settings)
+    : command_(std::move(command)), folder_(output.folder), json_(output.json) {
+  std::filesystem::create_directories(folder_);
+  if (json_.empty()) json_ = file(".json");
+  cli::check_writable(json_);
+  cli::check_writable(file(".csv"));
+  document_ = {{"command", command_},  {"version", MALLOW_VERSION}, {"date", now()},
+               {"machine", machine()}, {"threads", threads},        {"settings", std::move(settings)},
+               {"complete", false},    {"rows", Json::array()}};
+}
+
+std::filesystem::path Results::file(const std::string& ending) const {
+  return folder_ / (command_ + ending);
+}
+
+void Results::add(Json row) {
+  document_["rows"].push_back(std::move(row));
+  write();
+}
+
+void Results::set(const std::string& key, Json value) {
+  document_[key] = std::move(value);
+}
+
+void Results::close() {
+  document_["complete"] = true;
+  write();
+}
+
+void Results::write() const {
+  write_whole(json_, document_.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_whole(file(".csv"), csv(document_["rows"]));
+}
+
+std::string markdown_table(const Json& rows, const std::vector<TableColumn>& columns) {
+  std::vector<std::vector<std::string>> cells;
+  std::vector<std::size_t> widths;
+  for (const TableColumn& column : columns) widths.push_back(column.heading.size());
+  for (const Json& row : rows) {
+    const Json flat = flattened(row);
+    auto& line = cells.emplace_back();
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      line.push_back(flat.contains(columns[c].key) ? table_cell(flat[columns[c].key], columns[c].decimals)
+                                                   : "");
+      widths[c] = std::max(widths[c], line.back().size());
+    }
+  }
+  const auto padded = [](std::string text, std::size_t width, bool right) {
+    const std::string space(width - text.size(), ' ');
+    return right ? space + text : text + space;
+  };
+  std::string text = "|";
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    text += ' ' + padded(columns[c].heading, widths[c], c > 0) + " |";
+  text += "\n|";
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    text += std::string(widths[c] + 1, '-') + (c > 0 ? "-:|" : "--|");
+  for (const auto& line : cells) {
+    text += "\n|";
+    for (std::size_t c = 0; c < columns.size(); ++c) text += ' ' + padded(line[c], widths[c], c > 0) + " |";
+  }
+  return text + '\n';
+}
+
+}  // namespace mallow::bench
