@@ -1,7 +1,10 @@
 #include "simulation/oracle_cases.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+
+#include "oracle/points.h"
 
 namespace mallow {
 namespace {
@@ -141,6 +144,43 @@ std::vector<Case> ablations(const Case& whole) {
       without("cohesion", [&](Case& less) { less.blobs[b].material.cohesion = 0; });
   }
   return lesser;
+}
+
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+  return out << c.name;
+}
+
+std::vector<Vec3> points_of(const Blob& blob) {
+  return oracle::lattice_points(blob.count, blob.spacing, blob.center, blob.jitter);
+}
+
+oracle::Oracle oracle_of(const Case& scene) {
+  oracle::Oracle oracle(scene.solver);
+  std::size_t group = 0;
+  for (const Blob& blob : scene.blobs) {
+    if (!blob.joins_the_one_before) group = oracle.add_group(blob.material);
+    std::vector<oracle::Vec> positions;
+    for (const Vec3& x : points_of(blob)) positions.push_back(x.cast<double>());
+    const std::vector<oracle::Vec> velocities(positions.size(), blob.velocity.cast<double>());
+    oracle.add_body(positions, velocities, blob.spacing, group);
+  }
+  for (const Collider& collider : scene.colliders) oracle.add_collider(collider);
+  for (const Pinned& pin : scene.pins) oracle.pin(pin.box, pin.velocity.cast<double>());
+  if (scene.wind) oracle.set_force(wind<double>);
+  return oracle;
+}
+
+double largest_deviation(const Case& scene, const std::vector<oracle::Vec>& a,
+                         const std::vector<oracle::Vec>& b) {
+  double largest = 0;
+  std::size_t id = 0;
+  for (const Blob& blob : scene.blobs) {
+    for (std::size_t k = 0; k < points_of(blob).size(); ++k, ++id) {
+      const double deviation = (a[id] - b[id]).norm() / blob.spacing;
+      largest = std::isfinite(deviation) ? std::max(largest, deviation) : INFINITY;
+    }
+  }
+  return largest;
 }
 
 }  // namespace mallow

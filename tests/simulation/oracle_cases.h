@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,7 @@
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 #include "mallow/vec3.h"
+#include "oracle/oracle.h"
 
 namespace mallow {
 
@@ -40,6 +43,7 @@ struct Case {
   int updates = 0;          ///< updates of reference shapes that must happen, at least
   double tolerance = 1e-4;  ///< what single precision may do to a position in 40 steps, in units of h
 };
+std::ostream& operator<<(std::ostream& out, const Case& c);
 
 const std::vector<Case>& oracle_cases();
 
@@ -47,5 +51,22 @@ const std::vector<Case>& oracle_cases();
 /// bounce, motion, the pins, the wind, pressure, viscosity, cohesion, the updates. What is left out is
 /// appended to the name.
 std::vector<Case> ablations(const Case& whole);
+
+/// The points of a blob; the same for all who run the case.
+std::vector<Vec3> points_of(const Blob& blob);
+/// A gust that turns, tears and drags; the same formula for both precisions.
+template <class Scalar>
+Eigen::Matrix<Scalar, 3, 1> wind(double time, std::size_t id, const Eigen::Matrix<Scalar, 3, 1>& x,
+                                 const Eigen::Matrix<Scalar, 3, 1>& v) {
+  const auto t = static_cast<Scalar>(time);
+  const auto side = static_cast<Scalar>(id % 2 == 0 ? 0.2 : -0.1);
+  return {Scalar(0.3) * x.x() + side, Scalar(0.2) * t - Scalar(0.1) * v.y(), Scalar(0.1) * x.x()};
+}
+
+oracle::Oracle oracle_of(const Case& scene);
+
+/// The largest distance of a particle from its twin, in spacings of its body.
+double largest_deviation(const Case& scene, const std::vector<oracle::Vec>& a,
+                         const std::vector<oracle::Vec>& b);
 
 }  // namespace mallow

@@ -6,15 +6,9 @@
 
 #include "mallow/simulation.h"
 #include "oracle/oracle.h"
-#include "oracle/points.h"
 #include "simulation/oracle_cases.h"
 
 namespace mallow {
-
-std::ostream& operator<<(std::ostream& out, const Case& c) {
-  return out << c.name;
-}
-
 namespace {
 
 using oracle::Oracle;
@@ -23,35 +17,6 @@ using oracle::Vec;
 constexpr int k_steps = 40;
 /// What everything in a case must do to some position at least, in units of h.
 constexpr double k_significant = 0.05;
-
-std::vector<Vec3> points_of(const Blob& blob) {
-  return oracle::lattice_points(blob.count, blob.spacing, blob.center, blob.jitter);
-}
-
-/// A gust that turns, tears and drags; the same formula for both precisions.
-template <class Scalar>
-Eigen::Matrix<Scalar, 3, 1> wind(double time, std::size_t id, const Eigen::Matrix<Scalar, 3, 1>& x,
-                                 const Eigen::Matrix<Scalar, 3, 1>& v) {
-  const auto t = static_cast<Scalar>(time);
-  const auto side = static_cast<Scalar>(id % 2 == 0 ? 0.2 : -0.1);
-  return {Scalar(0.3) * x.x() + side, Scalar(0.2) * t - Scalar(0.1) * v.y(), Scalar(0.1) * x.x()};
-}
-
-Oracle oracle_of(const Case& scene) {
-  Oracle oracle(scene.solver);
-  std::size_t group = 0;
-  for (const Blob& blob : scene.blobs) {
-    if (!blob.joins_the_one_before) group = oracle.add_group(blob.material);
-    std::vector<Vec> positions;
-    for (const Vec3& x : points_of(blob)) positions.push_back(x.cast<double>());
-    const std::vector<Vec> velocities(positions.size(), blob.velocity.cast<double>());
-    oracle.add_body(positions, velocities, blob.spacing, group);
-  }
-  for (const Collider& collider : scene.colliders) oracle.add_collider(collider);
-  for (const Pinned& pin : scene.pins) oracle.pin(pin.box, pin.velocity.cast<double>());
-  if (scene.wind) oracle.set_force(wind<double>);
-  return oracle;
-}
 
 Simulation engine_of(const Case& scene) {
   Simulation engine(scene.solver);
@@ -73,19 +38,6 @@ Simulation engine_of(const Case& scene) {
     });
   }
   return engine;
-}
-
-/// The largest distance of a particle from its twin, in spacings of its body.
-double largest_deviation(const Case& scene, const std::vector<Vec>& a, const std::vector<Vec>& b) {
-  double largest = 0;
-  std::size_t id = 0;
-  for (const Blob& blob : scene.blobs) {
-    for (std::size_t k = 0; k < points_of(blob).size(); ++k, ++id) {
-      const double deviation = (a[id] - b[id]).norm() / blob.spacing;
-      largest = std::isfinite(deviation) ? std::max(largest, deviation) : INFINITY;
-    }
-  }
-  return largest;
 }
 
 std::vector<Vec> positions_of(const Simulation& engine) {
