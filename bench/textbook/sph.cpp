@@ -1,0 +1,125 @@
+#include "textbook/sph.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "textbook/cell_grid.h"
+
+namespace mallow::textbook {
+namespace {
+
+/// The kernels of radius σ, for 0 <= r <= σ: poly6 of [TK eq. 3], the others of Müller, Charypar, Gross 2003.
+/// A gradient is given as its factor of d = x_i − x_j.
+struct Kernels {
+  explicit Kernels(double support_radius)
+      : sigma(support_radius),
+        poly6_factor(315 / (64 * std::numbers::pi * std::pow(sigma, 9))),
+        spiky_factor(45 / (std::numbers::pi * std::pow(sigma, 6))) {}
+
+  double poly6(double r2) const {
+    const double s = sigma * sigma - r2;
+    return poly6_factor * s * s * s;
+  }
+  double poly6_gradient(double r2) const {
+    const double s = sigma * sigma - r2;
+    return -6 * poly6_factor * s * s;
+  }
+  double poly6_laplacian(double r2) const {
+    const double s = sigma * sigma - r2;
+    return -6 * poly6_factor * s * (3 * s - 4 * r2);
+  }
+  /// Coincident particles have no direction.
+  double spiky_gradient(double r) const { return r > 0 ? -spiky_factor * (sigma - r) * (sigma - r) / r : 0; }
+  double viscosity_laplacian(double r) const { return spiky_factor * (sigma - r); }
+
+  double sigma;
+  double poly6_factor;
+  double spiky_factor;
+};
+
+/// What j adds to the force density at i, but for the volume of j [N/m³].
+Vec conservative_pair(const Kernels& kernels, const Particle& i, const Particle& j, double viscosity) {
+  const Vec d = i.position - j.position;
+  const double r = d.norm();
+  Vec force = -(i.pressure + j.pressure) / 2 * kernels.spiky_gradient(r) * d;
+  if (viscosity > 0) force += viscosity * kernels.viscosity_laplacian(r) * (j.velocity - i.velocity);
+  return force;
+}
+
+Vec printed_pair(const Kernels& kernels, const Particle& i, const Particle& j, double viscosity) {
+  const Vec d = i.position - j.position;
+  const double r2 = d.squaredNorm();
+  Vec force = -j.pressure * kernels.poly6_gradient(r2) * d;
+  if (viscosity > 0) force += viscosity * kernels.poly6_laplacian(r2) * j.velocity;
+  return force;
+}
+
+}  // namespace
+
+void find_neighbors(const SolverConfig& config, std::vector<Particle>& particles) {
+  CellGrid grid(config.support_radius);
+  for (std::size_t i = 0; i < particles.size(); ++i) grid.insert(i, particles[i].position);
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    particles[i].neighbors.clear();
+    grid.for_each_near(particles[i].position, [&](std::size_t j) {
+      if (j != i) particles[i].neighbors.push_back(j);
+    });
+  }
+}
+
+void sum_densities(const SolverConfig& config, const std::vector<Group>& groups,
+                   std::vector<Particle>& particles) {
+  const Kernels kernels(config.support_radius);
+  for (Particle& i : particles) {
+    const Group& group = groups[i.group];
+    double sum = group.mass / group.rest_density * kernels.poly6(0);
+    for (const std::size_t id : i.neighbors) {
+      const Particle& j = particles[id];
+      const Group& other = groups[j.group];
+      sum += other.mass / other.rest_density * kernels.poly6((i.position - j.position).squaredNorm());
+    }
+    i.density = group.rest_density * sum;
+    i.pressure = group.material.pressure_coefficient * (i.density - group.rest_density);
+    if (i.pressure < 0) i.pressure *= group.material.cohesion;
+  }
+}
+
+void sum_accelerations(const SolverConfig& config, const std::vector<Group>& groups,
+                       std::vector<Particle>& particles) {
+  const Kernels kernels(config.support_radius);
+  const bool printed = config.formulation == Formulation::printed;
+  for (Particle& i : particles) {
+    const Material& material = groups[i.group].material;
+    Vec same_group = Vec::Zero(), other_groups = Vec::Zero();
+    // The print does not leave out j = i, whose viscosity is not zero there.
+    if (printed)
+      same_group = groups[i.group].mass / i.density * printed_pair(kernels, i, i, material.viscosity);
+    for (const std::size_t id : i.neighbors) {
+      const Particle& j = particles[id];
+      const Group& group_j = groups[j.group];
+      const double viscosity = (double{material.viscosity} + group_j.material.viscosity) / 2;
+      const Vec force = printed ? printed_pair(kernels, i, j, viscosity)  //
+                                : conservative_pair(kernels, i, j, viscosity);
+      (j.group == i.group ? same_group : other_groups) += group_j.mass / j.density * force;
+    }
+    i.sph_acceleration = same_group / i.density;
+    i.external_acceleration += other_groups / i.density;
+  }
+}
+
+double lattice_sum(double spacing, double support_radius) {
+  const Kernels kernels(support_radius);
+  const int reach = static_cast<int>(support_radius / spacing) + 1;
+  double sum = 0;
+  for (int x = -reach; x <= reach; ++x) {
+    for (int y = -reach; y <= reach; ++y) {
+      for (int z = -reach; z <= reach; ++z) {
+        const double r2 = spacing * spacing * (x * x + y * y + z * z);
+        if (r2 < support_radius * support_radius) sum += kernels.poly6(r2);
+      }
+    }
+  }
+  return sum;
+}
+
+}  // namespace mallow::textbook

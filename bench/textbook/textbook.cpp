@@ -1,0 +1,212 @@
+#include "textbook/textbook.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "mallow/errors.h"
+#include "textbook/shape_matching.h"
+#include "textbook/sph.h"
+
+namespace mallow::textbook {
+namespace {
+
+/// As AlphaSchedule::at(), which rounds to single precision.
+double alpha_at(const AlphaSchedule& schedule, double time) {
+  const std::vector<AlphaKey>& keys = schedule.keys();
+  if (time <= keys.front().time) return keys.front().alpha;
+  for (std::size_t k = 1; k < keys.size(); ++k) {
+    const AlphaKey &a = keys[k - 1], &b = keys[k];
+    if (time >= b.time) continue;
+    const double passed = (time - a.time) / (double{b.time} - a.time);
+    return a.alpha + (double{b.alpha} - a.alpha) * passed;
+  }
+  return keys.back().alpha;
+}
+
+/// What the material leaves out follows from ρ0 = m Σ W over the lattice.
+void derive_density(double support_radius, Group& group) {
+  const double sum = lattice_sum(group.spacing, support_radius);
+  const Material& material = group.material;
+  group.mass = 1;
+  if (material.rest_density) group.mass = *material.rest_density / sum;
+  if (material.particle_mass) group.mass = *material.particle_mass;
+  group.rest_density = material.rest_density ? *material.rest_density : group.mass * sum;
+}
+
+}  // namespace
+
+std::size_t Textbook::add_group(const Material& material) {
+  groups_.push_back(
+      {.material = material, .region_radius = material.region_radius.value_or(config_.support_radius)});
+  return groups_.size() - 1;
+}
+
+void Textbook::add_body(const Body& body, std::size_t group_index) {
+  Group& group = groups_.at(group_index);
+  group.spacing = body.spacing;
+  derive_density(config_.support_radius, group);
+  for (std::size_t k = 0; k < body.positions.size(); ++k) {
+    Vec velocity = body.velocity.cast<double>();
+    if (!body.velocities.empty()) velocity += body.velocities[k].cast<double>();
+    group.members.push_back(particles_.size());
+    particles_.push_back(
+        {.group = group_index, .position = body.positions[k].cast<double>(), .velocity = velocity});
+  }
+  if (group.keeps_reference()) take_reference(group, particles_);
+}
+
+void Textbook::pin(const Aabb& box, const Vec3& velocity) {
+  const Vec min = box.min.cast<double>(), max = box.max.cast<double>();
+  for (Particle& p : particles_) {
+    if ((p.position.array() < min.array()).any() || (p.position.array() > max.array()).any()) continue;
+    p.pinned = true;
+    p.pin_velocity = velocity.cast<double>();
+  }
+}
+
+Textbook::Step Textbook::step() {
+  for (Group& group : groups_) group.alpha = alpha_at(group.material.alpha, time_);
+  Step step{.updated_references = update_references()};
+  for (Particle& p : particles_) {
+    p.sph_acceleration = Vec::Zero();
+    p.external_acceleration = config_.gravity.cast<double>();
+  }
+  if (needs_sph()) {
+    find_neighbors(config_, particles_);
+    sum_densities(config_, groups_, particles_);
+    sum_accelerations(config_, groups_, particles_);
+  }
+  choose_time_step(step);
+  for (const Group& group : groups_) {
+    if (group.alpha < 1) match_shape(group, particles_);
+  }
+  move_particles(step.time_step);
+  for (Obstacle& obstacle : obstacles_) {
+    obstacle.moved += step.time_step * obstacle.collider.velocity.cast<double>();
+  }
+  time_ += step.time_step;
+  ++steps_;
+  return step;
+}
+
+/// Some acceleration of SPH counts: within a group that is not purely elastic, or between groups.
+bool Textbook::needs_sph() const {
+  return groups_.size() > 1 || groups_.front().alpha > 0;
+}
+
+// Section 6 of the model [TK 3.2, eq. 14].
+int Textbook::update_references() {
+  if (steps_ == 0 || steps_ % config_.update_interval != 0) return 0;
+  int updated = 0;
+  for (const Group& group : groups_) {
+    const double threshold = group.material.update_threshold * (1 - group.alpha);
+    if (!group.keeps_reference() || mean_external_acceleration(group) <= threshold) continue;
+    take_reference(group, particles_);
+    ++updated;
+  }
+  return updated;
+}
+
+/// Of the last step, over the particles that are not pinned.
+double Textbook::mean_external_acceleration(const Group& group) const {
+  double sum = 0;
+  int count = 0;
+  for (const std::size_t id : group.members) {
+    const Particle& p = particles_[id];
+    if (p.pinned) continue;
+    sum += (p.external_acceleration + p.contact_acceleration).norm();
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+// Section 3 of the model [TK eq. 12].
+double Textbook::limited_time_step(double max_velocity) const {
+  const double sigma = config_.support_radius;
+  double time_step = std::min(double{config_.time_step}, 0.999 * sigma / max_velocity);
+  if (!config_.acoustic_limit) return time_step;
+  double sound_speed = 0;
+  for (const Group& group : groups_) {
+    sound_speed = std::max(sound_speed, std::sqrt(double{group.material.pressure_coefficient}));
+    time_step = std::min(time_step, 0.125 * sigma * sigma * group.rest_density / group.material.viscosity);
+  }
+  return std::min(time_step, 0.4 * sigma / (sound_speed + max_velocity));
+}
+
+void Textbook::choose_time_step(Step& step) const {
+  step.time_step = config_.time_step;
+  if (!needs_sph()) return;
+  std::size_t fastest = 0;
+  for (std::size_t id = 0; id < particles_.size(); ++id) {
+    const Particle& p = particles_[id];
+    if (p.pinned) continue;
+    const double velocity =
+        (p.velocity + config_.time_step * (p.sph_acceleration + p.external_acceleration)).norm();
+    // Not `>`: a velocity that is not a number must win, so that it is seen.
+    if (velocity <= step.max_velocity || std::isnan(step.max_velocity)) continue;
+    step.max_velocity = velocity;
+    fastest = id;
+  }
+  step.time_step = limited_time_step(step.max_velocity);
+  if (std::isfinite(step.max_velocity) && step.time_step >= 1e-3 * config_.time_step) return;
+  throw StepError("particle " + std::to_string(fastest) + " would move at " +
+                      std::to_string(step.max_velocity) + " m/s, for which no step above a thousandth of " +
+                      "solver.time_step is short enough",
+                  static_cast<std::uint32_t>(fastest));
+}
+
+// Sections 4 and 5 of the model [TK eq. 10, 11, 13].
+void Textbook::move_particles(double time_step) {
+  const double longest = config_.time_step;
+  for (Particle& p : particles_) {
+    const Group& group = groups_[p.group];
+    p.contact_acceleration = Vec::Zero();
+    if (p.pinned) {
+      p.velocity = p.pin_velocity;
+    } else {
+      const double elastic_time_step = group.material.elastic_time_step.value_or(config_.time_step);
+      p.velocity += time_step * (p.external_acceleration + group.alpha * p.sph_acceleration);
+      if (group.alpha < 1) {
+        p.velocity += (1 - group.alpha) * time_step / (longest * elastic_time_step) * (p.goal - p.position);
+      }
+      const Vec blended = p.velocity;
+      const ContactStep contact{
+          .time_step = time_step,
+          .contact_offset = config_.contact_offset ? double{*config_.contact_offset} : group.spacing / 2,
+          .max_push = config_.support_radius / (10 * longest)};
+      for (const Obstacle& obstacle : obstacles_)
+        p.velocity = resolve_contact(obstacle, contact, p.position, p.velocity);
+      p.contact_acceleration = (p.velocity - blended) / time_step;
+    }
+    p.position += time_step * p.velocity;
+  }
+}
+
+std::vector<Vec> Textbook::positions() const {
+  std::vector<Vec> positions;
+  for (const Particle& p : particles_) positions.push_back(p.position);
+  return positions;
+}
+
+std::vector<Vec> Textbook::velocities() const {
+  std::vector<Vec> velocities;
+  for (const Particle& p : particles_) velocities.push_back(p.velocity);
+  return velocities;
+}
+
+std::vector<double> Textbook::densities() const {
+  std::vector<double> densities;
+  for (const Particle& p : particles_) densities.push_back(p.density);
+  return densities;
+}
+
+double Textbook::average_neighbors(std::size_t group) const {
+  const std::vector<std::size_t>& members = groups_.at(group).members;
+  double sum = 0;
+  for (const std::size_t id : members) sum += static_cast<double>(particles_[id].region.particles.size());
+  return sum / static_cast<double>(members.size());
+}
+
+}  // namespace mallow::textbook
