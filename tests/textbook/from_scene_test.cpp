@@ -1,0 +1,77 @@
+#include "textbook/from_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace mallow::textbook {
+namespace {
+
+Scene cube_3375() {
+  return read_scene(std::filesystem::path(MALLOW_DATA_DIR) / "scenes/table1/cube_3375.toml");
+}
+
+/// [h]
+double largest_deviation(const Textbook& textbook, const Simulation& engine) {
+  const std::vector<Vec3> positions = engine.positions_by_id();
+  double largest = 0;
+  for (std::size_t id = 0; id < textbook.size(); ++id) {
+    const Particle& p = textbook.particles()[id];
+    const double deviation = (p.position - positions[id].cast<double>()).norm();
+    largest = std::max(largest, deviation / textbook.groups()[p.group].spacing);
+  }
+  return largest;
+}
+
+TEST(from_scene, makes_the_particles_that_build_makes) {
+  const Textbook textbook = from_scene(cube_3375());
+  Simulation engine = build(cube_3375());
+  ASSERT_EQ(textbook.size(), 3375u);
+  ASSERT_EQ(textbook.size(), engine.particle_count());
+  EXPECT_EQ(largest_deviation(textbook, engine), 0);
+  const SimulationInfo info = engine.info();
+  ASSERT_EQ(textbook.groups().size(), info.groups.size());
+  EXPECT_DOUBLE_EQ(textbook.average_neighbors(0), info.groups[0].average_neighbors);
+  EXPECT_FLOAT_EQ(static_cast<float>(textbook.groups()[0].rest_density), info.groups[0].rest_density);
+  EXPECT_FLOAT_EQ(static_cast<float>(textbook.groups()[0].mass), info.groups[0].particle_mass);
+}
+
+TEST(from_scene, moves_as_build_does) {
+  Textbook textbook = from_scene(cube_3375());
+  Simulation engine = build(cube_3375());
+  for (int c = 0; c < 20; ++c) {
+    textbook.step();
+    engine.step();
+  }
+  EXPECT_LE(largest_deviation(textbook, engine), 1e-3);
+}
+
+TEST(from_scene, puts_bodies_that_name_one_group_together_and_no_others) {
+  Scene scene;
+  scene.solver.support_radius = 2.2f;
+  scene.materials = {{.name = "clay", .material = {.alpha = 0.5f}},
+                     {.name = "milk", .material = {.alpha = 1.0f}}};
+  const auto body = [](const char* material, const char* group, float x) {
+    return SceneBody{.material = material, .group = group, .source = Lattice{{2, 2, 2}, 1.0f, {x, 0, 0}}};
+  };
+  scene.bodies = {body("clay", "heap", 0), body("clay", "", 4), body("milk", "", 8), body("clay", "heap", 12),
+                  body("clay", "", 16)};
+  scene.pins = {{.box = {{7, -9, -9}, {11, 9, 9}}, .velocity = {0, 0, 1}}};
+  const Textbook textbook = from_scene(scene);
+  Simulation engine = build(scene);
+  const std::vector<std::uint8_t> groups = engine.groups_by_id();
+  ASSERT_EQ(textbook.size(), groups.size());
+  EXPECT_EQ(textbook.groups().size(), 4u);
+  EXPECT_EQ(largest_deviation(textbook, engine), 0);
+  for (std::size_t id = 0; id < textbook.size(); ++id) {
+    const Particle& p = textbook.particles()[id];
+    EXPECT_EQ(p.group, groups[id]) << "particle " << id;
+    EXPECT_EQ(p.pinned, p.group == 2) << "particle " << id;
+  }
+}
+
+}  // namespace
+}  // namespace mallow::textbook
