@@ -4,6 +4,8 @@
 
 #include "mallow/errors.h"
 #include "mallow/failure.h"
+#include "table1/table1_command.h"
+#include "tradeoff/tradeoff_command.h"
 
 namespace {
 
@@ -22,6 +24,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);  // none is answered below, with the list of what there is
   app.footer("Exit codes: 0 done, 1 a run failed or a claim does not hold, 2 the input cannot be used.");
   try {
+    bench::add_table1_command(app);
+    bench::add_tradeoff_command(app);
     app.parse(argc, argv);
     if (!app.get_subcommands().empty()) return cli::k_exit_done;
     std::fputs(app.help().c_str(), stderr);

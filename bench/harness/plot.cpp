@@ -75,8 +75,8 @@ void write_svg(const std::filesystem::path& file, const Plot& plot) {
     curves.push_back(data + " using 1:2 with " + (series.lines ? "linespoints" : "points") + color +
                      " pt 7 ps 0.6 title " + quoted(series.title));
     if (!series.labels.empty())
-      curves.push_back(data + " using 1:2:3 with labels left offset 0.6,0.25 font ',9' tc" + color +
-                       " notitle");
+      curves.push_back(data + " using 1:2:3 with labels left offset 0.6,0.25 font ',9' tc lt " +
+                       std::to_string(s + 1) + " notitle");
   }
   if (curves.empty()) return;
   for (std::size_t c = 0; c < curves.size(); ++c) text << (c == 0 ? "plot " : ", \\\n  ") << curves[c];

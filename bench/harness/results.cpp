@@ -150,7 +150,7 @@ std::string markdown_table(const Json& rows, const std::vector<TableColumn>& col
     text += ' ' + padded(columns[c].heading, widths[c], c > 0) + " |";
   text += "\n|";
   for (std::size_t c = 0; c < columns.size(); ++c)
-    text += std::string(widths[c] + 1, '-') + (c > 0 ? "-:|" : "--|");
+    text += std::string(widths[c] + 1, '-') + (c > 0 ? ":|" : "-|");
   for (const auto& line : cells) {
     text += "\n|";
     for (std::size_t c = 0; c < columns.size(); ++c) text += ' ' + padded(line[c], widths[c], c > 0) + " |";

@@ -5,6 +5,7 @@
 #include "mallow/collider.h"       // IWYU pragma: export
 #include "mallow/errors.h"         // IWYU pragma: export
 #include "mallow/material.h"       // IWYU pragma: export
+#include "mallow/quality.h"        // IWYU pragma: export
 #include "mallow/report.h"         // IWYU pragma: export
 #include "mallow/simulation.h"     // IWYU pragma: export
 #include "mallow/solver_config.h"  // IWYU pragma: export

@@ -94,6 +94,9 @@ std::string print_scene(const Scene& scene);
 /// Every key a scene file may hold: one line each with default, range, unit and meaning.
 std::string describe_scene_keys();
 
+/// The same scene in steps of `factor` times its own, see mallow/quality.h; frames stay as long as they were.
+Scene at_time_step(const Scene& scene, float factor);
+
 /// The points of a body as the scene would add them. Throws ConfigError or IoError.
 Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int threads = 0);
 /// The simulation of a scene, ready to step. `threads` as in SolverConfig. Throws ConfigError with all
