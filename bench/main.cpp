@@ -4,6 +4,7 @@
 
 #include "mallow/errors.h"
 #include "mallow/failure.h"
+#include "scaling/scaling_command.h"
 #include "table1/table1_command.h"
 #include "tradeoff/tradeoff_command.h"
 
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
   try {
     bench::add_table1_command(app);
     bench::add_tradeoff_command(app);
+    bench::add_scaling_command(app);
     app.parse(argc, argv);
     if (!app.get_subcommands().empty()) return cli::k_exit_done;
     std::fputs(app.help().c_str(), stderr);

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mallow/simulation.h"
+
+namespace mallow::bench {
+
+/// σ of the scaling runs in spacings: reaches 33 points of a full lattice (1 + 6 + 12 + 8 + 6), the last at 2
+/// and the next at √5, so that small displacements do not change the count at once.
+inline constexpr float k_cube_radius = 2.1f;
+
+/// A body of the scaling runs.
+struct Cube {
+  std::string material;        ///< one of cube_materials()
+  std::array<int, 3> count{};  ///< lattice points a side
+  std::size_t particles() const;
+};
+
+/// Names of what a cube can be made of: "elastic" has no SPH, "fluid" no shape matching, "paste" both.
+std::span<const std::string> cube_materials();
+/// alpha of a material of that name.
+float cube_alpha(const std::string& material);
+
+/// min, 2 min, 4 min, ... up to max particles.
+std::vector<std::size_t> cube_sizes(std::size_t min, std::size_t max);
+/// The box nearest to a cube with `particles` points to within a percent or two, so that sizes double and two
+/// threads have twice the work of one.
+Cube make_cube(const std::string& material, std::size_t particles);
+/// Mean number of points within the support radius, the point itself included.
+double average_neighbors(const Cube& cube);
+
+/// The cube on a floor, at rest density, stirred by waves of velocity that are the same whatever the size:
+/// the regions of a body at rest would need no Newton iterations.
+Simulation build(const Cube& cube, int threads);
+
+}  // namespace mallow::bench

@@ -1,0 +1,52 @@
+#include <set>
+
+#include "bench_fixture.h"
+
+namespace mallow::test {
+namespace {
+
+using bench_scaling = BenchTest;
+
+TEST_F(bench_scaling, rows_follow_the_schema_and_states_do_not_depend_on_threads) {
+  const nlohmann::json document = run_command("scaling", {"--max-particles", "4000", "--repeats", "1",
+                                                          "--threads", "2", "--material", "paste", "fluid"});
+  expect_valid("scaling");
+  std::set<std::string> states;
+  for (const nlohmann::json& row : document.at("rows")) states.insert(row.at("state_hash"));
+  EXPECT_EQ(document.at("rows").size(), 12u);  // two materials, three sizes, two numbers of threads
+  EXPECT_EQ(states.size(), 6u);
+  for (const nlohmann::json& row : document.at("rows")) {
+    const bool several = row.at("threads") == 2;
+    EXPECT_EQ(row.at("speedup").is_number(), several);
+    EXPECT_EQ(row.at("weak_efficiency").is_number(), several && row.at("particles") > 1000);
+    EXPECT_GT(row.at("bytes_per_particle").at("held"), 200);
+  }
+  EXPECT_EQ(document.at("extrapolation").at("measured"), false);
+  EXPECT_EQ(document.at("extrapolation").at("rows").size(), 4u);  // two materials, two numbers of cores
+}
+
+TEST_F(bench_scaling, one_thread_has_nothing_to_compare_with) {
+  const nlohmann::json document =
+      run_command("scaling", {"--max-particles", "2000", "--steps", "2", "--repeats", "1", "--threads", "1"});
+  expect_valid("scaling");
+  EXPECT_EQ(document.at("rows").size(), 2u);
+  EXPECT_EQ(document.at("extrapolation").at("rows").size(), 0u);
+}
+
+TEST_F(bench_scaling, too_many_particles_are_refused_before_anything_runs) {
+  // What is needed, what there is, and what fits.
+  expect_refused("scaling", {"--max-particles", "10000000000000", "--threads", "1"},
+                 {"--max-particles", "particles need", "GiB", "available", "fits"});
+}
+
+TEST_F(bench_scaling, what_makes_no_sense_is_refused) {
+  expect_refused("scaling", {"--material", "jelly"}, {"jelly", "elastic, paste, fluid"});
+  expect_refused("scaling", {"--max-particles", "0"}, {"--max-particles"});
+  expect_refused("scaling", {"--max-particles", "many"}, {"--max-particles"});
+  expect_refused("scaling", {"--max-particles", "500"}, {"--max-particles", "--min-particles", "1000"});
+  expect_refused("scaling", {"--steps", "0"}, {"--steps"});
+  expect_refused("scaling", {"--repeats", "-1"}, {"--repeats"});
+}
+
+}  // namespace
+}  // namespace mallow::test
