@@ -1,0 +1,11 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace mallow::bench {
+
+/// `mallow-bench kernels`: the parts of a step and of a surface by themselves, in nanoseconds per neighbour,
+/// matrix, pair or leaf.
+void add_kernels_command(CLI::App& app);
+
+}  // namespace mallow::bench

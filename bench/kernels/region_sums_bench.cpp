@@ -1,0 +1,146 @@
+// The two sums over regions, beside what the machine can add at all.
+#include <algorithm>
+#include <memory>
+
+#include "core/parallel.h"
+#include "kernels/kernel_set.h"
+#include "kernels/lattice.h"
+#include "kernels/row_additions.h"
+#include "shape_matching/shape_matching.h"
+
+namespace mallow::bench {
+namespace {
+
+/// Rows that the first-level cache holds with room to spare: 16 KiB.
+constexpr std::size_t k_cached_rows = 256;
+
+/// A body that has bent since its reference shape, and what its shape matching holds then.
+struct RegionScene {
+  VectorColumn x;
+  ShapeMatching shape;
+  ShapeInput input;
+  Column<float> sums;  ///< as the first sum leaves them
+
+  RegionScene(const LatticeScene& scene, InstructionLevel level) : x(lattice_points(scene)) {
+    CellGrid grid;
+    shape.region_radius = scene.radius;
+    update_reference(x, 0, x.size(), shape);
+    build_regions(1, level, grid, shape);
+    x = bent(x);
+    sum_regions(x, 0, 1, level, shape);
+    sums.resize(shape.sums.size());
+    std::copy(shape.sums.begin(), shape.sums.end(), sums.begin());
+    solve_rotations(x, 0, 1, level, shape);
+    input = {.list_begin = shape.regions.begin.data(),
+             .list_count = shape.regions.count.data(),
+             .indices = shape.regions.indices.data(),
+             .position = raw(std::as_const(x)),
+             .reference = raw(std::as_const(shape.reference)),
+             .weight = shape.weight.data(),
+             .region_weight = shape.region_weight.data(),
+             .center = raw(std::as_const(shape.center)),
+             .moment = {},
+             .frame_rotation = {},
+             .frame_translation = {}};
+    const Eigen::Matrix3f rotation = shape.frame.rotation.toRotationMatrix().cast<float>();
+    for (int i = 0; i < 9; ++i) input.frame_rotation[i] = rotation(i / 3, i % 3);
+    for (int i = 0; i < 3; ++i) input.frame_translation[i] = static_cast<float>(shape.frame.translation[i]);
+  }
+  std::size_t size() const { return x.size(); }
+  double neighbors() const { return static_cast<double>(shape.regions.total); }
+  Json about() const { return {{"particles", size()}, {"average_neighbors", shape.regions.average()}}; }
+};
+
+/// A kernel of the table on the rows of a scene.
+using OnRows = void (*)(const ShapeKernels&, RegionScene&, std::size_t begin, std::size_t end);
+
+Timed on_rows(const LatticeScene& lattice, int threads, InstructionLevel level, bool per_neighbor,
+              OnRows run) {
+  const auto scene = std::make_shared<RegionScene>(lattice, level);
+  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
+  return {.run =
+              [=, &kernels] {
+                parallel_for(threads, scene->size(),
+                             [&](std::size_t begin, std::size_t end) { run(kernels, *scene, begin, end); });
+              },
+          .items = per_neighbor ? scene->neighbors() : static_cast<double>(scene->size()),
+          .about = scene->about()};
+}
+
+/// A phase of the step, whole.
+using PhaseFunction = void (*)(const VectorColumn&, std::size_t, int, InstructionLevel, ShapeMatching&);
+
+Timed phase(const LatticeScene& lattice, int threads, InstructionLevel level, PhaseFunction run) {
+  const auto scene = std::make_shared<RegionScene>(lattice, level);
+  return {.run = [=] { run(scene->x, 0, threads, level, scene->shape); },
+          .items = scene->neighbors(),
+          .about = scene->about()};
+}
+
+/// As many rows as the regions of the scene have neighbours, from a table of `rows` rows, swept from its
+/// first to its last again and again; threads share the sweeps.
+Timed additions(const LatticeScene& lattice, std::size_t rows, int threads, InstructionLevel level) {
+  const RegionScene scene(lattice, level);
+  if (rows == 0) rows = scene.size();
+  const auto sweeps = static_cast<std::size_t>(scene.neighbors()) / rows + 1;
+  const auto table = std::make_shared<Column<float>>(rows * k_row);
+  std::fill(table->begin(), table->end(), 1e-3f);
+  const auto sums = std::make_shared<Column<float>>(sweeps * k_row);
+  const RowAdditions& kernels = MALLOW_SELECT(level, row_additions);
+  return {.run =
+              [=, &kernels] {
+                parallel_for(
+                    threads, sweeps,
+                    [&](std::size_t begin, std::size_t) {
+                      kernels.add(table->data(), rows, sums->data() + begin * k_row);
+                    },
+                    1);
+              },
+          .items = static_cast<double>(rows * sweeps),
+          .about = {{"rows", rows}, {"table_bytes", rows * k_row * sizeof(float)}}};
+}
+
+void add_level(const LatticeScene& scene, int threads, InstructionLevel level, KernelSet& set) {
+  const auto about = [&](const char* kernel, const char* item) {
+    return KernelCase{kernel, scene.name, threads, name(level), item};
+  };
+  const auto compared = [&](const char* kernel) {
+    KernelCase result = about(kernel, "neighbor");
+    result.compare_to = "row_additions";
+    return result;
+  };
+  set.add(about("row_additions_in_cache", "row"),
+          [=] { return additions(scene, k_cached_rows, threads, level); });
+  set.add(about("row_additions", "row"), [=] { return additions(scene, 0, threads, level); });
+  set.add(about("write_rows", "particle"), [=] {
+    return on_rows(scene, threads, level, false,
+                   [](const ShapeKernels& k, RegionScene& s, std::size_t begin, std::size_t end) {
+                     k.write_rows(s.input, begin, end, s.shape.rows.data());
+                   });
+  });
+  set.add(compared("region_sums"), [=] {
+    return on_rows(scene, threads, level, true,
+                   [](const ShapeKernels& k, RegionScene& s, std::size_t begin, std::size_t end) {
+                     k.sum_regions(s.input, begin, end, s.shape.rows.data(), s.sums.data());
+                   });
+  });
+  // With the rigid frame and the rows.
+  set.add(compared("region_sums_phase"), [=] { return phase(scene, threads, level, sum_regions); });
+  set.add(compared("goals"), [=] {
+    return on_rows(scene, threads, level, true,
+                   [](const ShapeKernels& k, RegionScene& s, std::size_t begin, std::size_t end) {
+                     k.goals(s.input, begin, end, s.shape.sums.data(), raw(s.shape.pull));
+                   });
+  });
+  set.add(compared("goals_phase"), [=] { return phase(scene, threads, level, compute_goals); });
+}
+
+}  // namespace
+
+void add_region_sums(const KernelVariants& variants, KernelSet& set) {
+  for (const LatticeScene& scene : {k_cube_15, k_cube_22, k_bar})
+    for (const int threads : variants.threads)
+      for (const InstructionLevel level : variants.levels) add_level(scene, threads, level, set);
+}
+
+}  // namespace mallow::bench
