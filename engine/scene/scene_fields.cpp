@@ -68,6 +68,8 @@ FieldTable fields(SceneMaterial& material) {
       {"cohesion", &m.cohesion, between(0, 1), "", "share of a negative pressure that acts"},
       {"region_radius", &m.region_radius, k_positive, "m", "radius of the shape matching regions",
        "solver.support_radius"},
+      {"region_stride", &m.region_stride, between(1, k_largest_int), "particles",
+       "one of so many owns a region; more is faster and coarser"},
       {"color", &material.color, between(0, 1), "", "red, green and blue in pictures, linear",
        "one of a palette"},
   };

@@ -54,14 +54,14 @@ void sum_rows(const float* rows, const std::uint32_t* list, std::uint32_t n, flo
 void sum_regions(const ShapeInput& in, std::size_t begin, std::size_t end, const float* rows,
                  float* sums) noexcept {
   for (std::size_t j = begin; j < end; ++j)
-    sum_rows(rows, in.indices + in.list_begin[j], in.list_count[j], sums + j * k_row);
+    sum_rows(rows, in.regions.indices + in.regions.begin[j], in.regions.count[j], sums + j * k_row);
 }
 
 void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float* sums,
            Vectors pull) noexcept {
   for (std::size_t i = begin; i < end; ++i) {
     float s[k_row], u[3];
-    sum_rows(sums, in.indices + in.list_begin[i], in.list_count[i], s);
+    sum_rows(sums, in.memberships.indices + in.memberships.begin[i], in.memberships.count[i], s);
     displacement(in, i, u);
     const float x = in.reference.x[i], y = in.reference.y[i], z = in.reference.z[i], w = in.weight[i];
     pull.x[i] = w * (s[0] * x + s[1] * y + s[2] * z + s[9]) - u[0];

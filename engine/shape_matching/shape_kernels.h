@@ -8,7 +8,16 @@ namespace mallow {
 /// Floats of a row: twelve sums and padding, one cache line, so that a neighbour costs one load and one add.
 inline constexpr std::size_t k_row = 16;
 
-/// The regions of one group: every particle j owns the region N_j. Everything is relative to a rigid frame of
+/// Lists behind each other in one array.
+struct RegionLists {
+  const std::uint32_t* begin;
+  const std::uint32_t* count;
+  const std::uint32_t* indices;
+};
+
+/// The regions of one group: particle i is in the regions N_i, region j holds the particles N_j. Where every
+/// particle owns a region the two are one list (model 2); with fewer owners every region is still whole, and
+/// |N_i| counts the regions that are owned. Everything is relative to a rigid frame of
 /// the group, x = R_g x̄ + t + u, so that what is summed and subtracted is as small as the deformation, not as
 /// large as the body: a rigid motion gives u = 0, Q = 0 and goal = position exactly.
 ///
@@ -21,10 +30,9 @@ inline constexpr std::size_t k_row = 16;
 /// B_j     | moment        | m²   | Σ w x̄ x̄ᵀ − W c̄ c̄ᵀ: xx yy zz yz xz xy
 /// R_j     | rotation      | 1    | quaternion x y z w, last step's where a step starts
 struct ShapeInput {
-  const std::uint32_t* list_begin;
-  const std::uint32_t* list_count;
-  const std::uint32_t* indices;
-  ConstVectors position;  ///< of the group's first particle on
+  RegionLists regions;      ///< per region: its particles
+  RegionLists memberships;  ///< per particle: its regions; the same lists where every particle owns a region
+  ConstVectors position;    ///< of the group's first particle on
   ConstVectors reference;
   const float* weight;
   const float* region_weight;
@@ -37,7 +45,7 @@ struct ShapeInput {
 struct ShapeKernels {
   /// Row i: w u x̄ᵀ (row by row), w u.
   void (*write_rows)(const ShapeInput&, std::size_t begin, std::size_t end, float* rows) noexcept;
-  /// sums row j: Σ_{i∈N_j} of rows.
+  /// sums row j, of region j: Σ_{i∈N_j} of rows.
   void (*sum_regions)(const ShapeInput&, std::size_t begin, std::size_t end, const float* rows,
                       float* sums) noexcept;
   /// A_j = R_g B_j + Σ w u x̄ᵀ − (Σ w u) c̄ᵀ, R_j by Newton's method from the last rotation. Replaces sums row

@@ -6,11 +6,14 @@
 namespace mallow {
 namespace {
 
+RegionLists raw(const NeighborLists& lists) {
+  return {lists.begin.data(), lists.count.data(), lists.indices.data()};
+}
+
 ShapeInput input(const VectorColumn& positions, std::size_t begin, const ShapeMatching& shape) {
   ShapeInput in{
-      .list_begin = shape.regions.begin.data(),
-      .list_count = shape.regions.count.data(),
-      .indices = shape.regions.indices.data(),
+      .regions = raw(shape.regions),
+      .memberships = raw(shape.region_stride == 1 ? shape.regions : shape.memberships),
       .position = {positions.x() + begin, positions.y() + begin, positions.z() + begin},
       .reference = raw(shape.reference),
       .weight = shape.weight.data(),
@@ -96,11 +99,10 @@ void sum_regions(const VectorColumn& positions, std::size_t begin, int threads, 
   update_frame(positions, begin, threads, shape);
   const ShapeInput in = input(positions, begin, shape);
   const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
-  const std::size_t n = shape.reference.size();
-  parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
+  parallel_for(threads, shape.reference.size(), [&](std::size_t first, std::size_t last) {
     kernels.write_rows(in, first, last, shape.rows.data());
   });
-  parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
+  parallel_for(threads, shape.region_weight.size(), [&](std::size_t first, std::size_t last) {
     kernels.sum_regions(in, first, last, shape.rows.data(), shape.sums.data());
   });
 }
@@ -111,7 +113,7 @@ void solve_rotations(const VectorColumn& positions, std::size_t begin, int threa
   const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
   float* const rotation[4] = {shape.rotation[0].data(), shape.rotation[1].data(), shape.rotation[2].data(),
                               shape.rotation[3].data()};
-  parallel_for(threads, shape.reference.size(), [&](std::size_t first, std::size_t last) {
+  parallel_for(threads, shape.region_weight.size(), [&](std::size_t first, std::size_t last) {
     kernels.solve_rotations(in, first, last, shape.sums.data(), rotation, shape.undecided.data());
     solve_undecided(in, first, last, shape);
   });

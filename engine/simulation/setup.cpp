@@ -111,6 +111,7 @@ GroupId Simulation::add_group(const Material& material, std::string name) {
   group.material = material;
   group.begin = group.end = s.store.size();
   group.shape.region_radius = material.region_radius.value_or(s.config.support_radius);
+  group.shape.region_stride = material.region_stride;
   s.groups.push_back(std::move(group));
   s.prepared = false;
   return static_cast<GroupId>(s.groups.size() - 1);

@@ -73,6 +73,7 @@ void check(const Material& material, Checks& checks) {
   check_optional("material.particle_mass", material.particle_mass, checks);
   check_optional("material.rest_density", material.rest_density, checks);
   check_optional("material.region_radius", material.region_radius, checks);
+  checks.number("material.region_stride", material.region_stride, material.region_stride >= 1, "1 or above");
 }
 
 void check(const Collider& collider, Checks& checks) {

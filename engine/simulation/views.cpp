@@ -115,7 +115,8 @@ SimulationInfo Simulation::info() {
          .particle_mass = group.mass,
          .rest_density = group.rest_density,
          .region_radius = group.shape.region_radius,
-         .average_neighbors = group.shape.built ? group.shape.regions.average() : count_neighbors(s, group),
+         .average_neighbors = group.shape.built ? group.shape.average_neighbors : count_neighbors(s, group),
+         .regions = group.shape.built ? group.shape.region_weight.size() : 0,
          .shape_matching = group.matches_shape()});
   }
   return info;

@@ -92,6 +92,8 @@ const Case k_cases[] = {
      "scene.toml:5:9: material[0].alpha: an array of 0 is not allowed: a number in [0, 1], or [[time, "
      "alpha], ...] "
      "with times that increase and alphas in [0, 1]"},
+    {{.material = "name = \"jelly\"\nregion_stride = 0"},
+     "scene.toml:5:17: material[0].region_stride: 0 is not allowed: a whole number in [1, 2147483647]"},
     {{.material = "name = \"jelly\"\ncolor = [0, 0, 1.5]"},
      "scene.toml:5:16: material[0].color[2]: 1.5 is not allowed: a number in [0, 1]"},
     {{.rest = "[surface]\nvoxels = 4"},

@@ -30,6 +30,7 @@ particle_mass = 1.25
 rest_density = 1.125
 cohesion = 0.5
 region_radius = 2.25
+region_stride = 3
 color = [1, 0.5, 0]
 [[body]]
 material = "jelly \"red\""
@@ -138,6 +139,7 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_EQ(material.material.rest_density, 1.125f);
   EXPECT_EQ(material.material.cohesion, 0.5f);
   EXPECT_EQ(material.material.region_radius, 2.25f);
+  EXPECT_EQ(material.material.region_stride, 3);
   EXPECT_EQ(material.color, Vec3(1, 0.5f, 0));
 
   ASSERT_EQ(read.bodies.size(), 8u);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <random>
 
 #include "levels.h"
@@ -9,20 +10,24 @@
 namespace mallow {
 namespace {
 
+constexpr int k_strides[] = {1, 2, 4, 8};
+
 /// One group with irregular points and its regions.
 struct World {
   VectorColumn x;
   ShapeMatching shape;
   CellGrid grid;
 
-  explicit World(std::size_t n = 600, float side = 8, float radius = 2.0f, unsigned seed = 1) : x(n) {
-    std::mt19937 random(seed);
+  explicit World(std::size_t n = 600, float side = 8, float radius = 2.0f, int stride = 1) : x(n) {
+    shape.region_stride = stride;
+    std::mt19937 random(1);
     std::uniform_real_distribution<float> coordinate(0, side);
     for (std::size_t i = 0; i < n; ++i)
       x.set(i, {coordinate(random), coordinate(random), coordinate(random)});
     build(radius);
   }
-  explicit World(const std::vector<Vec3>& points, float radius) : x(points.size()) {
+  explicit World(const std::vector<Vec3>& points, float radius, int stride = 1) : x(points.size()) {
+    shape.region_stride = stride;
     for (std::size_t i = 0; i < points.size(); ++i) x.set(i, points[i]);
     build(radius);
   }
@@ -48,37 +53,68 @@ struct World {
   }
 };
 
-/// Model section 2, literally: double, no frame.
+World strided(int stride) {
+  return World(600, 8, 2.0f, stride);
+}
+
+using Lists = std::vector<std::vector<std::size_t>>;
+
+/// All pairs within the region radius of each particle.
+Lists literal_neighbors(const World& world, const std::vector<Eigen::Vector3d>& reference) {
+  Lists lists(reference.size());
+  for (std::size_t i = 0; i < lists.size(); ++i)
+    for (std::size_t j = 0; j < lists.size(); ++j)
+      if ((reference[i] - reference[j]).norm() <= static_cast<double>(world.shape.region_radius))
+        lists[i].push_back(j);
+  return lists;
+}
+
+/// Every stride-th particle owns a region, and so does every particle that is in none of theirs.
+std::vector<std::size_t> literal_owners(const Lists& neighbors, std::size_t stride) {
+  std::vector<bool> owns(neighbors.size());
+  for (std::size_t j = 0; j < neighbors.size(); j += stride) owns[j] = true;
+  std::vector<std::size_t> owners;
+  for (std::size_t i = 0; i < neighbors.size(); ++i) {
+    bool covered = false;
+    for (std::size_t j = 0; j < neighbors.size(); j += stride)
+      covered = covered || std::find(neighbors[j].begin(), neighbors[j].end(), i) != neighbors[j].end();
+    if (owns[i] || !covered) owners.push_back(i);
+  }
+  return owners;
+}
+
+/// Model section 2, literally: double, no frame; |N_i| counts the regions that are owned.
 std::vector<Eigen::Vector3d> literal_pull(const World& world, const std::vector<Eigen::Vector3d>& reference) {
   const std::size_t n = world.x.size();
-  std::vector<Eigen::Matrix3d> rotations(n);
-  std::vector<Eigen::Vector3d> c(n), cr(n);
+  const Lists neighbors = literal_neighbors(world, reference);
+  const std::vector<std::size_t> owners =
+      literal_owners(neighbors, static_cast<std::size_t>(world.shape.region_stride));
+  std::vector<double> memberships(n);
+  for (const std::size_t j : owners)
+    for (const std::size_t i : neighbors[j]) ++memberships[i];
+  std::vector<Eigen::Vector3d> goals(n, Eigen::Vector3d::Zero());
   const auto position = [&](std::size_t i) -> Eigen::Vector3d { return world.x.get(i).cast<double>(); };
-  for (std::size_t j = 0; j < n; ++j) {
+  for (const std::size_t j : owners) {
     double total = 0;
-    c[j] = cr[j] = Eigen::Vector3d::Zero();
-    for (const auto i : world.shape.regions.of(j)) {
-      const double w = 1.0 / world.shape.regions.count[i];
+    Eigen::Vector3d c(0, 0, 0), cr(0, 0, 0);
+    for (const std::size_t i : neighbors[j]) {
+      const double w = 1.0 / memberships[i];
       total += w;
-      c[j] += w * position(i);
-      cr[j] += w * reference[i];
+      c += w * position(i);
+      cr += w * reference[i];
     }
-    c[j] /= total;
-    cr[j] /= total;
+    c /= total;
+    cr /= total;
     Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
-    for (const auto i : world.shape.regions.of(j))
-      a += (position(i) - c[j]) * (reference[i] - cr[j]).transpose() / world.shape.regions.count[i];
+    for (const std::size_t i : neighbors[j])
+      a += (position(i) - c) * (reference[i] - cr).transpose() / memberships[i];
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Eigen::Vector3d sign(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
-    rotations[j] = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+    const Eigen::Matrix3d r = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+    for (const std::size_t i : neighbors[j]) goals[i] += (r * (reference[i] - cr) + c) / memberships[i];
   }
-  std::vector<Eigen::Vector3d> pull(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    Eigen::Vector3d g = Eigen::Vector3d::Zero();
-    for (const auto j : world.shape.regions.of(i)) g += rotations[j] * (reference[i] - cr[j]) + c[j];
-    pull[i] = g / world.shape.regions.count[i] - position(i);
-  }
-  return pull;
+  for (std::size_t i = 0; i < n; ++i) goals[i] -= position(i);
+  return goals;
 }
 
 std::vector<Eigen::Vector3d> points_of(const World& world) {
@@ -95,13 +131,15 @@ double largest_pull(const World& world) {
 }
 
 TEST(regions, rigid_motion_gives_goal_equal_position) {
-  World world;
-  const Eigen::AngleAxisd turn(2.1, Eigen::Vector3d(1, -2, 0.5).normalized());
-  world.transform(
-      [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return turn * x + Eigen::Vector3d(30, -10, 5); });
-  world.match();
-  // Positions themselves are rounded to 2e-6 at this distance from the origin.
-  EXPECT_LT(largest_pull(world), 1e-5);
+  for (const int stride : k_strides) {
+    World world = strided(stride);
+    const Eigen::AngleAxisd turn(2.1, Eigen::Vector3d(1, -2, 0.5).normalized());
+    world.transform(
+        [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return turn * x + Eigen::Vector3d(30, -10, 5); });
+    world.match();
+    // Positions themselves are rounded to 2e-6 at this distance from the origin.
+    EXPECT_LT(largest_pull(world), 1e-5) << "stride " << stride;
+  }
 }
 
 TEST(regions, rigid_motion_gives_goal_equal_position_at_a_large_body) {
@@ -117,41 +155,81 @@ TEST(regions, rigid_motion_gives_goal_equal_position_at_a_large_body) {
   EXPECT_LT(largest_pull(world), 1e-4);
 }
 
+TEST(regions, of_a_stride_are_whole_and_leave_no_particle_out) {
+  // A crowd, and points so far apart that most are alone.
+  for (const float side : {8.0f, 40.0f}) {
+    for (const int stride : {2, 4, 8, 1000}) {
+      const World world(600, side, 2.0f, stride);
+      const ShapeMatching& shape = world.shape;
+      const Lists neighbors = literal_neighbors(world, points_of(world));
+      const auto owners = literal_owners(neighbors, static_cast<std::size_t>(stride));
+      ASSERT_EQ(shape.regions.count.size(), owners.size());
+      ASSERT_EQ(shape.center.size(), owners.size());
+      Lists memberships(world.x.size());
+      for (std::size_t j = 0; j < owners.size(); ++j) {
+        std::vector<std::size_t> region(shape.regions.of(j).begin(), shape.regions.of(j).end());
+        std::sort(region.begin(), region.end());
+        EXPECT_EQ(region, neighbors[owners[j]]);
+        for (const std::size_t i : region) memberships[i].push_back(j);
+      }
+      for (std::size_t i = 0; i < world.x.size(); ++i) {
+        std::vector<std::size_t> mine(shape.memberships.of(i).begin(), shape.memberships.of(i).end());
+        std::sort(mine.begin(), mine.end());
+        EXPECT_EQ(mine, memberships[i]);
+        EXPECT_FALSE(mine.empty());
+      }
+    }
+  }
+}
+
+TEST(regions, of_every_particle_need_no_second_list) {
+  const World every = strided(1), fourth = strided(4);
+  EXPECT_EQ(every.shape.regions.count.size(), every.x.size());
+  EXPECT_EQ(every.shape.memberships.bytes(), 0u);
+  EXPECT_LT(fourth.shape.regions.total, every.shape.regions.total / 3);
+  EXPECT_EQ(fourth.shape.memberships.total, fourth.shape.regions.total);
+  EXPECT_EQ(fourth.shape.average_neighbors, every.shape.average_neighbors);
+}
+
 TEST(shape_matching, equals_the_literal_sums_on_a_deformed_body) {
-  World world;
-  const auto reference = points_of(world);
-  std::mt19937 random(4);
-  std::normal_distribution<double> normal(0, 0.2);
-  world.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
-    const Eigen::AngleAxisd twist(0.3 * x.z(), Eigen::Vector3d::UnitZ());
-    return twist * Eigen::Vector3d(1.3 * x.x(), x.y(), 0.7 * x.z()) +
-           Eigen::Vector3d(normal(random), normal(random), normal(random));
-  });
-  world.match();
-  const auto expected = literal_pull(world, reference);
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    EXPECT_LT((world.shape.pull.get(i).cast<double>() - expected[i]).norm(), 2e-5);
+  for (const int stride : k_strides) {
+    World world = strided(stride);
+    const auto reference = points_of(world);
+    std::mt19937 random(4);
+    std::normal_distribution<double> normal(0, 0.2);
+    world.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+      const Eigen::AngleAxisd twist(0.3 * x.z(), Eigen::Vector3d::UnitZ());
+      return twist * Eigen::Vector3d(1.3 * x.x(), x.y(), 0.7 * x.z()) +
+             Eigen::Vector3d(normal(random), normal(random), normal(random));
+    });
+    world.match();
+    const auto expected = literal_pull(world, reference);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_LT((world.shape.pull.get(i).cast<double>() - expected[i]).norm(), 2e-5) << "stride " << stride;
+  }
 }
 
 TEST(shape_matching, conserves_linear_and_angular_momentum) {
-  World world;
-  std::mt19937 random(5);
-  std::normal_distribution<double> normal(0, 0.3);
-  world.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
-    return x + Eigen::Vector3d(normal(random), normal(random), normal(random));
-  });
-  world.match();
-  Eigen::Vector3d linear(0, 0, 0), angular(0, 0, 0);
-  double size = 0, moment = 0;
-  for (std::size_t i = 0; i < world.x.size(); ++i) {
-    const Eigen::Vector3d x = world.x.get(i).cast<double>(), p = world.shape.pull.get(i).cast<double>();
-    linear += p;
-    angular += x.cross(p);
-    size += p.norm();
-    moment += x.norm() * p.norm();
+  for (const int stride : k_strides) {
+    World world = strided(stride);
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal(0, 0.3);
+    world.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+      return x + Eigen::Vector3d(normal(random), normal(random), normal(random));
+    });
+    world.match();
+    Eigen::Vector3d linear(0, 0, 0), angular(0, 0, 0);
+    double size = 0, moment = 0;
+    for (std::size_t i = 0; i < world.x.size(); ++i) {
+      const Eigen::Vector3d x = world.x.get(i).cast<double>(), p = world.shape.pull.get(i).cast<double>();
+      linear += p;
+      angular += x.cross(p);
+      size += p.norm();
+      moment += x.norm() * p.norm();
+    }
+    EXPECT_LT(linear.norm(), 1e-6 * size) << "stride " << stride;
+    EXPECT_LT(angular.norm(), 1e-6 * moment) << "stride " << stride;
   }
-  EXPECT_LT(linear.norm(), 1e-6 * size);
-  EXPECT_LT(angular.norm(), 1e-6 * moment);
 }
 
 TEST(rotation, is_the_polar_factor_of_every_region_to_single_precision) {
@@ -242,16 +320,18 @@ TEST(shape_matching, has_the_same_bits_at_every_level_and_thread_count) {
     return Eigen::AngleAxisd(0.3 * x.z(), Eigen::Vector3d::UnitZ()) *
            Eigen::Vector3d(1.4 * x.x(), x.y(), x.z());
   };
-  World reference;
-  reference.transform(deform);
-  reference.match(1, InstructionLevel::baseline);
-  for (const InstructionLevel level : levels()) {
-    for (const int threads : {1, 2, 3}) {
-      World world;
-      world.transform(deform);
-      world.match(threads, level);
-      for (std::size_t i = 0; i < world.x.size(); ++i)
-        ASSERT_EQ(world.shape.pull.get(i), reference.shape.pull.get(i));
+  for (const int stride : k_strides) {
+    World reference = strided(stride);
+    reference.transform(deform);
+    reference.match(1, InstructionLevel::baseline);
+    for (const InstructionLevel level : levels()) {
+      for (const int threads : {1, 2, 3}) {
+        World world = strided(stride);
+        world.transform(deform);
+        world.match(threads, level);
+        for (std::size_t i = 0; i < world.x.size(); ++i)
+          ASSERT_EQ(world.shape.pull.get(i), reference.shape.pull.get(i));
+      }
     }
   }
 }

@@ -28,7 +28,7 @@ Simulation busy_scene(int threads) {
   Simulation s(config(threads));
   const GroupId jelly =
       s.add_body(cube(9, {0, 0, 1}), Material{.alpha = 0.5f, .update_threshold = 0.1f}, "jelly");
-  s.add_body(cube(6, {2, 2, 11}), Material{.alpha = {{0, 1}, {3, 0.2f}}}, "thickening");
+  s.add_body(cube(6, {2, 2, 11}), Material{.alpha = {{0, 1}, {3, 0.2f}}, .region_stride = 3}, "thickening");
   s.add_body(cube(5, {-7, 0, 1}), Material{.alpha = 0}, "solid");
   s.add_body(cube(4, {20, 0, 1}), jelly);
   s.add_collider({.shape = Plane{{0.1f, 0, 1}, 0}, .friction = 0.3f});
@@ -70,32 +70,34 @@ TEST(free_fall, equals_the_recurrence) {
 }
 
 TEST(shape_matching, conserves_linear_and_angular_momentum_over_1000_steps) {
-  SolverConfig c = config();
-  c.gravity = {0, 0, 0};
-  Simulation s(c);
-  Body body = cube(8, {-4, -4, -4});
-  std::mt19937 random(7);
-  std::normal_distribution<float> normal(0, 0.1f);
-  const Vec3 spin(0.1f, 0.2f, 0.15f);
-  for (const Vec3& x : body.positions)
-    body.velocities.push_back(spin.cross(x) + Vec3(0.3f, -0.1f, 0.2f) +
-                              Vec3(normal(random), normal(random), normal(random)));
-  s.add_body(body, Material{.alpha = 0});
-  const auto momenta = [&] {
-    const auto x = s.positions().eigen().cast<double>().eval();
-    const auto v = s.velocities().eigen().cast<double>().eval();
-    const Eigen::RowVector3d center = x.colwise().mean();
-    Eigen::Vector3d angular(0, 0, 0);
-    for (Eigen::Index i = 0; i < x.rows(); ++i)
-      angular +=
-          Eigen::Vector3d((x.row(i) - center).transpose()).cross(Eigen::Vector3d(v.row(i).transpose()));
-    return std::pair<Eigen::Vector3d, Eigen::Vector3d>(v.colwise().sum().transpose(), angular);
-  };
-  const auto [linear, angular] = momenta();
-  for (int k = 0; k < 1000; ++k) s.step();
-  const auto [linear_after, angular_after] = momenta();
-  EXPECT_LT((linear_after - linear).norm(), 1e-5 * linear.norm());
-  EXPECT_LT((angular_after - angular).norm(), 1e-5 * angular.norm());
+  for (const int stride : {1, 4}) {
+    SolverConfig c = config();
+    c.gravity = {0, 0, 0};
+    Simulation s(c);
+    Body body = cube(8, {-4, -4, -4});
+    std::mt19937 random(7);
+    std::normal_distribution<float> normal(0, 0.1f);
+    const Vec3 spin(0.1f, 0.2f, 0.15f);
+    for (const Vec3& x : body.positions)
+      body.velocities.push_back(spin.cross(x) + Vec3(0.3f, -0.1f, 0.2f) +
+                                Vec3(normal(random), normal(random), normal(random)));
+    s.add_body(body, Material{.alpha = 0, .region_stride = stride});
+    const auto momenta = [&] {
+      const auto x = s.positions().eigen().cast<double>().eval();
+      const auto v = s.velocities().eigen().cast<double>().eval();
+      const Eigen::RowVector3d center = x.colwise().mean();
+      Eigen::Vector3d angular(0, 0, 0);
+      for (Eigen::Index i = 0; i < x.rows(); ++i)
+        angular +=
+            Eigen::Vector3d((x.row(i) - center).transpose()).cross(Eigen::Vector3d(v.row(i).transpose()));
+      return std::pair<Eigen::Vector3d, Eigen::Vector3d>(v.colwise().sum().transpose(), angular);
+    };
+    const auto [linear, angular] = momenta();
+    for (int k = 0; k < 1000; ++k) s.step();
+    const auto [linear_after, angular_after] = momenta();
+    EXPECT_LT((linear_after - linear).norm(), 1e-5 * linear.norm());
+    EXPECT_LT((angular_after - angular).norm(), 1e-5 * angular.norm());
+  }
 }
 
 TEST(step, needs_no_sph_for_a_lone_elastic_group_and_no_regions_at_alpha_1) {
@@ -114,6 +116,23 @@ TEST(step, needs_no_sph_for_a_lone_elastic_group_and_no_regions_at_alpha_1) {
   EXPECT_EQ(fluid.densities().size(), fluid.particle_count());
   EXPECT_LT(solid.info().bytes, both.info().bytes);
   EXPECT_LT(fluid.info().bytes, both.info().bytes);
+}
+
+TEST(region_stride, owns_fewer_regions_in_less_memory_and_counts_the_same_neighbors) {
+  const auto info = [](int stride) {
+    Simulation s(config());
+    s.add_body(cube(10), Material{.alpha = 0, .region_stride = stride});
+    return s.info();
+  };
+  const SimulationInfo every = info(1), fourth = info(4);
+  EXPECT_EQ(every.groups[0].regions, 1000u);
+  EXPECT_GE(fourth.groups[0].regions, 250u);
+  EXPECT_LT(fourth.groups[0].regions, 275u);
+  EXPECT_EQ(fourth.groups[0].average_neighbors, every.groups[0].average_neighbors);
+  EXPECT_LT(fourth.bytes, every.bytes);
+  Simulation fluid(config());
+  fluid.add_body(cube(3), Material{.alpha = 1});
+  EXPECT_EQ(fluid.info().groups[0].regions, 0u);
 }
 
 TEST(alpha, that_changes_turns_phases_on_and_off) {
@@ -276,6 +295,8 @@ TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
   contains(message_of([&] { s.prepare(); }), {"no particles"});
   contains(message_of([&] { s.add_group(Material{.alpha = 1.5f, .cohesion = 2}); }),
            {"material.alpha: 1.5", "material.cohesion: 2", "[0, 1]"});
+  contains(message_of([&] { s.add_group(Material{.region_stride = 0}); }),
+           {"material.region_stride: 0", "1 or above"});
   contains(message_of([&] { s.add_group(Material{.alpha = {{1, 0}, {1, 1}}}); }), {"material.alpha time: 1"});
   contains(message_of([&] { s.add_body(Body{}, Material{}); }), {"body.positions", "no particles"});
   contains(message_of([&] {

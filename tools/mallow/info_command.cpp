@@ -21,17 +21,18 @@ struct InfoOptions {
 
 void print_groups(const Scene& scene, const SimulationInfo& info) {
   const std::vector<std::size_t> materials = group_materials(scene);
-  std::printf("\n%-16s %-16s %10s %10s %10s %12s %12s  %s\n", "group", "material", "particles", "spacing",
-              "mass", "rest density", "neighbours", "shape matching");
+  std::printf("\n%-16s %-16s %10s %10s %10s %12s %12s %10s  %s\n", "group", "material", "particles",
+              "spacing", "mass", "rest density", "neighbours", "regions", "shape matching");
   for (std::size_t i = 0; i < info.groups.size(); ++i) {
     const GroupInfo& group = info.groups[i];
     char neighbors[32] = "-";
     if (group.average_neighbors > 0)
       std::snprintf(neighbors, sizeof neighbors, "%.2f", group.average_neighbors);
-    std::printf("%-16s %-16s %10zu %10.5g %10.5g %12.5g %12s  %s\n", group.name.c_str(),
+    std::printf("%-16s %-16s %10zu %10.5g %10.5g %12.5g %12s %10zu  %s\n", group.name.c_str(),
                 scene.materials[materials[i]].name.c_str(), group.particles,
                 static_cast<double>(group.spacing), static_cast<double>(group.particle_mass),
-                static_cast<double>(group.rest_density), neighbors, group.shape_matching ? "on" : "off");
+                static_cast<double>(group.rest_density), neighbors, group.regions,
+                group.shape_matching ? "on" : "off");
   }
 }
 

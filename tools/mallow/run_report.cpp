@@ -23,6 +23,7 @@ nlohmann::ordered_json groups_json(const RunReport& report) {
                       {"rest_density", group.rest_density},
                       {"region_radius", group.region_radius},
                       {"average_neighbors", group.average_neighbors},
+                      {"regions", group.regions},
                       {"shape_matching", group.shape_matching}});
   }
   return groups;

@@ -53,6 +53,12 @@ struct Material {
   float cohesion = 0.0f;
   /// Radius of the shape matching regions [m], > 0; left out: the solver's support_radius. [TK eq. 7]
   std::optional<float> region_radius = {};
+  /// Of this many particles, in the cell order of the reference shape, one owns a region, >= 1; particles
+  /// that would be in no region own one too. Shape matching costs about 1/region_stride; goals follow fewer
+  /// rotations, so a body bends and twists more coarsely and holds together by fewer overlaps. Momentum is
+  /// kept and a rigid motion meets no force whatever it is; best a small share of the average number of
+  /// neighbours. [model 2 with |N_i| regions; the idea of Steinemann et al. 2008]
+  int region_stride = 1;
 };
 
 }  // namespace mallow

@@ -44,7 +44,8 @@ struct GroupInfo {
   float particle_mass = 0;
   float rest_density = 0;
   float region_radius = 0;
-  double average_neighbors = 0;  ///< mean |N_i| over the reference shape, i included
+  double average_neighbors = 0;  ///< mean |N_i| over the reference shape, i included, whatever the stride
+  std::size_t regions = 0;       ///< of shape matching, as many as are owned; 0 where none are built
   bool shape_matching = false;   ///< runs now
 };
 struct SimulationInfo {
