@@ -47,6 +47,8 @@ FieldTable fields(SolverConfig& config) {
        "also bound the step by the speed of sound and by viscous diffusion"},
       {"contact_offset", &config.contact_offset, k_not_negative, "m",
        "distance from a collider at which a particle touches it", "half the spacing"},
+      {"rotation_iterations", &config.rotation_iterations, between(0, 8), "",
+       "most iterations for a region's rotation in a step; fewer is faster, 0 is exact and slow"},
   };
 }
 

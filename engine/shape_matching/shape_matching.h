@@ -61,9 +61,10 @@ void build_regions(int threads, InstructionLevel level, CellGrid& grid, ShapeMat
 /// First sums over the regions. [model 2]
 void sum_regions(const VectorColumn& positions, std::size_t begin, int threads, InstructionLevel level,
                  ShapeMatching& shape);
-/// R_j of every region from last step's. [model 2]
-void solve_rotations(const VectorColumn& positions, std::size_t begin, int threads, InstructionLevel level,
-                     ShapeMatching& shape);
+/// R_j of every region from last step's, by at most `iterations` of Newton's method: with k_enough_iterations
+/// to single precision, with fewer as near as they come, with 0 exactly, in double. [model 2]
+void solve_rotations(const VectorColumn& positions, std::size_t begin, int iterations, int threads,
+                     InstructionLevel level, ShapeMatching& shape);
 /// g − x of every particle. [TK eq. 7]
 void compute_goals(const VectorColumn& positions, std::size_t begin, int threads, InstructionLevel level,
                    ShapeMatching& shape);

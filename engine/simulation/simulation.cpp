@@ -32,8 +32,9 @@ StepReport Simulation::step() {
   for (Group& g : s.groups)
     if (g.matches_shape()) sum_regions(x, g.begin, s.threads, s.level, g.shape);      // x, x̄ -> sums over N_j
   timer.lap(Phase::region_sums);
+  const int iterations = s.config.rotation_iterations;
   for (Group& g : s.groups)
-    if (g.matches_shape()) solve_rotations(x, g.begin, s.threads, s.level, g.shape);  // sums -> R_j
+    if (g.matches_shape()) solve_rotations(x, g.begin, iterations, s.threads, s.level, g.shape);  // sums -> R_j
   timer.lap(Phase::rotations);
   for (Group& g : s.groups)
     if (g.matches_shape()) compute_goals(x, g.begin, s.threads, s.level, g.shape);    // R_j -> g − x       [TK eq. 7]

@@ -43,6 +43,8 @@ void check(const SolverConfig& config, Checks& checks) {
   checks.number("solver.support_radius", config.support_radius, config.support_radius > 0, k_positive);
   checks.vector("solver.gravity", config.gravity);
   checks.number("solver.update_interval", config.update_interval, config.update_interval >= 1, "1 or above");
+  checks.number("solver.rotation_iterations", config.rotation_iterations,
+                config.rotation_iterations >= 0 && config.rotation_iterations <= 8, "0 to 8");
   if (config.contact_offset)
     checks.number("solver.contact_offset", *config.contact_offset, *config.contact_offset >= 0,
                   k_not_negative);

@@ -36,9 +36,10 @@ struct World {
     update_reference(x, 0, x.size(), shape);
     build_regions(2, best_instruction_level(), grid, shape);
   }
-  void match(int threads = 2, InstructionLevel level = best_instruction_level()) {
+  void match(int threads = 2, InstructionLevel level = best_instruction_level(),
+             int iterations = k_enough_iterations) {
     sum_regions(x, 0, threads, level, shape);
-    solve_rotations(x, 0, threads, level, shape);
+    solve_rotations(x, 0, iterations, threads, level, shape);
     compute_goals(x, 0, threads, level, shape);
   }
   template <class F>
@@ -287,6 +288,93 @@ TEST(rotation, never_mirrors_and_never_is_nan_on_mirrored_flat_and_collapsed_bod
   check(transformed(collapse));
 }
 
+/// Between the rotations of one region in two worlds [rad].
+double angle_between(const World& a, const World& b, std::size_t j) {
+  return Eigen::AngleAxisd(a.rotation(j).transpose() * b.rotation(j)).angle();
+}
+double largest_angle(const World& a, const World& b) {
+  double largest = 0;
+  for (std::size_t j = 0; j < a.x.size(); ++j) largest = std::max(largest, angle_between(a, b, j));
+  return largest;
+}
+
+/// A world that was stretched and then turned about z by `angle` since it last matched.
+World turned(double angle, int iterations, int threads = 2,
+             InstructionLevel level = best_instruction_level()) {
+  World world;
+  world.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+    return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) *
+           Eigen::Vector3d(1.3 * x.x(), x.y(), 0.8 * x.z());
+  });
+  world.match(threads, level, iterations);
+  return world;
+}
+
+TEST(rotation, after_one_iteration_is_off_by_less_than_the_cube_of_the_regions_turn) {
+  for (const double angle : {0.02, 0.05, 0.1, 0.2, 0.4}) {
+    // The stretch turns regions at the surface, which are not round, by up to 0.2 rad more.
+    const World exact = turned(angle, 0), one = turned(angle, 1), two = turned(angle, 2);
+    for (std::size_t j = 0; j < exact.x.size(); ++j) {
+      const double turn = Eigen::AngleAxisd(exact.rotation(j)).angle();
+      const double cube = turn * turn * turn;
+      EXPECT_LT(angle_between(one, exact, j), cube + 2e-6);
+      EXPECT_LT(angle_between(two, exact, j), cube * cube * cube + 2e-6);
+    }
+    EXPECT_LT(largest_angle(turned(angle, k_enough_iterations), exact), 2e-6);
+  }
+}
+
+TEST(rotation, after_one_iteration_is_exact_where_a_round_region_only_turned) {
+  // The middle of a lattice, where a region is the same along all axes.
+  std::vector<Vec3> lattice;
+  for (int k = 0; k < 343; ++k)
+    lattice.push_back(Vec3(Eigen::Vector3i(k % 7, k / 7 % 7, k / 49).cast<float>()));
+  World world(lattice, 2.5f);
+  const Eigen::AngleAxisd turn(0.9, Eigen::Vector3d(1, 2, -1).normalized());
+  world.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return turn * x; });
+  world.match(2, best_instruction_level(), 1);
+  EXPECT_LT(Eigen::AngleAxisd(turn.toRotationMatrix().transpose() * world.rotation(171)).angle(), 1e-6);
+}
+
+TEST(rotation, that_has_not_converged_goes_on_in_the_next_step) {
+  const World exact = turned(0.6, 0);
+  World world = turned(0.6, 1);
+  EXPECT_GT(largest_angle(world, exact), 0.05);
+  world.match(2, best_instruction_level(), 1);
+  EXPECT_LT(largest_angle(world, exact), 1e-3);
+  world.match(2, best_instruction_level(), 1);
+  EXPECT_LT(largest_angle(world, exact), 2e-6);
+}
+
+TEST(rotation, is_exact_with_any_iterations_where_the_hessian_is_not_definite) {
+  // Half a turn away from the last rotation, and flat, both at once.
+  const auto half_turned = [](int iterations) {
+    World world;
+    world.transform([](const Eigen::Vector3d& x) -> Eigen::Vector3d { return {-x.x(), -x.y(), 0}; });
+    world.match(2, best_instruction_level(), iterations);
+    return world;
+  };
+  const World exact = half_turned(0);
+  for (const int iterations : {1, 2, 7, k_enough_iterations}) {
+    const World world = half_turned(iterations);
+    for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t j = 0; j < world.x.size(); ++j)
+        ASSERT_EQ(world.shape.rotation[k][j], exact.shape.rotation[k][j]);
+  }
+}
+
+TEST(rotation, has_the_same_bits_at_every_level_and_thread_count_for_any_iterations) {
+  for (int iterations = 0; iterations <= k_enough_iterations; ++iterations) {
+    const World reference = turned(0.7, iterations, 1, InstructionLevel::baseline);
+    for (const InstructionLevel level : levels())
+      for (const int threads : {1, 2, 3}) {
+        const World world = turned(0.7, iterations, threads, level);
+        for (std::size_t i = 0; i < world.x.size(); ++i)
+          ASSERT_EQ(world.shape.pull.get(i), reference.shape.pull.get(i));
+      }
+  }
+}
+
 TEST(rotation, of_a_collapsed_body_is_the_last_one) {
   World world(300);
   const Eigen::AngleAxisd turn(0.8, Eigen::Vector3d::UnitX());
@@ -313,6 +401,18 @@ TEST(regions, of_one_two_and_three_particles_pull_back_to_shape) {
   three.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return turn * x; });
   three.match();
   EXPECT_LT(largest_pull(three), 1e-5);
+}
+
+TEST(shape_matching, conserves_linear_momentum_whatever_the_rotations_are) {
+  // Too few iterations for a turn of 1.2 rad: the rotations are far off.
+  const World world = turned(1.2, 1);
+  Eigen::Vector3d linear(0, 0, 0);
+  double size = 0;
+  for (std::size_t i = 0; i < world.x.size(); ++i) {
+    linear += world.shape.pull.get(i).cast<double>();
+    size += world.shape.pull.get(i).cast<double>().norm();
+  }
+  EXPECT_LT(linear.norm(), 1e-6 * size);
 }
 
 TEST(shape_matching, has_the_same_bits_at_every_level_and_thread_count) {

@@ -100,6 +100,41 @@ TEST(shape_matching, conserves_linear_and_angular_momentum_over_1000_steps) {
   }
 }
 
+/// A tumbling cube after 60 steps of `iterations`, and how much of its angular momentum it still has.
+struct Tumble {
+  std::vector<Vec3> positions;
+  double kept;
+};
+const Vec3 k_spin(0.3f, 0.4f, 0.2f);
+Tumble tumble(int iterations) {
+  SolverConfig c = config();
+  c.gravity = {0, 0, 0};
+  c.rotation_iterations = iterations;
+  Simulation s(c);
+  Body body = cube(6, {-3, -3, -3});
+  for (const Vec3& x : body.positions) body.velocities.push_back(k_spin.cross(x));
+  s.add_body(body, Material{.alpha = 0});
+  const auto momentum = [&] {
+    Eigen::Vector3d sum(0, 0, 0);
+    for (std::size_t i = 0; i < s.particle_count(); ++i)
+      sum += s.positions()[i].cast<double>().cross(s.velocities()[i].cast<double>());
+    return sum.norm();
+  };
+  const double before = momentum();
+  for (int k = 0; k < 60; ++k) s.step();
+  return {s.positions_by_id(), momentum() / before};
+}
+
+TEST(rotation_iterations, of_one_and_two_tumble_as_exact_rotations_do) {
+  const Tumble exact = tumble(0);
+  for (const int iterations : {1, 2, 8}) {
+    const Tumble other = tumble(iterations);
+    for (std::size_t i = 0; i < exact.positions.size(); ++i)
+      EXPECT_LT((other.positions[i] - exact.positions[i]).norm(), 2e-4f) << iterations << " iterations";
+    EXPECT_NEAR(other.kept, 1, 1e-5) << iterations << " iterations";
+  }
+}
+
 TEST(step, needs_no_sph_for_a_lone_elastic_group_and_no_regions_at_alpha_1) {
   Simulation solid(config());
   solid.add_body(cube(6), Material{.alpha = 0});
@@ -289,6 +324,8 @@ TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
   SolverConfig bad = config();
   bad.time_step = -1;
   bad.support_radius = std::nanf("");
+  bad.rotation_iterations = 9;
+  contains(message_of([&] { Simulation s(bad); }), {"solver.rotation_iterations: 9", "0 to 8"});
   contains(message_of([&] { Simulation s(bad); }),
            {"solver.time_step: -1", "above 0", "solver.support_radius: nan"});
   Simulation s(config());
