@@ -94,6 +94,7 @@ Simulation::Simulation(const SolverConfig& config) : state_(std::make_unique<Sta
   state_->level = best_instruction_level();
   state_->sph.support_radius = config.support_radius;
   state_->sph.formulation = config.formulation;
+  state_->sph.neighbor_slack = config.neighbor_slack;
   state_->sph.factors = kernel_factors(static_cast<double>(config.support_radius));
 }
 Simulation::~Simulation() = default;
@@ -244,6 +245,7 @@ void Simulation::prepare() {
   if (s.groups.size() > 1) refuse_overlaps(s);
   s.checked_particles = s.store.size();
 
+  s.sph.lists_outdated = true;
   s.sph.groups.clear();
   s.sph.group_end.clear();
   s.sph.viscous = false;

@@ -17,7 +17,7 @@ StepReport Simulation::step() {
 
   s.sph_ran = s.needs_sph();
   if (s.sph_ran) {
-    find_neighbors(x, s.threads, s.level, sph);                 // x -> lists within σ
+    report.neighbors_found = find_neighbors(x, s.threads, s.level, sph);  // x -> lists within σ
     timer.lap(Phase::neighbors);
     compute_density(s.threads, s.level, sph);                   // lists, x -> ρ, p             [TK eq. 3]
     timer.lap(Phase::density);

@@ -48,6 +48,8 @@ void check(const SolverConfig& config, Checks& checks) {
   if (config.contact_offset)
     checks.number("solver.contact_offset", *config.contact_offset, *config.contact_offset >= 0,
                   k_not_negative);
+  checks.number("solver.neighbor_slack", config.neighbor_slack,
+                config.neighbor_slack >= 0 && config.neighbor_slack <= 1, k_share);
   checks.number("solver.threads", config.threads, config.threads >= 0 && config.threads <= 1024,
                 "0 (what the machine has) to 1024");
 }

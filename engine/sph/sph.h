@@ -19,11 +19,16 @@ struct Sph {
   float support_radius = 0;  ///< σ [m]
   Formulation formulation = Formulation::conservative;
   bool viscous = false;                ///< some group has μ > 0
+  float neighbor_slack = 0;            ///< share of σ by which lists reach farther
   std::vector<SphGroup> groups;        ///< constants per group
   std::vector<std::size_t> group_end;  ///< per group: row behind its last
 
   CellGrid grid;
   NeighborLists lists;
+  bool lists_outdated = true;  ///< rows were moved or added since the lists were found
+  VectorColumn listed;         ///< positions when the lists were found, by row [m]; empty without slack
+  std::vector<Eigen::Vector3d> partial_motion;  ///< scratch
+  std::vector<double> partial_distance;         ///< scratch
   // Sorted order.
   Column<std::uint8_t> group;  ///< empty where there is one group
   VectorColumn velocity;       ///< empty without viscosity
@@ -36,8 +41,9 @@ struct Sph {
   std::size_t bytes() const;
 };
 
-/// Cell grid and lists of all particles within σ of each particle.
-void find_neighbors(const VectorColumn& positions, int threads, InstructionLevel level, Sph& sph);
+/// Cell grid and lists of all particles within σ of each particle. With slack, lists that still hold all of
+/// these are kept, and only their positions are brought up to date. Tells whether lists were found anew.
+bool find_neighbors(const VectorColumn& positions, int threads, InstructionLevel level, Sph& sph);
 /// Density and pressure from the lists. [TK eq. 3, model 1]
 void compute_density(int threads, InstructionLevel level, Sph& sph);
 /// Pressure and viscosity accelerations. [TK eq. 1, 2, 4, model 1]

@@ -20,6 +20,7 @@ formulation = "printed"
 acoustic_limit = false
 contact_offset = 0.25
 rotation_iterations = 2
+neighbor_slack = 0.125
 [[material]]
 name = "jelly \"red\""
 alpha = [[0.0, 0.1], [1.5, 1]]
@@ -127,6 +128,7 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_FALSE(read.solver.acoustic_limit);
   EXPECT_EQ(read.solver.contact_offset, 0.25f);
   EXPECT_EQ(read.solver.rotation_iterations, 2);
+  EXPECT_EQ(read.solver.neighbor_slack, 0.125f);
 
   const SceneMaterial& material = read.materials.at(0);
   EXPECT_EQ(material.name, "jelly \"red\"");

@@ -29,10 +29,11 @@ using PhaseTimes = std::array<double, k_phase_count>;
 
 /// What one step did.
 struct StepReport {
-  double time_step = 0;        ///< Δt taken [s]
-  double max_velocity = 0;     ///< V of eq. 12 [m/s]; 0 where no SPH acts
-  bool limited = false;        ///< Δt is below Δt0
-  int updated_references = 0;  ///< groups whose reference shape was updated at the start of this step
+  double time_step = 0;          ///< Δt taken [s]
+  double max_velocity = 0;       ///< V of eq. 12 [m/s]; 0 where no SPH acts
+  bool limited = false;          ///< Δt is below Δt0
+  bool neighbors_found = false;  ///< neighbour lists were found anew, not kept (SolverConfig::neighbor_slack)
+  int updated_references = 0;    ///< groups whose reference shape was updated at the start of this step
   PhaseTimes seconds{};
 };
 

@@ -38,6 +38,11 @@ struct SolverConfig {
   /// are always solved exactly; 0 solves all so, in double: slow, a reference. [model 2; Kugelstadt et al.
   /// 2018]
   int rotation_iterations = 8;
+  /// Neighbour lists reach this share of the support radius farther than needed, in [0, 1], and are kept
+  /// until some particle has moved half of that, seen from the mean motion of all: a body that flies or rests
+  /// keeps its lists, at the price of longer ones. 0: they are found anew in every step. Results differ by
+  /// the order of sums only.
+  float neighbor_slack = 0.0f;
   /// Threads of every phase, >= 1; 0 takes what the machine has. Results do not depend on it.
   int threads = 0;
 };
