@@ -62,7 +62,8 @@ Json to_json(const Errors& errors) {
           {"density", errors.density},     {"momentum", errors.momentum}, {"energy", errors.energy}};
 }
 
-Errors compare(const Trajectory& motion, const Trajectory& reference, const Vec3& gravity, double spacing) {
+Errors compare(const Trajectory& motion, const Trajectory& reference, const Vec3& gravity,
+               double particle_spacing, double unit) {
   const std::size_t count = std::min(motion.moments.size(), reference.moments.size());
   Errors sums;
   double largest_momentum = 0, largest_kinetic = 0;
@@ -78,14 +79,15 @@ Errors compare(const Trajectory& motion, const Trajectory& reference, const Vec3
     largest_momentum = std::max(largest_momentum, b.v.colwise().mean().norm());
     largest_kinetic = std::max(largest_kinetic, 0.5 * b.v.rowwise().squaredNorm().mean());
     if (k % k_density_every != 0) continue;
-    sums.density += (relative_density(a, spacing) - relative_density(b, spacing)).squaredNorm() /
-                    static_cast<double>(a.x.rows());
+    sums.density +=
+        (relative_density(a, particle_spacing) - relative_density(b, particle_spacing)).squaredNorm() /
+        static_cast<double>(a.x.rows());
     ++densities;
   }
   const double n = static_cast<double>(count);
-  return {.position = std::sqrt(sums.position / n) / spacing,
-          .height = std::sqrt(sums.height / n) / spacing,
-          .spread = std::sqrt(sums.spread / n) / spacing,
+  return {.position = std::sqrt(sums.position / n) / unit,
+          .height = std::sqrt(sums.height / n) / unit,
+          .spread = std::sqrt(sums.spread / n) / unit,
           .density = std::sqrt(sums.density / static_cast<double>(densities)),
           .momentum = std::sqrt(sums.momentum / n) / largest_momentum,
           .energy = std::sqrt(sums.energy / n) / largest_kinetic};

@@ -209,7 +209,8 @@ Setting fewer_particles(const Scene& scene, int side) {
 }
 
 Scene read_scene_at(const std::filesystem::path& file, const Setting& setting) {
-  const Scene scene = read_scene(file, setting.overrides);
+  Scene scene = read_scene(file, setting.overrides);
+  if (setting.quality) scene = with_quality(scene, *setting.quality);
   return setting.time_step_factor == 1 ? scene
                                        : at_time_step(scene, static_cast<float>(setting.time_step_factor));
 }

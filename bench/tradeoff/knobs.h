@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,7 +15,8 @@ struct Setting {
   std::string label;  ///< "dt 0.3", "dt 0.3, stride 2"
   std::vector<std::string> overrides = {};
   double time_step_factor = 1;  ///< see at_time_step: the material stays the same
-  bool baseline() const { return overrides.empty() && time_step_factor == 1; }
+  std::optional<Quality> quality = {};
+  bool baseline() const { return overrides.empty() && time_step_factor == 1 && !quality; }
 };
 
 /// Every knob that the motion of a scene can have.

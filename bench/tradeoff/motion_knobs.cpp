@@ -51,7 +51,8 @@ Reference make_reference(const Scene& scene, const TradeoffSettings& settings, i
     reference.convergence.push_back(
         {{"time_step", static_cast<double>(scene.solver.time_step) / factor},
          {"reference_time_step", static_cast<double>(scene.solver.time_step) / settings.reference_factor},
-         {"errors", to_json(compare(coarser, reference.motion, scene.solver.gravity, spacing(scene)))}});
+         {"errors", to_json(compare(coarser, reference.motion, scene.solver.gravity, spacing(scene),
+                                    spacing(scene)))}});
   }
   return reference;
 }

@@ -4,6 +4,7 @@
 
 #include "harness/statistics.h"
 #include "mallow/level_set.h"
+#include "mallow/quality.h"
 #include "tradeoff/mesh_distance.h"
 #include "tradeoff/pareto.h"
 
@@ -27,6 +28,8 @@ std::vector<SurfaceSetting> make_settings(const SurfaceConfig& written, bool sma
   };
   for (const int voxels : small ? std::vector{24, 48} : std::vector{24, 32, 48, 64, 128, 160, 192})
     add("voxels", "voxels " + std::to_string(voxels), [&](SurfaceConfig& c) { c.voxels = voxels; });
+  for (const Quality quality : qualities())
+    add("quality", name(quality), [&](SurfaceConfig& c) { c = with_quality(c, quality); });
   if (small) return settings;
   for (const float radius : {1.5f, 1.75f, 2.5f, 3.0f})
     add("kernel_radius", "kernel " + std::to_string(radius).substr(0, 4) + " h",

@@ -15,7 +15,7 @@ namespace {
 const std::vector<std::string> k_scenes = {"elastic", "jelly", "paste", "fluid"};
 /// In settings for tests: particles along a side, and how long they move [s].
 constexpr int k_small_side = 6;
-constexpr double k_small_duration = 6;
+constexpr double k_small_duration = 9;
 
 struct TradeoffOptions {
   CommonOptions common;

@@ -15,6 +15,25 @@ void check_factor(float factor) {
   checks.finish();
 }
 
+/// What a quality does to the settings of a scene.
+struct Preset {
+  float time_step;          ///< factor
+  int region_stride;        ///< at least
+  int rotation_iterations;  ///< at most
+  float neighbor_slack;     ///< at least
+  float voxels;             ///< factor
+};
+
+const Preset& preset(Quality quality) {
+  static constexpr Preset k_realtime{1.0f, 4, 1, 0.1f, 0.5f};
+  static constexpr Preset k_balanced{1.0f, 1, 8, 0.1f, 1.0f};
+  static constexpr Preset k_accurate{0.5f, 1, 8, 0.1f, 1.5f};
+  return quality == Quality::realtime ? k_realtime : quality == Quality::balanced ? k_balanced : k_accurate;
+}
+
+/// Voxels that a surface can have along its longest side.
+constexpr int k_fewest_voxels = 8, k_most_voxels = 1024;
+
 }  // namespace
 
 SolverConfig at_time_step(const SolverConfig& config, float factor) {
@@ -31,6 +50,39 @@ Material at_time_step(const Material& material, const SolverConfig& config, floa
   check_factor(factor);
   Material result = material;
   result.elastic_time_step = material.elastic_time_step.value_or(config.time_step) / factor;
+  return result;
+}
+
+const char* name(Quality quality) {
+  return quality == Quality::realtime ? "realtime" : quality == Quality::balanced ? "balanced" : "accurate";
+}
+
+std::span<const Quality> qualities() {
+  static constexpr Quality k_all[] = {Quality::realtime, Quality::balanced, Quality::accurate};
+  return k_all;
+}
+
+SolverConfig with_quality(const SolverConfig& config, Quality quality) {
+  const Preset& p = preset(quality);
+  SolverConfig result = at_time_step(config, p.time_step);
+  result.rotation_iterations = std::min(config.rotation_iterations, p.rotation_iterations);
+  result.neighbor_slack = std::max(config.neighbor_slack, p.neighbor_slack);
+  return result;
+}
+
+Material with_quality(const Material& material, const SolverConfig& config, Quality quality) {
+  const Preset& p = preset(quality);
+  Material result = at_time_step(material, config, p.time_step);
+  result.region_stride = std::max(material.region_stride, p.region_stride);
+  return result;
+}
+
+SurfaceConfig with_quality(const SurfaceConfig& config, Quality quality) {
+  const Preset& p = preset(quality);
+  SurfaceConfig result = config;
+  result.voxels = std::clamp(static_cast<int>(std::lround(p.voxels * static_cast<float>(config.voxels))),
+                             k_fewest_voxels, k_most_voxels);
+  if (config.voxel_size) result.voxel_size = *config.voxel_size / p.voxels;
   return result;
 }
 

@@ -8,13 +8,13 @@
 
 #include "mallow/machine.h"
 #include "mallow/scene.h"
+#include "mallow/scene_options.h"
 
 namespace mallow::cli {
 namespace {
 
 struct InfoOptions {
-  std::string scene;
-  std::vector<std::string> overrides;
+  SceneOptions scene;
   int threads = 0;
   bool print = false;
 };
@@ -37,7 +37,7 @@ void print_groups(const Scene& scene, const SimulationInfo& info) {
 }
 
 void info(const InfoOptions& options) {
-  const Scene scene = read_scene(options.scene, options.overrides);
+  const Scene scene = read_scene(options.scene);
   if (options.print) {
     std::fputs(print_scene(scene).c_str(), stdout);
     return;
@@ -47,7 +47,7 @@ void info(const InfoOptions& options) {
   const bool shape_matching = std::any_of(info.groups.begin(), info.groups.end(),
                                           [](const GroupInfo& group) { return group.shape_matching; });
   const auto on_off = [](bool on) { return on ? "on" : "off"; };
-  std::printf("scene            %s\n", options.scene.c_str());
+  std::printf("scene            %s\n", options.scene.file.c_str());
   std::printf("particles        %zu in %zu group%s\n", info.particles, info.groups.size(),
               info.groups.size() == 1 ? "" : "s");
   std::printf("shape matching   %s\n", on_off(shape_matching));
@@ -71,11 +71,7 @@ void info(const InfoOptions& options) {
 void add_info_command(CLI::App& app) {
   const auto options = std::make_shared<InfoOptions>();
   CLI::App* command = app.add_subcommand("info", "Say what would run: particles, neighbours, phases, memory");
-  command->add_option("SCENE", options->scene, "Scene file (TOML)")->required();
-  command
-      ->add_option("--set", options->overrides,
-                   "Change a value of the scene: section.key=value, any number of times")
-      ->allow_extra_args(false);
+  add_scene_options(*command, options->scene);
   command->add_option("--threads", options->threads, "Threads; 0 takes all there are")
       ->check(CLI::Range(0, 1024));
   command->add_flag("--print", options->print,

@@ -16,14 +16,14 @@
 #include "mallow/run_loop.h"
 #include "mallow/run_report.h"
 #include "mallow/scene.h"
+#include "mallow/scene_options.h"
 #include "mallow/summary.h"
 
 namespace mallow::cli {
 namespace {
 
 struct RunOptions {
-  std::string scene;
-  std::vector<std::string> overrides;
+  SceneOptions scene;
   std::optional<int> frames;
   std::optional<std::int64_t> steps;
   std::string out;
@@ -44,15 +44,16 @@ void check_outputs(const RunOptions& options) {
 }
 
 Scene scene_of(const RunOptions& options) {
-  Scene scene = read_scene(options.scene, options.overrides);
+  Scene scene = read_scene(options.scene);
   if (options.frames) scene.run.frames = *options.frames;
   return scene;
 }
 
 RunReport open_report(const RunOptions& options, const Scene& scene, int threads) {
   RunReport report;
-  report.scene = options.scene;
-  report.overrides = options.overrides;
+  report.scene = options.scene.file;
+  report.overrides = options.scene.overrides;
+  if (options.scene.quality) report.quality = name(*options.scene.quality);
   report.threads = threads;
   for (const std::size_t material : group_materials(scene)) {
     report.group_materials.push_back(scene.materials[material].name);
@@ -137,7 +138,7 @@ void add_run_command(CLI::App& app) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App* command =
       app.add_subcommand("run", "Simulate a scene; write particles, surfaces, pictures and a film");
-  command->add_option("SCENE", options->scene, "Scene file (TOML)")->required();
+  add_scene_options(*command, options->scene);
   CLI::Option* frames =
       command
           ->add_option("--frames", options->frames, "Frames after frame 0, instead of the scene's run.frames")
@@ -145,10 +146,6 @@ void add_run_command(CLI::App& app) {
   command->add_option("--steps", options->steps, "Exactly this many steps, instead of frames")
       ->check(CLI::NonNegativeNumber)
       ->excludes(frames);
-  command
-      ->add_option("--set", options->overrides,
-                   "Change a value of the scene: section.key=value, any number of times")
-      ->allow_extra_args(false);
   command->add_option("--out", options->out, "Folder for the frames; without it none are written");
   command
       ->add_option("--threads", options->threads,

@@ -73,6 +73,7 @@ nlohmann::ordered_json to_json(const RunReport& report) {
   return {{"version", MALLOW_VERSION},
           {"scene", report.scene},
           {"overrides", report.overrides},
+          {"quality", report.quality},
           {"complete", report.complete},
           {"error", report.error},
           {"machine", machine_json()},

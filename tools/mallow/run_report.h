@@ -38,6 +38,7 @@ class StageTimer {
 struct RunReport {
   std::string scene;
   std::vector<std::string> overrides;
+  std::string quality;  ///< empty: as the scene says
   int threads = 0;
   SimulationInfo info;
   std::vector<std::string> group_materials;  ///< name of each group's material

@@ -14,8 +14,8 @@ namespace mallow {
 /// Points that stand for a body at rest, and how it starts to move.
 struct Body {
   std::vector<Vec3> positions = {};   ///< [m], finite, at least one
-  float spacing = 1.0f;          ///< distance of neighbouring points, h [m], > 0
-  Vec3 velocity{0, 0, 0};        ///< of every point [m/s]
+  float spacing = 1.0f;               ///< distance of neighbouring points, h [m], > 0
+  Vec3 velocity{0, 0, 0};             ///< of every point [m/s]
   std::vector<Vec3> velocities = {};  ///< of each point, added to `velocity`; empty or as long as `positions`
 };
 

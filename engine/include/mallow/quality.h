@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 #include "mallow/surface_config.h"
@@ -12,5 +14,21 @@ namespace mallow {
 SolverConfig at_time_step(const SolverConfig& config, float factor);
 /// config: that of the material, as it was before.
 Material at_time_step(const Material& material, const SolverConfig& config, float factor);
+
+/// How a scene's settings are turned between speed and accuracy; the material stays what it is. Each lies on
+/// the fronts that bench/RESULTS.md shows, with what it costs and how far off it is there.
+enum class Quality {
+  realtime,  ///< for games: fewer regions, coarser surface
+  balanced,  ///< what the scene says, with whatever is cheaper and not worse
+  accurate,  ///< for films: shorter steps, finer surface
+};
+/// "realtime", "balanced", "accurate".
+const char* name(Quality quality);
+std::span<const Quality> qualities();
+
+SolverConfig with_quality(const SolverConfig& config, Quality quality);
+/// config: that of the material, as it was before.
+Material with_quality(const Material& material, const SolverConfig& config, Quality quality);
+SurfaceConfig with_quality(const SurfaceConfig& config, Quality quality);
 
 }  // namespace mallow

@@ -10,6 +10,7 @@
 #include "mallow/body.h"
 #include "mallow/collider.h"
 #include "mallow/material.h"
+#include "mallow/quality.h"
 #include "mallow/simulation.h"
 #include "mallow/solver_config.h"
 #include "mallow/surface_config.h"
@@ -59,15 +60,15 @@ struct ScenePin {
 };
 
 struct RunConfig {
-  int frames = 240;                 ///< >= 0
+  int frames = 240;                      ///< >= 0
   std::optional<float> frame_time = {};  ///< [s], > 0; left out: one step a frame
 };
 
 /// How pictures are taken.
 struct RenderConfig {
-  int width = 960;          ///< pixels, in [16, 8192]
-  int height = 540;         ///< pixels, in [16, 8192]
-  int samples = 4;          ///< rays per pixel, in [1, 256]
+  int width = 960;               ///< pixels, in [16, 8192]
+  int height = 540;              ///< pixels, in [16, 8192]
+  int samples = 4;               ///< rays per pixel, in [1, 256]
   std::optional<Vec3> eye = {};  ///< left out: chosen so that the first frame's scene is in view
   std::optional<Vec3> target = {};
   float field_of_view = 35.0f;  ///< vertical, degrees, in [1, 120]
@@ -96,6 +97,8 @@ std::string describe_scene_keys();
 
 /// The same scene in steps of `factor` times its own, see mallow/quality.h; frames stay as long as they were.
 Scene at_time_step(const Scene& scene, float factor);
+/// The same scene turned between speed and accuracy, see mallow/quality.h; frames stay as long as they were.
+Scene with_quality(const Scene& scene, Quality quality);
 
 /// The points of a body as the scene would add them. Throws ConfigError or IoError.
 Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int threads = 0);

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mallow/scene.h"
+
+namespace mallow::cli {
+
+/// Which scene a command takes, and what is changed in it.
+struct SceneOptions {
+  std::string file;
+  std::vector<std::string> overrides;
+  std::optional<Quality> quality;  ///< turns what file and overrides say
+};
+/// SCENE, --set and --quality.
+void add_scene_options(CLI::App& command, SceneOptions& options);
+Scene read_scene(const SceneOptions& options);
+
+}  // namespace mallow::cli
