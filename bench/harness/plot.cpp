@@ -51,7 +51,7 @@ void write_svg(const std::filesystem::path& file, const Plot& plot) {
   std::ostringstream text;
   text << "set title " << quoted(plot.title) << "\nset xlabel " << quoted(plot.x_label) << "\nset ylabel "
        << quoted(plot.y_label)
-       << "\nset grid\nset key outside right top\nset offsets graph 0.05, graph 0.05, graph 0.05, graph "
+       << "\nset grid\nset key outside right top\nset offsets graph 0.05, graph 0.12, graph 0.05, graph "
           "0.05\n";
   if (plot.log_x) text << "set logscale x\n";
   if (plot.log_y) text << "set logscale y\n";

@@ -30,7 +30,7 @@ struct RegionScene {
     sum_regions(x, 0, 1, level, shape);
     sums.resize(shape.sums.size());
     std::copy(shape.sums.begin(), shape.sums.end(), sums.begin());
-    solve_rotations(x, 0, 1, level, shape);
+    solve_rotations(x, 0, k_enough_iterations, 1, level, shape);
     input = {.list_begin = shape.regions.begin.data(),
              .list_count = shape.regions.count.data(),
              .indices = shape.regions.indices.data(),

@@ -53,7 +53,9 @@ struct MatrixRegions {
         shape.rotation[k][j] = matrices[j].last.coeffs()[static_cast<Eigen::Index>(k)];
     }
   }
-  void solve(int threads, InstructionLevel level) { solve_rotations(x, 0, threads, level, shape); }
+  void solve(int threads, InstructionLevel level) {
+    solve_rotations(x, 0, k_enough_iterations, threads, level, shape);
+  }
   /// As goal positions use them: R − R_g, to which the frame is added here.
   std::vector<Eigen::Matrix3d> rotations() const {
     std::vector<Eigen::Matrix3d> result(k_matrices);
