@@ -2,13 +2,14 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <regex>
 
+#include "harness/command.h"
 #include "harness/statistics.h"
 #include "mallow/errors.h"
-#include "mallow/interrupt.h"
 
 namespace mallow::bench {
 
@@ -20,10 +21,6 @@ struct KernelSet::Entry {
 
   /// Called several times by Google Benchmark, which looks for the number of iterations first.
   void run(benchmark::State& state) {
-    if (cli::interrupted()) {
-      state.SkipWithError("interrupted");
-      return;
-    }
     if (!timed) timed = prepare();
     for (auto _ : state) {
       if (timed->restore) {
@@ -110,13 +107,9 @@ void KernelSet::run(const KernelTiming& timing, Results& results) {
         if (run.run_type == Run::RT_Iteration && run.iterations > 0)
           seconds.push_back(run.real_accumulated_time / static_cast<double>(run.iterations));
       if (entry == entries_.end() || !(*entry)->timed || seconds.empty()) return;
-      // An interrupted kernel has a time of nothing.
-      if (!cli::interrupted()) {
-        results_.add(make_row((*entry)->about, *(*entry)->timed, seconds, results_.rows()));
-        std::fprintf(stderr, "kernels: %s: %.3f ns per %s\n", (*entry)->name.c_str(),
-                     results_.rows().back()["ns_per_item"]["min"].get<double>(),
-                     (*entry)->about.item.c_str());
-      }
+      results_.add(make_row((*entry)->about, *(*entry)->timed, seconds, results_.rows()));
+      std::fprintf(stderr, "kernels: %s: %.3f ns per %s\n", (*entry)->name.c_str(),
+                   results_.rows().back()["ns_per_item"]["min"].get<double>(), (*entry)->about.item.c_str());
       (*entry)->timed.reset();
     }
 
@@ -129,7 +122,10 @@ void KernelSet::run(const KernelTiming& timing, Results& results) {
   for (const auto& entry : entries_)
     if (std::regex_search(entry->name, filter))
       benchmark::RegisterBenchmark(entry->name.c_str(),
-                                   [entry](benchmark::State& state) { entry->run(state); })
+                                   [entry, &results](benchmark::State& state) {
+                                     stop_if_interrupted(results);
+                                     entry->run(state);
+                                   })
           ->UseRealTime()
           ->MinTime(timing.min_time)
           ->Repetitions(timing.repeats);

@@ -49,7 +49,7 @@ class KernelSet {
   void add(KernelCase about, std::function<Timed()> prepare);
   /// Throws ConfigError where the filter is none, or names no kernel.
   void check(const KernelTiming& timing) const;
-  /// Times all that the filter names; a row each.
+  /// Times all that the filter names; a row each. Throws RunFailure where Ctrl-C ends it.
   void run(const KernelTiming& timing, Results& results);
 
  private:

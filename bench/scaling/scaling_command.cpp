@@ -19,8 +19,8 @@ namespace {
 
 /// Particles times steps that all repeats of a cube take, about, and bounds of the repeats: small cubes need
 /// many for a quiet moment, large ones take long.
-constexpr double k_particle_steps = 10e6;
-constexpr double k_least_repeats = 3, k_most_repeats = 30;
+constexpr double k_particle_steps = 6e6;
+constexpr double k_least_repeats = 2, k_most_repeats = 30;
 
 struct ScalingOptions : CommonOptions {
   std::size_t max_particles = 4'194'304;
