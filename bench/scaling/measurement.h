@@ -11,8 +11,8 @@
 
 namespace mallow::bench {
 
-/// One run of a cube: means over its steps, the first left out, which also allocates. Runs of all sizes take the same
-/// steps, as a body that deforms has other work to do.
+/// One run of a cube: means over its steps, the first left out, which also allocates. Runs of all sizes take
+/// the same steps, as a body that deforms has other work to do.
 struct CubeRun {
   double prepare_ms =
       0;  ///< Simulation::prepare(): what a new reference shape costs, and the first allocations
