@@ -31,9 +31,10 @@ struct RegionScene {
     sums.resize(shape.sums.size());
     std::copy(shape.sums.begin(), shape.sums.end(), sums.begin());
     solve_rotations(x, 0, k_enough_iterations, 1, level, shape);
-    input = {.list_begin = shape.regions.begin.data(),
-             .list_count = shape.regions.count.data(),
-             .indices = shape.regions.indices.data(),
+    const RegionLists lists{shape.regions.begin.data(), shape.regions.count.data(),
+                            shape.regions.indices.data()};
+    input = {.regions = lists,
+             .memberships = lists,
              .position = raw(std::as_const(x)),
              .reference = raw(std::as_const(shape.reference)),
              .weight = shape.weight.data(),

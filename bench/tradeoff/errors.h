@@ -16,9 +16,10 @@ struct Errors {
 };
 Json to_json(const Errors& errors);
 
-/// motion and reference: of the same particles, in a lattice of `spacing` h [m]; as many moments as both
-/// have.
-Errors compare(const Trajectory& motion, const Trajectory& reference, const Vec3& gravity, double spacing);
+/// motion and reference: of the same particles, which lay `particle_spacing` [m] apart; as many moments as both
+/// have. unit: h, that positions are told in [m].
+Errors compare(const Trajectory& motion, const Trajectory& reference, const Vec3& gravity,
+               double particle_spacing, double unit);
 
 /// Change of momentum and angular momentum over `duration` [s] of a body that spins and breathes in free
 /// flight, in units of Σ m |v| and Σ m |r| |v|: rounding, where the formulation keeps them.

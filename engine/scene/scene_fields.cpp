@@ -48,7 +48,7 @@ FieldTable fields(SolverConfig& config) {
       {"contact_offset", &config.contact_offset, k_not_negative, "m",
        "distance from a collider at which a particle touches it", "half the spacing"},
       {"rotation_iterations", &config.rotation_iterations, between(0, 8), "",
-       "most iterations for a region's rotation in a step; fewer is faster, 0 is exact and slow"},
+       "most iterations for a region's rotation in a step; it stops when converged; 0 is exact and slow"},
       {"neighbor_slack", &config.neighbor_slack, between(0, 1), "σ",
        "how much farther neighbour lists reach than needed, so that they are kept until something moved half "
        "of it"},

@@ -62,7 +62,7 @@ void take_reference(Simulation::State& state, Group& group) {
   build_cell_grid(state.store.position, group.begin, group.end, group.shape.region_radius, state.threads,
                   state.region_grid);
   state.store.permute(group.begin, state.region_grid.order.span(), state.threads);
-  state.sph.lists_outdated = true;
+  state.sph.kept.forget();
   update_reference(state.store.position, group.begin, group.end, group.shape);
 }
 

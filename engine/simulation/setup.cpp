@@ -245,7 +245,7 @@ void Simulation::prepare() {
   if (s.groups.size() > 1) refuse_overlaps(s);
   s.checked_particles = s.store.size();
 
-  s.sph.lists_outdated = true;
+  s.sph.kept.forget();
   s.sph.groups.clear();
   s.sph.group_end.clear();
   s.sph.viscous = false;

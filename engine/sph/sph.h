@@ -7,6 +7,7 @@
 #include "core/isa.h"
 #include "mallow/solver_config.h"
 #include "neighbors/cell_grid.h"
+#include "neighbors/kept_lists.h"
 #include "neighbors/neighbor_lists.h"
 #include "sph/kernel_functions.h"
 #include "sph/sph_kernels.h"
@@ -25,10 +26,7 @@ struct Sph {
 
   CellGrid grid;
   NeighborLists lists;
-  bool lists_outdated = true;  ///< rows were moved or added since the lists were found
-  VectorColumn listed;         ///< positions when the lists were found, by row [m]; empty without slack
-  std::vector<Eigen::Vector3d> partial_motion;  ///< scratch
-  std::vector<double> partial_distance;         ///< scratch
+  KeptLists kept;  ///< empty without slack
   // Sorted order.
   Column<std::uint8_t> group;  ///< empty where there is one group
   VectorColumn velocity;       ///< empty without viscosity

@@ -89,7 +89,7 @@ TEST(neighbor_slack, without_it_nothing_is_kept) {
   Sph sph = sph_with_slack(0, swarm.x.size());
   EXPECT_TRUE(find_neighbors(swarm.x, 2, best_instruction_level(), sph));
   EXPECT_TRUE(find_neighbors(swarm.x, 2, best_instruction_level(), sph));
-  EXPECT_EQ(sph.listed.bytes(), 0u);
+  EXPECT_EQ(sph.kept.bytes(), 0u);
 }
 
 /// Paste that yields at every check, dropped beside a fluid on a slope.
