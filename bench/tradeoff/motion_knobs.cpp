@@ -86,7 +86,7 @@ std::vector<Json> measure_motion(const std::string& scene_name, const std::files
       const bool resample = lattice(scene).count != lattice(written).count;
       row["errors"] =
           to_json(compare(motion, resample ? resampled(same, lattice(written), lattice(scene)) : same,
-                          written.solver.gravity, spacing(written)));
+                          written.solver.gravity, spacing(scene), spacing(written)));
       const Drift drift = free_flight_drift(scene, std::min(k_flight, settings.duration), threads);
       row["momentum_drift"] = drift.momentum;
       row["angular_momentum_drift"] = drift.angular_momentum;
