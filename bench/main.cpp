@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "figures/figures_command.h"
 #include "kernels/kernels_command.h"
 #include "mallow/errors.h"
 #include "mallow/failure.h"
@@ -30,6 +31,7 @@ int main(int argc, char** argv) {
     bench::add_tradeoff_command(app);
     bench::add_scaling_command(app);
     bench::add_kernels_command(app);
+    bench::add_figures_command(app);
     app.parse(argc, argv);
     if (!app.get_subcommands().empty()) return cli::k_exit_done;
     std::fputs(app.help().c_str(), stderr);
