@@ -40,7 +40,9 @@ TEST_F(bench_tradeoff, half_the_time_step_has_at_most_two_thirds_of_the_error_an
     EXPECT_LT(convergence[k].at("errors").at("position_h").get<double>(),
               convergence[k - 1].at("errors").at("position_h").get<double>() * 2 / 3);
   for (const nlohmann::json& row : document.at("rows"))
-    if (row.at("part") == "motion") EXPECT_LT(row.at("momentum_drift"), 1e-5) << row;
+    if (row.at("part") == "motion") {
+      EXPECT_LT(row.at("momentum_drift"), 1e-5) << row;
+    }
 }
 
 TEST_F(bench_tradeoff, knobs_that_a_scene_has_no_use_for_are_not_turned) {

@@ -67,7 +67,7 @@ TEST(neighbor_slack, lists_always_hold_every_pair_within_the_radius) {
       ASSERT_EQ(faults(sph, swarm.x), 0u) << "slack " << slack << ", step " << step;
       swarm.move(step % 20 == 19 ? 0.5f : 0.004f, {0.3f, -0.2f, 0.1f});
     }
-    EXPECT_GE(found, 4) << slack;
+    EXPECT_GE(found, 3) << slack << ": at the start and after each leap";
     EXPECT_GT(kept, 0) << slack;
   }
 }
