@@ -138,6 +138,14 @@ const std::vector<Knob>& all_knobs() {
                  .label = "interval " + text(interval),
                  .overrides = {override_of("solver.update_interval", interval)}};
        }},
+      {"quality",
+       always,
+       {0, 1, 2},
+       {0, 2},
+       [](const Base&, double index) -> Setting {
+         const Quality quality = qualities()[static_cast<std::size_t>(index)];
+         return {.knobs = "quality", .label = name(quality), .overrides = {}, .quality = quality};
+       }},
       {"formulation",
        sph,
        {0},
