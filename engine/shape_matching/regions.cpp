@@ -30,16 +30,21 @@ void search(int threads, InstructionLevel level, CellGrid& grid, const ShapeMatc
   lists.count.swap(count_of);
 }
 
+/// 32 well-mixed bits of a number (Mueller's integer hash).
+std::uint32_t scattered(std::uint32_t x) {
+  x = (x ^ (x >> 16)) * 0x45d9f3bu;
+  x = (x ^ (x >> 16)) * 0x45d9f3bu;
+  return x ^ (x >> 16);
+}
+
 /// The particles that own regions, ascending.
-std::vector<std::uint32_t> choose_owners(const NeighborLists& near, std::size_t stride) {
+std::vector<std::uint32_t> choose_owners(const NeighborLists& near, std::uint32_t stride) {
   std::vector<std::uint32_t> owners;
+  const auto drawn = [&](std::uint32_t i) { return is_drawn(i, stride); };
   for (std::uint32_t i = 0; i < near.count.size(); ++i) {
     const std::span<const std::uint32_t> list = near.of(i);
-    // i is in j's region where j is in i's list: distances are symmetric to the bit. A strided i is in its
-    // own.
-    if (i % stride == 0 ||
-        std::none_of(list.begin(), list.end(), [&](std::uint32_t j) { return j % stride == 0; }))
-      owners.push_back(i);
+    // i is in j's region where j is in i's list: distances are symmetric to the bit. A drawn i is in its own.
+    if (drawn(i) || std::none_of(list.begin(), list.end(), drawn)) owners.push_back(i);
   }
   return owners;
 }
@@ -109,6 +114,10 @@ void measure_regions(const std::vector<std::uint32_t>& owners, std::size_t begin
 
 }  // namespace
 
+bool is_drawn(std::uint32_t row, std::uint32_t stride) {
+  return row % stride == scattered(row / stride) % stride;
+}
+
 std::size_t ShapeMatching::bytes() const {
   std::size_t sum = reference.bytes() + regions.bytes() + memberships.bytes() + weight.bytes() +
                     region_weight.bytes() + center.bytes() + rows.bytes() + sums.bytes() + undecided.bytes() +
@@ -146,7 +155,7 @@ void build_regions(int threads, InstructionLevel level, CellGrid& grid, ShapeMat
     NeighborLists near;
     search(threads, level, grid, shape, near);
     shape.average_neighbors = near.average();
-    owners = choose_owners(near, static_cast<std::size_t>(shape.region_stride));
+    owners = choose_owners(near, static_cast<std::uint32_t>(shape.region_stride));
     keep_owned(near, owners, shape);
   }
 

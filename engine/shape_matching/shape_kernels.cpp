@@ -59,8 +59,7 @@ void sum_rows(const float* rows, const std::uint32_t* list, std::uint32_t n, flo
     add_row(rows, list[k + 3], d);
   }
   for (; k < n; ++k) add_row(rows, list[k], a);
-  for (std::size_t p = 0; p < k_parts; ++p)
-    reinterpret_cast<Part*>(sum)[p] = (a[p] + b[p]) + (c[p] + d[p]);
+  for (std::size_t p = 0; p < k_parts; ++p) reinterpret_cast<Part*>(sum)[p] = (a[p] + b[p]) + (c[p] + d[p]);
 }
 
 void sum_regions(const ShapeInput& in, std::size_t begin, std::size_t end, const float* rows,

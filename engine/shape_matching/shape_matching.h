@@ -54,10 +54,15 @@ struct ShapeMatching {
 /// x̄ ← x of the rows [begin, end) of a store. Rotations start from none; regions are due to be built.
 void update_reference(const VectorColumn& positions, std::size_t begin, std::size_t end,
                       ShapeMatching& shape);
-/// Regions of the reference shape: owners, lists, weights, centres, moments. Every region_stride-th particle
-/// owns a region, and so does every particle that is in none of theirs. Fast where the particles lie in cell
-/// order, so that a region's rows lie near each other, and owners are spread evenly. `grid` is scratch.
+/// Regions of the reference shape: owners, lists, weights, centres, moments. One of every region_stride
+/// particles owns a region, and so does every particle that is in none of theirs. Fast where the particles
+/// lie in cell order, so that a region's rows lie near each other, and owners are spread evenly. `grid` is
+/// scratch.
 void build_regions(int threads, InstructionLevel level, CellGrid& grid, ShapeMatching& shape);
+/// Whether a row is drawn to own a region: of every `stride` in a row one is, at a scattered place. Every
+/// third row of a lattice of 12 is whole columns of it, and bent ten times as wrongly as every second or
+/// fourth.
+bool is_drawn(std::uint32_t row, std::uint32_t stride);
 /// First sums over the regions. [model 2]
 void sum_regions(const VectorColumn& positions, std::size_t begin, int threads, InstructionLevel level,
                  ShapeMatching& shape);

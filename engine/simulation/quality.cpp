@@ -15,21 +15,24 @@ void check_factor(float factor) {
   checks.finish();
 }
 
-/// What a quality does to the settings of a scene.
+/// What a quality does to the settings of a scene: points on the fronts of bench/RESULTS.md.
 struct Preset {
-  float time_step;          ///< factor
-  int region_stride;        ///< at least
-  int rotation_iterations;  ///< at most
-  float neighbor_slack;     ///< at least
-  float voxels;             ///< factor
+  float time_step;       ///< factor
+  int region_stride;     ///< at least
+  float neighbor_slack;  ///< at least
+  float voxels;          ///< factor
 };
 
 const Preset& preset(Quality quality) {
-  static constexpr Preset k_realtime{1.0f, 4, 1, 0.1f, 0.5f};
-  static constexpr Preset k_balanced{1.0f, 1, 8, 0.1f, 1.0f};
-  static constexpr Preset k_accurate{0.5f, 1, 8, 0.1f, 1.5f};
+  static constexpr Preset k_realtime{1.5f, 3, 0.0f, 0.5f};
+  static constexpr Preset k_balanced{1.0f, 2, 0.0f, 1.0f};
+  static constexpr Preset k_accurate{0.5f, 1, 0.1f, 1.5f};
   return quality == Quality::realtime ? k_realtime : quality == Quality::balanced ? k_balanced : k_accurate;
 }
+
+/// Stiffness of an elastic pull against the step, (1 − α) Δt0/Δt_SM, up to which a longer step is taken: at 4
+/// the motion runs away, and its energy grows before.
+constexpr float k_stiffest = 2.25f;
 
 /// Voxels that a surface can have along its longest side.
 constexpr int k_fewest_voxels = 8, k_most_voxels = 1024;
@@ -65,7 +68,6 @@ std::span<const Quality> qualities() {
 SolverConfig with_quality(const SolverConfig& config, Quality quality) {
   const Preset& p = preset(quality);
   SolverConfig result = at_time_step(config, p.time_step);
-  result.rotation_iterations = std::min(config.rotation_iterations, p.rotation_iterations);
   result.neighbor_slack = std::max(config.neighbor_slack, p.neighbor_slack);
   return result;
 }
@@ -73,6 +75,13 @@ SolverConfig with_quality(const SolverConfig& config, Quality quality) {
 Material with_quality(const Material& material, const SolverConfig& config, Quality quality) {
   const Preset& p = preset(quality);
   Material result = at_time_step(material, config, p.time_step);
+  if (p.time_step > 1) {
+    // Rather softer than unstable; but no softer than it was written.
+    const float softest =
+        (1 - material.alpha.lowest()) * at_time_step(config, p.time_step).time_step / k_stiffest;
+    const float written = material.elastic_time_step.value_or(config.time_step);
+    result.elastic_time_step = std::max(*result.elastic_time_step, std::min(softest, written));
+  }
   result.region_stride = std::max(material.region_stride, p.region_stride);
   return result;
 }

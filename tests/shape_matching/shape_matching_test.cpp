@@ -70,16 +70,18 @@ Lists literal_neighbors(const World& world, const std::vector<Eigen::Vector3d>& 
   return lists;
 }
 
-/// Every stride-th particle owns a region, and so does every particle that is in none of theirs.
+/// Every particle that is drawn owns a region, and so does every particle that is in none of theirs.
 std::vector<std::size_t> literal_owners(const Lists& neighbors, std::size_t stride) {
-  std::vector<bool> owns(neighbors.size());
-  for (std::size_t j = 0; j < neighbors.size(); j += stride) owns[j] = true;
+  const auto drawn = [&](std::size_t j) {
+    return is_drawn(static_cast<std::uint32_t>(j), static_cast<std::uint32_t>(stride));
+  };
   std::vector<std::size_t> owners;
   for (std::size_t i = 0; i < neighbors.size(); ++i) {
     bool covered = false;
-    for (std::size_t j = 0; j < neighbors.size(); j += stride)
-      covered = covered || std::find(neighbors[j].begin(), neighbors[j].end(), i) != neighbors[j].end();
-    if (owns[i] || !covered) owners.push_back(i);
+    for (std::size_t j = 0; j < neighbors.size(); ++j)
+      covered = covered ||
+                (drawn(j) && std::find(neighbors[j].begin(), neighbors[j].end(), i) != neighbors[j].end());
+    if (drawn(i) || !covered) owners.push_back(i);
   }
   return owners;
 }
@@ -180,6 +182,22 @@ TEST(regions, of_a_stride_are_whole_and_leave_no_particle_out) {
         EXPECT_FALSE(mine.empty());
       }
     }
+  }
+}
+
+TEST(regions, of_a_stride_are_drawn_once_in_so_many_rows_and_in_no_column_of_a_lattice) {
+  for (const std::uint32_t stride : {2u, 3u, 4u, 7u}) {
+    std::vector<int> at_place(stride);
+    for (std::uint32_t block = 0; block < 1000; ++block) {
+      int drawn = 0;
+      for (std::uint32_t k = 0; k < stride; ++k) {
+        const bool here = is_drawn(block * stride + k, stride);
+        drawn += here;
+        at_place[k] += here;
+      }
+      EXPECT_EQ(drawn, 1);
+    }
+    for (const int count : at_place) EXPECT_NEAR(count, 1000 / static_cast<int>(stride), 60) << stride;
   }
 }
 

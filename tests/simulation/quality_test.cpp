@@ -61,14 +61,24 @@ TEST(quality, names_are_those_that_people_type) {
 
 TEST(quality, never_makes_a_setting_worse_than_the_user_asked_for_speed_or_finer_than_for_accuracy) {
   SolverConfig config{.support_radius = 2};
-  config.rotation_iterations = 1;
   config.neighbor_slack = 0.5f;
   Material material;
   material.region_stride = 16;
   for (const Quality quality : qualities()) {
-    EXPECT_EQ(with_quality(config, quality).rotation_iterations, 1);
     EXPECT_EQ(with_quality(config, quality).neighbor_slack, 0.5f);
     EXPECT_EQ(with_quality(material, config, quality).region_stride, 16);
+  }
+}
+
+TEST(quality, softens_a_material_rather_than_let_it_run_away) {
+  const SolverConfig config{.time_step = 0.15f, .support_radius = 2};
+  for (const float elastic : {0.15f, 0.1f, 0.06f}) {
+    const Material material{.alpha = 0.0f, .elastic_time_step = elastic};
+    const SolverConfig there = with_quality(config, Quality::realtime);
+    const float written = config.time_step / elastic;
+    const float pull = there.time_step / *with_quality(material, config, Quality::realtime).elastic_time_step;
+    EXPECT_LE(pull, std::max(2.2501f, written * 1.5001f)) << elastic;
+    EXPECT_LT(pull, 4) << elastic;
   }
 }
 

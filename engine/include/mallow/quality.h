@@ -18,8 +18,8 @@ Material at_time_step(const Material& material, const SolverConfig& config, floa
 /// How a scene's settings are turned between speed and accuracy; the material stays what it is. Each lies on
 /// the fronts that bench/RESULTS.md shows, with what it costs and how far off it is there.
 enum class Quality {
-  realtime,  ///< for games: fewer regions, coarser surface
-  balanced,  ///< what the scene says, with whatever is cheaper and not worse
+  realtime,  ///< for games: longer steps, fewer regions, coarser surface
+  balanced,  ///< what the scene says, with every second region
   accurate,  ///< for films: shorter steps, finer surface
 };
 /// "realtime", "balanced", "accurate".
