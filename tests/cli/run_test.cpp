@@ -132,6 +132,24 @@ TEST_F(cli_run, sample_writes_points_that_a_scene_reads) {
   EXPECT_NE(outcome.out.find("average_neighbors "), std::string::npos);
 }
 
+TEST_F(cli_run, quality_turns_the_scene_and_is_reported) {
+  const Scene written = read_scene(scene_);
+  for (const Quality quality : qualities()) {
+    ASSERT_EQ(run({"--quality", name(quality), "--report", at("report.json"), "--steps", "3"}).exit_code, 0);
+    EXPECT_EQ(read_json(at("report.json")).at("quality"), name(quality));
+    const Outcome printed = run_mallow({"info", scene_, "--quality", name(quality), "--print"});
+    const Scene turned = read_scene(write("turned.toml", printed.out));
+    EXPECT_EQ(turned.solver.time_step, with_quality(written, quality).solver.time_step);
+    EXPECT_EQ(turned.materials[0].material.region_stride,
+              with_quality(written, quality).materials[0].material.region_stride);
+    EXPECT_EQ(turned.surface.voxels, with_quality(written, quality).surface.voxels);
+  }
+  const Outcome refused = run({"--quality", "best"});
+  EXPECT_EQ(refused.exit_code, 2);
+  for (const Quality quality : qualities())
+    EXPECT_NE(refused.err.find(name(quality)), std::string::npos) << refused.err;
+}
+
 TEST_F(cli_run, keys_lists_every_section) {
   const Outcome outcome = run_mallow({"keys"});
   EXPECT_EQ(outcome.exit_code, 0);

@@ -15,8 +15,8 @@ SolverConfig at_time_step(const SolverConfig& config, float factor);
 /// config: that of the material, as it was before.
 Material at_time_step(const Material& material, const SolverConfig& config, float factor);
 
-/// How a scene's settings are turned between speed and accuracy; the material stays what it is. Each lies on
-/// the fronts that bench/RESULTS.md shows, with what it costs and how far off it is there.
+/// How a scene's settings are turned between speed and accuracy. Each lies on or beside the fronts that
+/// bench/RESULTS.md shows, with what it costs and how far off it is there.
 enum class Quality {
   realtime,  ///< for games: longer steps, fewer regions, coarser surface
   balanced,  ///< what the scene says, with every second region
@@ -27,7 +27,8 @@ const char* name(Quality quality);
 std::span<const Quality> qualities();
 
 SolverConfig with_quality(const SolverConfig& config, Quality quality);
-/// config: that of the material, as it was before.
+/// config: that of the material, as it was before. A material so stiff that longer steps would make it
+/// unstable is softened to where they do not.
 Material with_quality(const Material& material, const SolverConfig& config, Quality quality);
 SurfaceConfig with_quality(const SurfaceConfig& config, Quality quality);
 
