@@ -51,7 +51,8 @@ void write_svg(const std::filesystem::path& file, const Plot& plot) {
   std::ostringstream text;
   text << "set title " << quoted(plot.title) << "\nset xlabel " << quoted(plot.x_label) << "\nset ylabel "
        << quoted(plot.y_label)
-       << "\nset grid\nset key outside right top\nset offsets graph 0.05, graph 0.12, graph 0.05, graph "
+       << "\nset grid\nset autoscale noextend\nset key outside right top\nset offsets graph 0.05, graph "
+          "0.12, graph 0.05, graph "
           "0.05\n";
   if (plot.log_x) text << "set logscale x\n";
   if (plot.log_y) text << "set logscale y\n";
@@ -76,7 +77,7 @@ void write_svg(const std::filesystem::path& file, const Plot& plot) {
     curves.push_back(data + " using 1:2 with " + (series.lines ? "linespoints" : "points") + color +
                      " pt 7 ps 0.6 title " + quoted(series.title));
     if (!series.labels.empty())
-      curves.push_back(data + " using 1:2:3 with labels left offset 0.6,0.25 font ',9' tc lt " +
+      curves.push_back(data + " using 1:2:3 with labels left offset 0.6,0.25 font ',8' tc lt " +
                        std::to_string(s + 1) + " notitle");
   }
   if (curves.empty()) return;

@@ -20,15 +20,16 @@ struct Run {
   std::vector<double> steps;
   PhaseTimes phase_seconds{};
   std::uint64_t state_hash = 0;
-  SimulationInfo info;
+  SimulationInfo info;    ///< at the start, as the paper counts neighbours
+  std::size_t bytes = 0;  ///< at the end
 
   double milliseconds() const { return mean({steps.begin() + 1, steps.end()}); }
 };
 
 Run run_steps(const Scene& scene, int count, int threads) {
   Simulation simulation = build(scene, threads);
-  simulation.prepare();
   Run run;
+  run.info = simulation.info();
   for (int step = 0; step < count; ++step) {
     StepReport report;
     run.steps.push_back(milliseconds([&] { report = simulation.step(); }));
@@ -36,7 +37,7 @@ Run run_steps(const Scene& scene, int count, int threads) {
     for (std::size_t p = 0; p < k_phase_count; ++p) run.phase_seconds[p] += report.seconds[p];
   }
   run.state_hash = simulation.state_hash();
-  run.info = simulation.info();
+  run.bytes = simulation.info().bytes;
   return run;
 }
 
@@ -130,33 +131,34 @@ Json measure_row(const PaperRow& paper, const Table1Settings& settings, int thre
   const double ms = median(step_ms), surface_ms = median(frames.surface), picture_ms = median(frames.picture);
   const SimulationInfo& info = runs.front().info;
   const GroupInfo& group = info.groups.front();
-  Json row = {{"name", paper.name},
-              {"figure", paper.figure},
-              {"scene", "scenes/table1/" + paper.name + ".toml"},
-              {"particles", info.particles},
-              {"paper_particles", paper.particles},
-              {"avg_neighbors", group.average_neighbors},
-              {"paper_avg_neighbors", paper.neighbors},
-              {"alpha", paper.alpha},
-              {"gamma_u", paper.update_threshold},
-              {"v_size", std::to_string(paper.voxels[0]) + "x" + std::to_string(paper.voxels[1]) + "x" +
-                             std::to_string(paper.voxels[2])},
-              {"ms_per_step", ms},
-              {"ms_per_step_min", minimum(step_ms)},
-              {"fps1", 1000 / ms},
-              {"fps1_best", 1000 / minimum(step_ms)},
-              {"paper_fps1", paper.fps1},
-              {"fps1_ratio", 1000 / ms / paper.fps1},
-              {"surface_ms", surface_ms},
-              {"triangles", frames.triangles},
-              {"fps2", 1000 / (ms + surface_ms)},
-              {"picture_ms", picture_ms},
-              {"fps2_rendered", 1000 / (ms + surface_ms + picture_ms)},
-              {"paper_fps2", paper.fps2},
-              {"fps2_ratio", 1000 / (ms + surface_ms) / paper.fps2},
-              {"fps2_rendered_ratio", 1000 / (ms + surface_ms + picture_ms) / paper.fps2},
-              {"bytes_per_particle", static_cast<double>(info.bytes) / static_cast<double>(info.particles)},
-              {"state_hash", cli::hash_text(runs.front().state_hash)}};
+  Json row = {
+      {"name", paper.name},
+      {"figure", paper.figure},
+      {"scene", "scenes/table1/" + paper.name + ".toml"},
+      {"particles", info.particles},
+      {"paper_particles", paper.particles},
+      {"avg_neighbors", group.average_neighbors},
+      {"paper_avg_neighbors", paper.neighbors},
+      {"alpha", paper.alpha},
+      {"gamma_u", paper.update_threshold},
+      {"v_size", std::to_string(paper.voxels[0]) + "x" + std::to_string(paper.voxels[1]) + "x" +
+                     std::to_string(paper.voxels[2])},
+      {"ms_per_step", ms},
+      {"ms_per_step_min", minimum(step_ms)},
+      {"fps1", 1000 / ms},
+      {"fps1_best", 1000 / minimum(step_ms)},
+      {"paper_fps1", paper.fps1},
+      {"fps1_ratio", 1000 / ms / paper.fps1},
+      {"surface_ms", surface_ms},
+      {"triangles", frames.triangles},
+      {"fps2", 1000 / (ms + surface_ms)},
+      {"picture_ms", picture_ms},
+      {"fps2_rendered", 1000 / (ms + surface_ms + picture_ms)},
+      {"paper_fps2", paper.fps2},
+      {"fps2_ratio", 1000 / (ms + surface_ms) / paper.fps2},
+      {"fps2_rendered_ratio", 1000 / (ms + surface_ms + picture_ms) / paper.fps2},
+      {"bytes_per_particle", static_cast<double>(runs.front().bytes) / static_cast<double>(info.particles)},
+      {"state_hash", cli::hash_text(runs.front().state_hash)}};
   add_textbook(textbook, runs, row);
   Json phases;
   for (std::size_t p = 0; p < k_phase_count; ++p) {

@@ -43,8 +43,8 @@ Plot front_plot(const std::string& scene, const Json& rows, const std::string& p
       .log_x = true,
       .log_y = true,
       .series = {{.title = "front", .points = {}}, {.title = "settings", .points = {}, .lines = false}},
-      .width = 1500,
-      .height = 1000};
+      .width = 2000,
+      .height = 1300};
   std::vector<std::tuple<double, double, std::string>> front;
   for (const Json& row : rows) {
     if (row["scene"] != scene || row["part"] != part || !row.contains(cost)) continue;
