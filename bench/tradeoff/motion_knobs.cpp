@@ -109,8 +109,9 @@ std::vector<Json> measure_motion(const std::string& scene_name, const std::files
     if (!rows[i].contains("errors")) continue;
     rows[i]["ms_per_second"] = median(ms[i]);
     rows[i]["ms_per_second_min"] = minimum(ms[i]);
-    rows[i]["speed"] = median(ms[0]) / median(ms[i]);
-    choices.back() = {median(ms[i]), rows[i]["errors"]["position_h"]};
+    rows[i]["speed"] = minimum(ms[0]) / minimum(ms[i]);
+    // The minimum: whatever else the machine does only adds.
+    choices.back() = {minimum(ms[i]), rows[i]["errors"]["position_h"]};
   }
   for (const std::size_t i : pareto_front(choices)) rows[i]["on_front"] = true;
   return rows;

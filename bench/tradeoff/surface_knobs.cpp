@@ -85,7 +85,7 @@ std::vector<Json> measure_surfaces(const std::string& scene_name, const Scene& s
                     {"hausdorff_h", hausdorff},
                     {"triangles", triangles},
                     {"on_front", false}});
-    choices.push_back({median(ms), mean_distance});
+    choices.push_back({minimum(ms), mean_distance});
   }
   for (const std::size_t i : pareto_front(choices)) rows[i]["on_front"] = true;
   return rows;
