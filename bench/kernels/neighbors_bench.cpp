@@ -24,7 +24,7 @@ enum class Order { cells, shuffled };
 struct Search {
   VectorColumn points;
   CellGrid grid;
-  NeighborLists lists;
+  NeighborLists lists, cluster_lists;
 
   Search(const LatticeScene& scene, Order order, int threads, InstructionLevel level)
       : points(lattice_points(scene, k_jitter)) {
@@ -34,12 +34,17 @@ struct Search {
       std::shuffle(places.begin(), places.end(), std::mt19937(1));
       points = reordered(points, places);
     }
+    grid.spacing = scene.spacing;
     build_grid(threads);
     build_lists(threads, level);
+    build_clusters(threads, level);
   }
   void build_grid(int threads) { build_cell_grid(points, 0, points.size(), k_radius, threads, grid); }
   void build_lists(int threads, InstructionLevel level) {
     build_neighbor_lists(grid, k_radius, threads, level, lists);
+  }
+  void build_clusters(int threads, InstructionLevel level) {
+    build_cluster_lists(grid, k_radius, threads, level, cluster_lists);
   }
   Json about() const {
     return {{"particles", points.size()},
@@ -62,13 +67,20 @@ void add_neighbors(const KernelVariants& variants, KernelSet& set) {
                        .items = static_cast<double>(search->points.size()),
                        .about = search->about()};
         });
-        for (const InstructionLevel level : variants.levels)
+        for (const InstructionLevel level : variants.levels) {
+          set.add({"cluster_lists", label, threads, name(level), "pair"}, [=] {
+            const auto search = std::make_shared<Search>(scene, order, threads, level);
+            return Timed{.run = [=] { search->build_clusters(threads, level); },
+                         .items = static_cast<double>(search->lists.total),
+                         .about = search->about()};
+          });
           set.add({"neighbor_lists", label, threads, name(level), "pair"}, [=] {
             const auto search = std::make_shared<Search>(scene, order, threads, level);
             return Timed{.run = [=] { search->build_lists(threads, level); },
                          .items = static_cast<double>(search->lists.total),
                          .about = search->about()};
           });
+        }
       }
     }
 }

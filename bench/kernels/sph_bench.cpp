@@ -1,6 +1,7 @@
 // Density and accelerations of SPH, per pair within σ (both ways and the particle itself, as lists hold
 // them).
 #include <memory>
+#include <numeric>
 
 #include "kernels/kernel_set.h"
 #include "kernels/lattice.h"
@@ -17,8 +18,9 @@ enum class Pairs { pressure, viscous, grouped };
 struct SphScene {
   VectorColumn x, velocity;
   Sph sph;
+  double pairs = 0;  ///< within σ, both ways and each particle itself
 
-  SphScene(const LatticeScene& scene, Pairs pairs, int threads, InstructionLevel level)
+  SphScene(const LatticeScene& scene, Pairs kind, int threads, InstructionLevel level)
       : x(bent(lattice_points(scene))), velocity(x.size()) {
     const std::size_t n = x.size();
     for (std::size_t i = 0; i < n; ++i) velocity.set(i, 0.01f * x.get(n - 1 - i));
@@ -28,29 +30,39 @@ struct SphScene {
                          .rest_density = static_cast<float>(density),
                          .rest_volume = static_cast<float>(1 / density),
                          .pressure_coefficient = 16,
-                         .viscosity = pairs == Pairs::pressure ? 0.0f : 0.5f,
+                         .viscosity = kind == Pairs::pressure ? 0.0f : 0.5f,
                          .cohesion = 0};
     sph.support_radius = scene.radius;
     sph.factors = kernel_factors(radius);
-    sph.viscous = pairs != Pairs::pressure;
+    sph.viscous = kind != Pairs::pressure;
     sph.groups = {group};
     sph.group_end = {n};
-    if (pairs == Pairs::grouped) {
+    if (kind == Pairs::grouped) {
       sph.groups.push_back(group);
       sph.group_end = {n / 2, n};
     }
+    sph.grid.spacing = scene.spacing;
     find_neighbors(x, threads, level, sph);
     compute_density(threads, level, sph);
+    NeighborLists exact;
+    build_neighbor_lists(sph.grid, scene.radius, threads, level, exact);
+    pairs = static_cast<double>(exact.total);
   }
-  double pairs() const { return static_cast<double>(sph.lists.total); }
-  Json about() const { return {{"particles", x.size()}, {"average_neighbors", sph.lists.average()}}; }
+  Json about() const {
+    const auto n = static_cast<double>(x.size());
+    const double near = std::accumulate(sph.lists.count.begin(), sph.lists.count.end(), 0.0);
+    return {{"particles", x.size()},
+            {"average_neighbors", pairs / n},
+            {"lanes_used", pairs / (k_cluster * near)},
+            {"list_entries", near / n}};
+  }
 };
 
 void add_scene(const LatticeScene& scene, int threads, InstructionLevel level, KernelSet& set) {
   const auto timed = [=](Pairs pairs, auto run) {
     return [=] {
       const auto data = std::make_shared<SphScene>(scene, pairs, threads, level);
-      return Timed{.run = [=] { run(*data); }, .items = data->pairs(), .about = data->about()};
+      return Timed{.run = [=] { run(*data); }, .items = data->pairs, .about = data->about()};
     };
   };
   const auto density = [=](SphScene& s) { compute_density(threads, level, s.sph); };

@@ -18,7 +18,8 @@ constexpr std::size_t padded(std::size_t n) {
 }
 
 /// One quantity of all particles: an array on cache line boundaries whose capacity is a whole number of lane
-/// blocks. What lies between size() and the end of its last block is zero, so that kernels need no tail.
+/// blocks. What lies between size() and the end of its last block is zero, so that kernels need no tail; the
+/// cache line behind may be read, so that they may load lanes from any value on.
 template <class T>
 class Column {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -71,7 +72,8 @@ class Column {
 
  private:
   void grow(std::size_t capacity) {
-    T* data = static_cast<T*>(::operator new[](capacity * sizeof(T), std::align_val_t{64}));
+    T* data = static_cast<T*>(::operator new[](capacity * sizeof(T) + 64, std::align_val_t{64}));
+    std::memset(static_cast<void*>(data + capacity), 0, 64);
     if (size_ > 0) std::memcpy(static_cast<void*>(data), data_, size_ * sizeof(T));
     const std::size_t size = size_;
     release();

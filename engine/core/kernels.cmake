@@ -23,9 +23,10 @@ function(mallow_add_kernels source)
     add_library(${object} OBJECT ${source})
     target_include_directories(${object} PRIVATE ${MALLOW_INCLUDE_DIR} ${PROJECT_SOURCE_DIR}/engine)
     target_compile_definitions(${object} PRIVATE MALLOW_LEVEL=level_${level} $<$<BOOL:${MALLOW_X86_LEVELS}>:MALLOW_X86_LEVELS>)
+    # Vectors wider than a register never leave a kernel file, so it matters to none how they are passed (-Wno-psabi).
     # Without -fno-math-errno and -fno-trapping-math a square root or a comparison keeps a loop scalar; neither
     # changes a result.
-    target_compile_options(${object} PRIVATE ${flags_${level}} -fno-math-errno -fno-trapping-math $<$<NOT:$<CONFIG:Debug>>:-O3>)
+    target_compile_options(${object} PRIVATE ${flags_${level}} -fno-math-errno -fno-trapping-math -Wno-psabi $<$<NOT:$<CONFIG:Debug>>:-O3>)
     target_link_libraries(${object} PRIVATE mallow_build_options Eigen3::Eigen)
     set_target_properties(${object} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${object}>)

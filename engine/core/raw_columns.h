@@ -8,6 +8,8 @@ namespace mallow {
 
 /// Lanes that kernels handle at once, at every instruction level: columns are padded to whole blocks of it.
 inline constexpr std::size_t k_lanes = 16;
+/// Particles that share one neighbour list in the sums of SPH, a lane each.
+inline constexpr std::size_t k_cluster = 8;
 
 struct ConstVectors {
   const float* x;

@@ -7,13 +7,15 @@
 namespace mallow {
 namespace {
 
-/// Cells are this much larger than the radius, which covers the rounding of cell coordinates up to k_max_dim
-/// cells.
-constexpr float k_margin = 1.001f;
-constexpr int k_max_dim = 2048;
-/// Cells per point at the most; beyond that the covered box shrinks.
+/// Cells per point at the most; beyond that they grow, and at last the covered box shrinks.
 constexpr double k_cells_per_point = 8.0;
 constexpr double k_min_cells = 32768.0;
+/// Edges of a cell in spacings.
+constexpr double k_across = 2.0;
+constexpr double k_along = 0.5;
+/// Cells, and columns, that one thread handles at a time.
+constexpr std::size_t k_cell_block = 8192;
+constexpr std::size_t k_column_block = 512;
 
 Aabb bounds_of(const VectorColumn& x, std::size_t begin, std::size_t end, int threads,
                std::vector<Aabb>& partial) {
@@ -39,21 +41,28 @@ Aabb bounds_of(const VectorColumn& x, std::size_t begin, std::size_t end, int th
       });
 }
 
-/// Chooses the covered box: the bounds, or where a few strays make those too large, a box around the mean
-/// that shrinks until its cells are affordable.
+/// Chooses the cells and the covered box. Where points lie too thinly for cells of their spacing, cells are
+/// made longer, then larger, up to the radius; where a few strays make the box too large even so, it shrinks
+/// around the mean until its cells are affordable.
 void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, float radius, int threads,
                   CellGrid& grid) {
   const Aabb box = bounds_of(x, begin, end, threads, grid.partial_bounds);
   const auto n = static_cast<double>(end - begin);
-  const double cell = static_cast<double>(radius) * static_cast<double>(k_margin);
+  const double spacing = static_cast<double>(grid.spacing > 0 ? grid.spacing : 0.5f * radius);
+  double across = k_across * spacing, along = k_along * spacing;
   const double budget = std::max(k_min_cells, k_cells_per_point * n);
   Eigen::Vector3d low = box.min.cast<double>(), high = box.max.cast<double>();
-  const auto cells = [&](int a) { return std::max(1.0, std::floor((high[a] - low[a]) / cell) + 1.0); };
-  if (cells(0) * cells(1) * cells(2) > budget || std::max({cells(0), cells(1), cells(2)}) > k_max_dim) {
+  const auto cells = [&](int a) {
+    return std::max(1.0, std::floor((high[a] - low[a]) / (a == 0 ? along : across)) + 1.0);
+  };
+  const auto too_many = [&] { return cells(0) * cells(1) * cells(2) > budget; };
+  while (too_many() && along < across) along *= 2;
+  while (too_many() && across < static_cast<double>(radius)) along = across *= 2;
+  if (too_many()) {
     Eigen::Vector3d mean(0, 0, 0);
     for (std::size_t i = begin; i < end; ++i) mean += x.get(i).cast<double>();
     mean /= n;
-    while (cells(0) * cells(1) * cells(2) > budget || std::max({cells(0), cells(1), cells(2)}) > k_max_dim) {
+    while (too_many()) {
       Eigen::Index widest = 0;
       (high - low).maxCoeff(&widest);
       low[widest] = mean[widest] + 0.8 * (low[widest] - mean[widest]);
@@ -61,19 +70,97 @@ void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, flo
     }
   }
   grid.origin = low.cast<float>();
-  grid.inverse_cell = static_cast<float>(1.0 / cell);
+  grid.along = static_cast<float>(along);
+  grid.across = static_cast<float>(across);
+  grid.rounding = static_cast<float>(1e-6 * (high - low).maxCoeff() + 1e-5 * static_cast<double>(radius));
   for (int a = 0; a < 3; ++a) grid.dims[static_cast<std::size_t>(a)] = static_cast<int>(cells(a));
 }
 
-/// Monotone in each coordinate and never expanding, so points within a radius are in adjacent cells also
-/// where coordinates are clamped.
-std::uint32_t cell_index(const CellGrid& grid, float x, float y, float z) {
-  const auto coordinate = [&](float value, std::size_t a) {
-    const float cell = std::floor((value - grid.origin[static_cast<int>(a)]) * grid.inverse_cell);
-    return static_cast<std::uint32_t>(std::clamp(cell, 0.0f, static_cast<float>(grid.dims[a] - 1)));
+/// Monotone in each coordinate, so that what lies between two coordinates lies in the cells between theirs,
+/// also where they are clamped.
+struct CellIndex {
+  Vec3 origin;
+  float inverse_along, inverse_across;
+  float last[3];
+  std::uint32_t nx, ny;
+
+  explicit CellIndex(const CellGrid& grid)
+      : origin(grid.origin),
+        inverse_along(1.0f / grid.along),
+        inverse_across(1.0f / grid.across),
+        nx(static_cast<std::uint32_t>(grid.dims[0])),
+        ny(static_cast<std::uint32_t>(grid.dims[1])) {
+    for (std::size_t a = 0; a < 3; ++a) last[a] = static_cast<float>(grid.dims[a] - 1);
+  }
+  std::uint32_t operator()(float x, float y, float z) const {
+    // Clamped before it is rounded down: a coordinate far outside would not fit an integer.
+    const auto coordinate = [&](float value, std::size_t a, float inverse) {
+      return static_cast<std::uint32_t>(static_cast<std::int32_t>(
+          std::clamp((value - origin[static_cast<int>(a)]) * inverse, 0.0f, last[a])));
+    };
+    return (coordinate(z, 2, inverse_across) * ny + coordinate(y, 1, inverse_across)) * nx +
+           coordinate(x, 0, inverse_along);
+  }
+};
+
+/// Counts of chunk after chunk become places: cell by cell, and chunk by chunk within a cell.
+void scan_counts(std::size_t cells, std::size_t chunks, int threads, CellGrid& grid) {
+  std::uint32_t* const counts = grid.counts.data();
+  const std::size_t blocks = (cells + k_cell_block - 1) / k_cell_block;
+  grid.block_sums.resize(blocks);
+  parallel_for(
+      threads, cells,
+      [&](std::size_t first, std::size_t last) {
+        std::uint32_t sum = 0;
+        for (std::size_t c = 0; c < chunks; ++c)
+          for (std::size_t cell = first; cell < last; ++cell) sum += counts[c * cells + cell];
+        grid.block_sums[first / k_cell_block] = sum;
+      },
+      k_cell_block);
+  std::uint32_t start = 0;
+  for (std::uint32_t& sum : grid.block_sums) start += std::exchange(sum, start);
+  grid.cell_start[cells] = start;
+  parallel_for(
+      threads, cells,
+      [&](std::size_t first, std::size_t last) {
+        std::uint32_t place = grid.block_sums[first / k_cell_block];
+        for (std::size_t cell = first; cell < last; ++cell) {
+          grid.cell_start[cell] = place;
+          for (std::size_t c = 0; c < chunks; ++c) place += std::exchange(counts[c * cells + cell], place);
+        }
+      },
+      k_cell_block);
+}
+
+/// Cuts every column into clusters, the last of a column short.
+void cut_clusters(int threads, CellGrid& grid) {
+  const std::size_t columns = grid.columns(), nx = static_cast<std::size_t>(grid.dims[0]);
+  const auto clusters_of = [&](std::size_t column) {
+    return (grid.cell_start[(column + 1) * nx] - grid.cell_start[column * nx] + k_cluster - 1) / k_cluster;
   };
-  const auto nx = static_cast<std::uint32_t>(grid.dims[0]), ny = static_cast<std::uint32_t>(grid.dims[1]);
-  return (coordinate(z, 2) * ny + coordinate(y, 1)) * nx + coordinate(x, 0);
+  grid.block_sums.resize((columns + k_column_block - 1) / k_column_block);
+  parallel_for(
+      threads, columns,
+      [&](std::size_t first, std::size_t last) {
+        std::size_t sum = 0;
+        for (std::size_t column = first; column < last; ++column) sum += clusters_of(column);
+        grid.block_sums[first / k_column_block] = static_cast<std::uint32_t>(sum);
+      },
+      k_column_block);
+  std::uint32_t clusters = 0;
+  for (std::uint32_t& sum : grid.block_sums) clusters += std::exchange(sum, clusters);
+  grid.cluster_start.resize(clusters + 1);
+  grid.cluster_start[clusters] = grid.cell_start[columns * nx];
+  parallel_for(
+      threads, columns,
+      [&](std::size_t first, std::size_t last) {
+        std::uint32_t* next = grid.cluster_start.data() + grid.block_sums[first / k_column_block];
+        for (std::size_t column = first; column < last; ++column)
+          for (std::size_t point = grid.cell_start[column * nx]; point < grid.cell_start[(column + 1) * nx];
+               point += k_cluster)
+            *next++ = static_cast<std::uint32_t>(point);
+      },
+      k_column_block);
 }
 
 }  // namespace
@@ -82,8 +169,7 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
                      int threads, CellGrid& grid) {
   const std::size_t n = end - begin;
   choose_cells(positions, begin, end, radius, threads, grid);
-  const std::size_t cells = static_cast<std::size_t>(grid.dims[0]) * static_cast<std::size_t>(grid.dims[1]) *
-                            static_cast<std::size_t>(grid.dims[2]);
+  const std::size_t cells = static_cast<std::size_t>(grid.dims[0]) * grid.columns();
   grid.cell_of.resize(n);
   grid.order.resize(n);
   grid.sorted.resize(n);
@@ -91,33 +177,24 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
   const ConstVectors x{positions.x() + begin, positions.y() + begin, positions.z() + begin};
 
   // Each thread counts and scatters one chunk of the points, in order: the sort is stable whatever the chunks
-  // are.
-  const auto chunks = static_cast<std::size_t>(threads);
-  const std::size_t chunk = std::max<std::size_t>(1, (n + chunks - 1) / chunks);
-  grid.counts.resize(0);
+  // are. More chunks than these would count more cells than points.
+  const std::size_t chunks = std::clamp<std::size_t>(4 * n / cells, 1, static_cast<std::size_t>(threads));
+  const std::size_t chunk = (n + chunks - 1) / chunks;
   grid.counts.resize(chunks * cells);
+  const CellIndex cell_index(grid);
   parallel_for(
       threads, n,
       [&](std::size_t first, std::size_t last) {
         std::uint32_t* counts = grid.counts.data() + first / chunk * cells;
+        std::fill_n(counts, cells, 0u);
         for (std::size_t i = first; i < last; ++i) {
-          const std::uint32_t cell = cell_index(grid, x.x[i], x.y[i], x.z[i]);
+          const std::uint32_t cell = cell_index(x.x[i], x.y[i], x.z[i]);
           grid.cell_of[i] = cell;
           ++counts[cell];
         }
       },
       chunk);
-  std::uint32_t start = 0;
-  for (std::size_t cell = 0; cell < cells; ++cell) {
-    grid.cell_start[cell] = start;
-    for (std::size_t c = 0; c < chunks; ++c) {
-      std::uint32_t& count = grid.counts[c * cells + cell];
-      const std::uint32_t here = count;
-      count = start;
-      start += here;
-    }
-  }
-  grid.cell_start[cells] = start;
+  scan_counts(cells, (n + chunk - 1) / chunk, threads, grid);
   parallel_for(
       threads, n,
       [&](std::size_t first, std::size_t last) {
@@ -131,6 +208,7 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
         }
       },
       chunk);
+  cut_clusters(threads, grid);
 }
 
 }  // namespace mallow

@@ -9,29 +9,43 @@
 
 namespace mallow {
 
-/// Points sorted into cubic cells that are no smaller than a search radius, so that all points within the
-/// radius of a point are in its cell and the 26 around it. Cells are counted x fastest: three cells in a row
-/// are one run. Points outside the covered box are counted to the nearest cell of its border, which keeps the
-/// search right however far a point strays, and memory bounded.
+/// Points sorted into the cells of a box, x fastest, then y, then z: the cells of one y and z are a column of
+/// the grid, and its points from any x to any other are one run. Columns are two spacings wide and cells half
+/// a spacing long, so that eight consecutive points of a column, a cluster, lie in about a cube of two
+/// spacings. Points outside of the covered box are counted to the nearest cell of its border, which keeps
+/// searches right however far a point strays, and memory bounded.
 struct CellGrid {
-  Vec3 origin{0, 0, 0};
-  float inverse_cell = 0;            ///< [1/m]
-  std::array<int, 3> dims{0, 0, 0};  ///< cells per axis
-  Column<std::uint32_t> cell_start;  ///< cells + 1: first sorted point of each cell
-  Column<std::uint32_t> order;       ///< point of each sorted place
-  VectorColumn sorted;               ///< positions in sorted order [m]
+  /// Typical distance of a point from the next [m], which the size of the cells follows; 0: half the radius.
+  /// Sets how fast searches are, not what they find.
+  float spacing = 0;
+
+  Vec3 origin{0, 0, 0};                 ///< corner of the covered box [m]
+  float along = 0, across = 0;          ///< edges of a cell: in x, and in y and z [m]
+  float rounding = 0;                   ///< bound of what coordinates within the box are off by [m]
+  std::array<int, 3> dims{0, 0, 0};     ///< cells per axis
+  Column<std::uint32_t> cell_start;     ///< cells + 1: first sorted point of each cell
+  Column<std::uint32_t> order;          ///< point of each sorted place
+  VectorColumn sorted;                  ///< positions in sorted order [m]
+  Column<std::uint32_t> cluster_start;  ///< clusters + 1: first sorted point of each cluster
 
   // Scratch of the sort.
   Column<std::uint32_t> cell_of;
   Column<std::uint32_t> counts;
+  std::vector<std::uint32_t> block_sums;
   std::vector<Aabb> partial_bounds;
 
+  std::size_t columns() const {
+    return static_cast<std::size_t>(dims[1]) * static_cast<std::size_t>(dims[2]);
+  }
+  std::size_t clusters() const { return cluster_start.size() - 1; }
   std::size_t bytes() const {
-    return cell_start.bytes() + order.bytes() + sorted.bytes() + cell_of.bytes() + counts.bytes();
+    return cell_start.bytes() + order.bytes() + sorted.bytes() + cluster_start.bytes() + cell_of.bytes() +
+           counts.bytes();
   }
 };
 
-/// Count, scan, scatter: a stable sort, the same for any number of threads. positions: finite. radius: > 0.
+/// Count, scan, scatter: a stable sort, the same for any number of threads. positions: finite. radius: > 0,
+/// the largest that will be searched for.
 void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size_t end, float radius,
                      int threads, CellGrid& grid);
 

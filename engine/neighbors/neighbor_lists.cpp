@@ -11,59 +11,122 @@
 namespace mallow {
 namespace {
 
-/// Rows of cells (same y and z) are the unit of work: every point is in one, in sorted order.
-constexpr std::size_t k_rows_per_block = 4;
-/// Candidates that one call of the kernel looks at, about: bounds the scratch where many points share a cell.
-constexpr std::size_t k_batch = 1 << 16;
+/// Clusters are the unit of work: every point is in one, in sorted order.
+constexpr std::size_t k_clusters_per_block = 32;
 /// Entries that 32-bit places can name.
 constexpr std::size_t k_max_entries = std::numeric_limits<std::uint32_t>::max();
 
-struct Builder {
+/// What a thread needs for the lists of one block.
+struct Scratch {
+  std::vector<Run> runs;
+  std::vector<std::uint32_t> near_cluster;
+  std::vector<float> x, y, z;
+  std::vector<std::uint32_t> found;  ///< the lists of the block so far
+  std::size_t size = 0;              ///< entries of them
+
+  /// Room for `count` more entries; what kernels write beyond the last is included.
+  std::uint32_t* room(std::size_t count) {
+    const std::size_t need = size + count + k_cluster;
+    if (found.size() < need) found.resize(std::max(need, 2 * found.size()));
+    return found.data() + size;
+  }
+};
+
+struct Searcher {
   const CellGrid& grid;
   const SearchKernels& kernels;
   SearchInput input;
-  NeighborLists& lists;
-  std::atomic<std::size_t> used{0};   ///< entries handed out, also beyond capacity
-  std::atomic<std::size_t> total{0};  ///< entries that are neighbours
 
-  /// Searches the cells of rows [begin, end) into `found`, then hands them a place of their own in `indices`.
-  void build_rows(std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
-    const auto nx = static_cast<std::size_t>(grid.dims[0]), ny = static_cast<std::size_t>(grid.dims[1]);
-    const std::size_t first_point = grid.cell_start[begin * nx], last_point = grid.cell_start[end * nx];
-    if (first_point == last_point) return;
-    std::size_t size = 0;
-    for (std::size_t row = begin; row < end; ++row) {
-      int cell[3] = {0, static_cast<int>(row % ny), static_cast<int>(row / ny)};
-      for (std::size_t c = row * nx; c < (row + 1) * nx; ++c, ++cell[0]) {
-        std::size_t point = grid.cell_start[c];
-        const std::size_t cell_end = grid.cell_start[c + 1];
-        if (point == cell_end) continue;
-        const std::size_t candidates = std::max<std::size_t>(1, kernels.candidates(input, cell));
-        while (point < cell_end) {
-          const std::size_t batch_end =
-              std::min(cell_end, point + std::max<std::size_t>(1, k_batch / candidates));
-          const std::size_t need = size + candidates * (batch_end - point);
-          if (found.size() < need) found.resize(std::max(need, 2 * found.size()));
-          size += kernels.search(input, cell, point, batch_end, found.data() + size, lists.count.data());
-          point = batch_end;
-          if (size > k_max_entries) {
-            used.fetch_add(size, std::memory_order_relaxed);
-            size = 0;
-          }
-        }
-      }
+  Searcher(const CellGrid& cells, float radius, InstructionLevel level)
+      : grid(cells),
+        kernels(MALLOW_SELECT(level, search_kernels)),
+        input{.sorted = raw(cells.sorted),
+              .cell_start = cells.cell_start.data(),
+              .cluster_start = cells.cluster_start.data(),
+              .origin = {cells.origin.x(), cells.origin.y(), cells.origin.z()},
+              .edge = {cells.along, cells.across, cells.across},
+              .dims = {cells.dims[0], cells.dims[1], cells.dims[2]},
+              .squared_radius = radius * radius,
+              .reach = radius + cells.rounding} {}
+
+  /// Appends the list of a cluster.
+  void find_near_cluster(std::size_t cluster, Scratch& scratch, std::uint32_t* count) const {
+    std::size_t most = 0;
+    const std::size_t runs = find_runs(cluster, scratch, most);
+    count[cluster] = static_cast<std::uint32_t>(
+        kernels.near_cluster(input, cluster, scratch.runs.data(), runs, scratch.room(most)));
+    scratch.size += count[cluster];
+  }
+  /// Appends the lists of a cluster's points.
+  void find_near_points(std::size_t cluster, Scratch& scratch, std::uint32_t* count) const {
+    std::size_t most = 0;
+    const std::size_t runs = find_runs(cluster, scratch, most);
+    scratch.near_cluster.resize(std::max(scratch.near_cluster.size(), most + k_cluster));
+    const std::size_t n =
+        kernels.near_cluster(input, cluster, scratch.runs.data(), runs, scratch.near_cluster.data());
+    for (std::vector<float>* values : {&scratch.x, &scratch.y, &scratch.z})
+      values->resize(std::max(values->size(), n + k_cluster));
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::uint32_t place = scratch.near_cluster[k];
+      scratch.x[k] = input.sorted.x[place];
+      scratch.y[k] = input.sorted.y[place];
+      scratch.z[k] = input.sorted.z[place];
     }
-    const std::size_t place = used.fetch_add(size, std::memory_order_relaxed);
-    total.fetch_add(size, std::memory_order_relaxed);
-    if (place + size > lists.indices.size()) return;
-    std::copy_n(found.data(), size, lists.indices.data() + place);
-    std::size_t next = place;
-    for (std::size_t i = first_point; i < last_point; ++i) {
-      lists.begin[i] = static_cast<std::uint32_t>(next);
-      next += lists.count[i];
+    for (std::size_t i = input.cluster_start[cluster]; i < input.cluster_start[cluster + 1]; ++i) {
+      count[i] = static_cast<std::uint32_t>(
+          kernels.near_point(input, i, n, scratch.near_cluster.data(),
+                             {scratch.x.data(), scratch.y.data(), scratch.z.data()}, scratch.room(n)));
+      scratch.size += count[i];
     }
   }
+
+ private:
+  std::size_t find_runs(std::size_t cluster, Scratch& scratch, std::size_t& points) const {
+    scratch.runs.resize(std::max(scratch.runs.size(), grid.columns() + 1));
+    const std::size_t runs = kernels.find_runs(input, cluster, scratch.runs.data());
+    for (std::size_t r = 0; r < runs; ++r) points += scratch.runs[r].end - scratch.runs[r].begin;
+    return runs;
+  }
 };
+
+/// Searches all clusters; a block's lists get a place of their own in `indices`. row(cluster): the first list
+/// of a cluster. search(cluster, scratch) appends its lists and sets their counts.
+template <class Row, class Search>
+void build_lists(std::size_t clusters, int threads, NeighborLists& lists, const Row& row,
+                 const Search& search) {
+  for (;;) {
+    std::atomic<std::size_t> used{0};  // entries handed out, also beyond capacity
+    parallel_for(
+        threads, clusters,
+        [&](std::size_t first, std::size_t last) {
+          thread_local Scratch scratch;
+          scratch.size = 0;
+          for (std::size_t cluster = first; cluster < last; ++cluster) {
+            search(cluster, scratch);
+            if (used.load(std::memory_order_relaxed) + scratch.size <= k_max_entries) continue;
+            used.fetch_add(scratch.size, std::memory_order_relaxed);  // far too many: only count on
+            scratch.size = 0;
+          }
+          const std::size_t place = used.fetch_add(scratch.size, std::memory_order_relaxed);
+          if (place + scratch.size > lists.indices.size()) return;
+          std::copy_n(scratch.found.data(), scratch.size, lists.indices.data() + place);
+          std::size_t next = place;
+          for (std::size_t i = row(first); i < row(last); ++i) {
+            lists.begin[i] = static_cast<std::uint32_t>(next);
+            next += lists.count[i];
+          }
+        },
+        k_clusters_per_block);
+    if (used > k_max_entries)
+      throw ConfigError("support_radius", "the neighbour lists would need " + std::to_string(used) +
+                                              " entries; at most 4294967295 fit: choose a smaller radius");
+    lists.total = used;
+    if (used <= lists.indices.size()) return;
+    // A tenth more than needed now, so that a body under compression does not grow the lists at every step.
+    lists.indices.resize(0);
+    lists.indices.resize(used + used / 10);
+  }
+}
 
 }  // namespace
 
@@ -73,29 +136,25 @@ void build_neighbor_lists(const CellGrid& grid, float radius, int threads, Instr
   lists.begin.resize(n);
   lists.count.resize(n);
   if (lists.indices.empty()) lists.indices.resize(capacity > 0 ? capacity : 40 * n);
-  const auto rows = static_cast<std::size_t>(grid.dims[1]) * static_cast<std::size_t>(grid.dims[2]);
-  const SearchInput input{{grid.sorted.x(), grid.sorted.y(), grid.sorted.z()},
-                          grid.cell_start.data(),
-                          {grid.dims[0], grid.dims[1], grid.dims[2]},
-                          radius * radius};
-  for (;;) {
-    Builder builder{grid, MALLOW_SELECT(level, search_kernels), input, lists, {}, {}};
-    parallel_for(
-        threads, rows,
-        [&](std::size_t begin, std::size_t end) {
-          thread_local std::vector<std::uint32_t> found;
-          builder.build_rows(begin, end, found);
-        },
-        k_rows_per_block);
-    lists.total = builder.total;
-    if (builder.used > k_max_entries)
-      throw ConfigError("support_radius", "the neighbour lists would need " + std::to_string(builder.used) +
-                                              " entries; at most 4294967295 fit: choose a smaller radius");
-    if (builder.used <= lists.indices.size()) return;
-    // A tenth more than needed now, so that a body under compression does not grow the lists at every step.
-    lists.indices.resize(0);
-    lists.indices.resize(builder.used + builder.used / 10);
-  }
+  const Searcher searcher(grid, radius, level);
+  build_lists(
+      grid.clusters(), threads, lists, [&](std::size_t cluster) { return grid.cluster_start[cluster]; },
+      [&](std::size_t cluster, Scratch& scratch) {
+        searcher.find_near_points(cluster, scratch, lists.count.data());
+      });
+}
+
+void build_cluster_lists(const CellGrid& grid, float radius, int threads, InstructionLevel level,
+                         NeighborLists& lists) {
+  lists.begin.resize(grid.clusters());
+  lists.count.resize(grid.clusters());
+  if (lists.indices.empty()) lists.indices.resize(128 * grid.clusters());
+  const Searcher searcher(grid, radius, level);
+  build_lists(
+      grid.clusters(), threads, lists, [](std::size_t cluster) { return cluster; },
+      [&](std::size_t cluster, Scratch& scratch) {
+        searcher.find_near_cluster(cluster, scratch, lists.count.data());
+      });
 }
 
 }  // namespace mallow

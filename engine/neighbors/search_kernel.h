@@ -5,22 +5,36 @@
 
 namespace mallow {
 
-/// Sorted points and their cells, as CellGrid holds them.
+/// Sorted points, their cells and clusters, as CellGrid holds them.
 struct SearchInput {
   ConstVectors sorted;
   const std::uint32_t* cell_start;
+  const std::uint32_t* cluster_start;
+  float origin[3];
+  float edge[3];  ///< of a cell
   int dims[3];
   float squared_radius;
+  float reach;  ///< the radius, and what coordinates may be off by
+};
+
+/// Sorted points [begin, end).
+struct Run {
+  std::uint32_t begin, end;
 };
 
 struct SearchKernels {
-  /// Points in and around the cell with coordinates `cell`: the most that a list of one of its points can
-  /// hold.
-  std::size_t (*candidates)(const SearchInput&, const int* cell);
-  /// Writes the lists of the points [begin, end) of one cell behind each other to `out`, which has room for
-  /// candidates() entries a point, and their lengths to `count`; returns the number of entries written.
-  std::size_t (*search)(const SearchInput&, const int* cell, std::size_t begin, std::size_t end,
-                        std::uint32_t* out, std::uint32_t* count);
+  /// Runs of points that hold all whose distance from the cluster's box is at most the radius, ascending;
+  /// returns how many. runs: room for one a column of the grid.
+  std::size_t (*find_runs)(const SearchInput&, std::size_t cluster, Run* runs) noexcept;
+  /// Of the points in these runs those within the radius of the cluster's box, ascending; returns how many.
+  /// None that is within the radius of a point of the cluster is left out. out: room for all of the runs'
+  /// points and k_cluster more.
+  std::size_t (*near_cluster)(const SearchInput&, std::size_t cluster, const Run* runs, std::size_t count,
+                              std::uint32_t* out) noexcept;
+  /// Of n points, given by their places and coordinates, those within the radius of a sorted point, in order;
+  /// returns how many. out: room for n + k_cluster.
+  std::size_t (*near_point)(const SearchInput&, std::size_t point, std::size_t n, const std::uint32_t* places,
+                            ConstVectors coordinates, std::uint32_t* out) noexcept;
 };
 MALLOW_DECLARE_LEVELS(SearchKernels, search_kernels)
 

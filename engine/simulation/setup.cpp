@@ -249,7 +249,9 @@ void Simulation::prepare() {
   s.sph.groups.clear();
   s.sph.group_end.clear();
   s.sph.viscous = false;
+  double volume = 0;
   for (Group& group : s.groups) {
+    volume += static_cast<double>(group.size()) * std::pow(static_cast<double>(group.spacing), 3);
     s.sph.groups.push_back({.mass = group.mass,
                             .rest_density = group.rest_density,
                             .rest_volume = group.mass / group.rest_density,
@@ -261,6 +263,7 @@ void Simulation::prepare() {
     if (group.grew && group.keeps_reference()) take_reference(s, group);
     group.grew = false;
   }
+  s.sph.grid.spacing = static_cast<float>(std::cbrt(volume / static_cast<double>(s.store.size())));
   read_alphas(s);
   for (Group& group : s.groups)
     if (group.matches_shape() && !group.shape.built)

@@ -7,8 +7,12 @@
 namespace mallow {
 namespace {
 
+/// Clusters that one thread handles at a time.
+constexpr std::size_t k_cluster_block = 16;
+
 SphInput input(const Sph& sph) {
   return {
+      .cluster_start = sph.grid.cluster_start.data(),
       .list_begin = sph.lists.begin.data(),
       .list_count = sph.lists.count.data(),
       .indices = sph.lists.indices.data(),
@@ -41,7 +45,7 @@ bool find_neighbors(const VectorColumn& positions, int threads, InstructionLevel
     return false;
   const float radius = sph.support_radius * (1.0f + sph.neighbor_slack);
   build_cell_grid(positions, 0, n, radius, threads, sph.grid);
-  build_neighbor_lists(sph.grid, radius, threads, level, sph.lists);
+  build_cluster_lists(sph.grid, radius, threads, level, sph.lists);
   if (keeps) remember_search(sph.grid, sph.kept);
   if (sph.groups.size() == 1) return true;
   sph.group.resize(n);
@@ -60,10 +64,16 @@ void compute_density(int threads, InstructionLevel level, Sph& sph) {
     column->resize(n);
   const SphInput in = input(sph);
   const SphKernels& kernels = MALLOW_SELECT(level, sph_kernels);
-  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
-    kernels.density(in, begin, end, sph.density.data(), sph.pressure.data(), sph.volume.data(),
-                    sph.density_by_row.data());
-  });
+  // Lists that are kept for steps to come stay as they are.
+  const NearLists near = sph.neighbor_slack > 0 ? NearLists{nullptr, nullptr}
+                                                : NearLists{sph.lists.indices.data(), sph.lists.count.data()};
+  parallel_for(
+      threads, sph.grid.clusters(),
+      [&](std::size_t begin, std::size_t end) {
+        kernels.density(in, begin, end, near, sph.density.data(), sph.pressure.data(), sph.volume.data(),
+                        sph.density_by_row.data());
+      },
+      k_cluster_block);
 }
 
 void compute_accelerations(const VectorColumn& velocities, int threads, InstructionLevel level, Sph& sph) {
@@ -83,10 +93,13 @@ void compute_accelerations(const VectorColumn& velocities, int threads, Instruct
   const SphInput in = input(sph);
   const SphKernels& kernels = MALLOW_SELECT(level, sph_kernels);
   const auto run = sph.formulation == Formulation::printed ? kernels.printed : kernels.conservative;
-  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
-    run(in, begin, end, sph.density.data(), sph.pressure.data(), sph.volume.data(), raw(sph.acceleration),
-        raw(sph.cross_group));
-  });
+  parallel_for(
+      threads, sph.grid.clusters(),
+      [&](std::size_t begin, std::size_t end) {
+        run(in, begin, end, sph.density.data(), sph.pressure.data(), sph.volume.data(), raw(sph.acceleration),
+            raw(sph.cross_group));
+      },
+      k_cluster_block);
 }
 
 }  // namespace mallow

@@ -25,8 +25,8 @@ struct Sph {
   std::vector<std::size_t> group_end;  ///< per group: row behind its last
 
   CellGrid grid;
-  NeighborLists lists;
-  KeptLists kept;  ///< empty without slack
+  NeighborLists lists;  ///< a list per cluster of the grid
+  KeptLists kept;       ///< empty without slack
   // Sorted order.
   Column<std::uint8_t> group;  ///< empty where there is one group
   VectorColumn velocity;       ///< empty without viscosity
@@ -39,10 +39,12 @@ struct Sph {
   std::size_t bytes() const;
 };
 
-/// Cell grid and lists of all particles within σ of each particle. With slack, lists that still hold all of
-/// these are kept, and only their positions are brought up to date. Tells whether lists were found anew.
+/// Cell grid and, per cluster of it, the list of all particles within σ. With slack, lists that still hold
+/// all of these are kept, and only their positions are brought up to date. Tells whether lists were found
+/// anew.
 bool find_neighbors(const VectorColumn& positions, int threads, InstructionLevel level, Sph& sph);
-/// Density and pressure from the lists. [TK eq. 3, model 1]
+/// Density and pressure from the lists, which keep only who is nearer than σ unless they are kept for later
+/// steps. [TK eq. 3, model 1]
 void compute_density(int threads, InstructionLevel level, Sph& sph);
 /// Pressure and viscosity accelerations. [TK eq. 1, 2, 4, model 1]
 void compute_accelerations(const VectorColumn& velocities, int threads, InstructionLevel level, Sph& sph);

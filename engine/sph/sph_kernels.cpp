@@ -3,139 +3,194 @@
 // (Solenthaler & Pajarola 2008); pressure and viscosity are antisymmetric, so that momentum is kept.
 #include "sph/sph_kernels.h"
 
+#include "core/lanes.h"
+
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
-void density(const SphInput& in, std::size_t begin, std::size_t end, float* rho, float* pressure,
-             float* volume, float* rho_by_row) noexcept {
-  for (std::size_t i = begin; i < end; ++i) {
-    const float x = in.position.x[i], y = in.position.y[i], z = in.position.z[i];
-    const std::uint32_t* const list = in.indices + in.list_begin[i];
-    const std::uint32_t n = in.list_count[i];
-    float sum = 0;
-    for (std::uint32_t k = 0; k < n; ++k) {
-      const std::uint32_t j = list[k];
-      const float dx = (x - in.position.x[j]) * in.inverse_radius;
-      const float dy = (y - in.position.y[j]) * in.inverse_radius;
-      const float dz = (z - in.position.z[j]) * in.inverse_radius;
-      const float q2 = dx * dx + dy * dy + dz * dz;
-      const float t = q2 < 1.0f ? 1.0f - q2 : 0.0f;
-      const float w = t * t * t;
-      sum += in.group ? in.groups[in.group[j]].rest_volume * w : w;
-    }
-    const SphGroup& own = in.groups[in.group ? in.group[i] : 0];
-    if (!in.group) sum *= own.rest_volume;
-    rho[i] = own.rest_density * (in.density_factor * sum);
-    const float p = own.pressure_coefficient * (rho[i] - own.rest_density);
-    pressure[i] = p < 0 ? p * own.cohesion : p;
-    volume[i] = own.mass / rho[i];
-    rho_by_row[in.row_of[i]] = rho[i];
-  }
+/// Three components of eight particles.
+struct Floats3 {
+  Floats x, y, z;
+};
+
+MALLOW_INLINE Floats3 load_vectors(const ConstVectors& from, std::size_t first) {
+  return {load(from.x + first), load(from.y + first), load(from.z + first)};
+}
+/// x_i − x_j of eight i.
+MALLOW_INLINE Floats3 difference(const Floats3& i, const ConstVectors& of, std::size_t j) {
+  return {i.x - of.x[j], i.y - of.y[j], i.z - of.z[j]};
+}
+MALLOW_INLINE Floats squared_length(const Floats3& d) {
+  return d.x * d.x + d.y * d.y + d.z * d.z;
+}
+MALLOW_INLINE Floats not_negative(const Floats& value) {
+  return larger(value, Floats{});
 }
 
-struct Sum {
-  float x = 0, y = 0, z = 0;
-};
-
-/// Pressure along x_i − x_j and viscosity of one pair, each per volume of j. Model 1, Mueller 2003.
-struct ConservativePair {
-  static constexpr bool relative_velocity = true;
-
-  static float push(const SphInput& in, float r2, float own_pressure, float pressure) {
-    const float r = __builtin_sqrtf(r2);
-    const float t = falloff(in, r);
-    // Coincident particles have no direction to push each other in.
-    return r > 0 ? 0.5f * (own_pressure + pressure) * in.spiky_gradient * t * t / r : 0.0f;
-  }
-  static float drag(const SphInput& in, float r2) { return in.viscosity * falloff(in, __builtin_sqrtf(r2)); }
-
- private:
-  static float falloff(const SphInput& in, float r) {
-    const float q = r * in.inverse_radius;
-    return q < 1.0f ? 1.0f - q : 0.0f;
-  }
-};
-
-/// The same as [TK eq. 1, 2] print it.
-struct PrintedPair {
-  static constexpr bool relative_velocity = false;
-
-  static float push(const SphInput& in, float r2, float, float pressure) {
-    const float t = falloff(in, r2);
-    return pressure * in.poly6_gradient * t * t;
-  }
-  static float drag(const SphInput& in, float r2) {
-    const float q2 = r2 * in.inverse_radius * in.inverse_radius;
-    return -in.poly6_laplacian * falloff(in, r2) * (3.0f - 7.0f * q2);
-  }
-
- private:
-  static float falloff(const SphInput& in, float r2) {
-    const float q2 = r2 * in.inverse_radius * in.inverse_radius;
-    return q2 < 1.0f ? 1.0f - q2 : 0.0f;
-  }
-};
-
-/// One particle's sums over its pairs within its group and with others.
-template <class Pair, bool viscous, bool grouped>
-void sum_pairs(const SphInput& in, std::size_t i, const float* pressure, const float* volume, Sum& same,
-               Sum& cross) {
-  const float x = in.position.x[i], y = in.position.y[i], z = in.position.z[i];
-  const std::uint32_t* const list = in.indices + in.list_begin[i];
-  const std::uint32_t n = in.list_count[i];
-  const std::uint32_t own = grouped ? in.group[i] : 0;
+/// Σ_j of the densities of a cluster. `near`: null, or where to write who of the list is near some particle
+/// of the cluster, which may be the list itself; their number is written to `count`.
+template <bool grouped, bool listed>
+Floats sum_density(const SphInput& in, std::size_t cluster, std::uint32_t* near, std::uint32_t& count) {
+  const std::uint32_t* const list = in.indices + in.list_begin[cluster];
+  const std::uint32_t n = in.list_count[cluster];
+  const Floats3 x = load_vectors(in.position, in.cluster_start[cluster]);
+  const float inverse_square = in.inverse_radius * in.inverse_radius;
+  Floats sum = {};
+  std::uint32_t found = 0;
   for (std::uint32_t k = 0; k < n; ++k) {
     const std::uint32_t j = list[k];
-    const float dx = x - in.position.x[j], dy = y - in.position.y[j], dz = z - in.position.z[j];
-    const float r2 = dx * dx + dy * dy + dz * dz;
-    const float push = volume[j] * Pair::push(in, r2, pressure[i], pressure[j]);
-    float ax = push * dx, ay = push * dy, az = push * dz;
-    const std::uint32_t other = grouped ? in.group[j] : own;
+    const Floats t = not_negative(1.0f - squared_length(difference(x, in.position, j)) * inverse_square);
+    const Floats w = t * t * t;
+    sum += grouped ? in.groups[in.group[j]].rest_volume * w : w;
+    if (!listed) continue;
+    // Always written, kept only if near: no branch to predict.
+    near[found] = j;
+    found += any(t > 0.0f);
+  }
+  if (listed) count = found;
+  return sum;
+}
+
+void density(const SphInput& in, std::size_t begin, std::size_t end, const NearLists& near, float* rho,
+             float* pressure, float* volume, float* rho_by_row) noexcept {
+  const bool grouped = in.group != nullptr, listed = near.indices != nullptr;
+  const auto sum = listed ? (grouped ? sum_density<true, true> : sum_density<false, true>)
+                          : (grouped ? sum_density<true, false> : sum_density<false, false>);
+  for (std::size_t cluster = begin; cluster < end; ++cluster) {
+    std::uint32_t unused = 0;
+    const Floats sums = sum(in, cluster, listed ? near.indices + in.list_begin[cluster] : nullptr,
+                            listed ? near.count[cluster] : unused);
+    const std::size_t first = in.cluster_start[cluster];
+    for (std::size_t i = first; i < in.cluster_start[cluster + 1]; ++i) {
+      const SphGroup& own = in.groups[grouped ? in.group[i] : 0];
+      const float density = grouped ? sums[i - first] : sums[i - first] * own.rest_volume;
+      rho[i] = own.rest_density * (in.density_factor * density);
+      const float p = own.pressure_coefficient * (rho[i] - own.rest_density);
+      pressure[i] = p < 0 ? p * own.cohesion : p;
+      volume[i] = own.mass / rho[i];
+      rho_by_row[in.row_of[i]] = rho[i];
+    }
+  }
+}
+
+/// Both formulations are a_i = (F/ρ_i) Σ_j V_j t (push (x_i − x_j) + drag v), each with its own falloff t,
+/// and v the velocity of j, relative to i's or not.
+struct Pair {
+  Floats t, push, drag;
+};
+
+/// F = |∇W_spiky|/2 at q = 0, and ∇²W_visc is twice that over σ. Model 1, Mueller 2003.
+struct Conservative {
+  static constexpr bool relative_velocity = true;
+  static float factor(const SphInput& in) { return 0.5f * in.spiky_gradient; }
+
+  MALLOW_INLINE Pair pair(const SphInput& in, const Floats& r2, const Floats& own_pressure, float pressure,
+                          const Floats& viscosities) {
+    const Floats r = square_root(r2);
+    const Floats t = not_negative(1.0f - r * in.inverse_radius);
+    // 1/r as r/r², which need not wait for the root. Coincident particles have no direction to push in.
+    return {t, where(r2 > 0.0f, (own_pressure + pressure) * t * (r * (1.0f / r2))),
+            viscosities * in.inverse_radius};
+  }
+};
+
+/// F = |∇W_poly6/r| = |∇²W_poly6|/3 at q = 0. [TK eq. 1, 2]
+struct Printed {
+  static constexpr bool relative_velocity = false;
+  static float factor(const SphInput& in) { return in.poly6_gradient; }
+
+  MALLOW_INLINE Pair pair(const SphInput& in, const Floats& r2, const Floats&, float pressure,
+                          const Floats& viscosities) {
+    const Floats q2 = r2 * (in.inverse_radius * in.inverse_radius);
+    const Floats t = not_negative(1.0f - q2);
+    return {t, pressure * t, -0.5f * viscosities * (3.0f - 7.0f * q2)};
+  }
+};
+
+MALLOW_INLINE void add(const Ints& mask, const Floats3& value, Floats3& sum) {
+  sum.x += where(mask, value.x);
+  sum.y += where(mask, value.y);
+  sum.z += where(mask, value.z);
+}
+
+/// Σ_j of a cluster's pairs within their groups and with others, without F/ρ.
+template <class Formula, bool viscous, bool grouped>
+void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, const float* volumes,
+               Floats3& same, Floats3& cross) {
+  const std::size_t first = in.cluster_start[cluster];
+  const std::uint32_t* const list = in.indices + in.list_begin[cluster];
+  const std::uint32_t n = in.list_count[cluster];
+  const Floats3 x = load_vectors(in.position, first);
+  const Floats own_pressure = load(pressures + first);
+  Floats3 v = {};
+  if (viscous && Formula::relative_velocity) v = load_vectors(in.velocity, first);
+  Ints own = {};
+  Floats own_viscosity = all(in.groups[0].viscosity);
+  if (grouped) {
+    for (std::size_t i = first; i < in.cluster_start[cluster + 1]; ++i) {
+      own[i - first] = in.group[i];
+      own_viscosity[i - first] = in.groups[in.group[i]].viscosity;
+    }
+  }
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const std::uint32_t j = list[k];
+    const int group = grouped ? in.group[j] : 0;
+    const Floats3 d = difference(x, in.position, j);
+    const Pair pair = Formula::pair(in, squared_length(d), own_pressure, pressures[j],
+                                    own_viscosity + in.groups[group].viscosity);
+    const Floats weight = volumes[j] * pair.t, push = weight * pair.push;
+    Floats3 a = {push * d.x, push * d.y, push * d.z};
     if (viscous) {
-      const float mu = other == own ? in.groups[own].viscosity
-                                    : 0.5f * (in.groups[own].viscosity + in.groups[other].viscosity);
-      const float drag = volume[j] * mu * Pair::drag(in, r2);
-      ax += drag * (Pair::relative_velocity ? in.velocity.x[j] - in.velocity.x[i] : in.velocity.x[j]);
-      ay += drag * (Pair::relative_velocity ? in.velocity.y[j] - in.velocity.y[i] : in.velocity.y[j]);
-      az += drag * (Pair::relative_velocity ? in.velocity.z[j] - in.velocity.z[i] : in.velocity.z[j]);
+      const Floats drag = weight * pair.drag;
+      const Floats3 minus_velocity = difference(v, in.velocity, j);
+      a = {a.x - drag * minus_velocity.x, a.y - drag * minus_velocity.y, a.z - drag * minus_velocity.z};
     }
-    Sum& sum = other == own ? same : cross;
-    sum.x += ax;
-    sum.y += ay;
-    sum.z += az;
-  }
-}
-
-template <class Pair, bool viscous, bool grouped>
-void sum_block(const SphInput& in, std::size_t begin, std::size_t end, const float* rho,
-               const float* pressure, const float* volume, const Vectors& same, const Vectors& cross) {
-  for (std::size_t i = begin; i < end; ++i) {
-    Sum own, other;
-    sum_pairs<Pair, viscous, grouped>(in, i, pressure, volume, own, other);
-    const std::uint32_t row = in.row_of[i];
-    same.x[row] = own.x / rho[i];
-    same.y[row] = own.y / rho[i];
-    same.z[row] = own.z / rho[i];
     if (grouped) {
-      cross.x[row] = other.x / rho[i];
-      cross.y[row] = other.y / rho[i];
-      cross.z[row] = other.z / rho[i];
+      add(own == group, a, same);
+      add(own != group, a, cross);
+    } else {
+      same = {same.x + a.x, same.y + a.y, same.z + a.z};
     }
   }
 }
 
-template <class Pair>
+void write_by_row(const SphInput& in, std::size_t cluster, const Floats& scale, const Floats3& sum,
+                  const Vectors& to) {
+  const Floats3 a = {scale * sum.x, scale * sum.y, scale * sum.z};
+  const std::size_t first = in.cluster_start[cluster];
+  for (std::size_t i = first; i < in.cluster_start[cluster + 1]; ++i) {
+    const std::uint32_t row = in.row_of[i];
+    to.x[row] = a.x[i - first];
+    to.y[row] = a.y[i - first];
+    to.z[row] = a.z[i - first];
+  }
+}
+
+template <class Formula, bool viscous, bool grouped>
+void sum_clusters(const SphInput& in, std::size_t begin, std::size_t end, const float* rho,
+                  const float* pressure, const float* volume, const Vectors& same, const Vectors& cross) {
+  for (std::size_t cluster = begin; cluster < end; ++cluster) {
+    Floats3 own = {}, other = {};
+    sum_pairs<Formula, viscous, grouped>(in, cluster, pressure, volume, own, other);
+    const Floats scale = Formula::factor(in) / load(rho + in.cluster_start[cluster]);
+    write_by_row(in, cluster, scale, own, same);
+    if (grouped) write_by_row(in, cluster, scale, other, cross);
+  }
+}
+
+template <class Formula>
 void accelerations(const SphInput& in, std::size_t begin, std::size_t end, const float* rho,
                    const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept {
   const bool viscous = in.velocity.x != nullptr, grouped = in.group != nullptr;
-  const auto run = viscous ? (grouped ? sum_block<Pair, true, true> : sum_block<Pair, true, false>)
-                           : (grouped ? sum_block<Pair, false, true> : sum_block<Pair, false, false>);
+  const auto run = viscous
+                       ? (grouped ? sum_clusters<Formula, true, true> : sum_clusters<Formula, true, false>)
+                       : (grouped ? sum_clusters<Formula, false, true> : sum_clusters<Formula, false, false>);
   run(in, begin, end, rho, pressure, volume, same, cross);
 }
 
 }  // namespace
 
 extern const SphKernels sph_kernels;
-const SphKernels sph_kernels = {density, accelerations<ConservativePair>, accelerations<PrintedPair>};
+const SphKernels sph_kernels = {density, accelerations<Conservative>, accelerations<Printed>};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -15,7 +15,9 @@ struct SphGroup {
   float cohesion;              ///< share of negative pressure
 };
 
-/// Sums over all particles within σ. All columns are in sorted order unless they say row.
+/// Sums over all particles within σ. All columns are in sorted order unless they say row. The particles of a
+/// cluster share one list, which holds all that are within σ of one of them, and are summed lane by lane:
+/// who is farther than σ from a lane's particle adds nothing to it [Pall & Hess 2013].
 ///
 /// symbol | column        | unit    | eq.
 /// x_i    | position      | m       |
@@ -24,7 +26,8 @@ struct SphGroup {
 /// p_i    | pressure      | Pa      | model 1
 /// V_j    | volume, m_j/ρ_j | m³    |
 struct SphInput {
-  const std::uint32_t* list_begin;
+  const std::uint32_t* cluster_start;  ///< first particle of each cluster
+  const std::uint32_t* list_begin;     ///< per cluster
   const std::uint32_t* list_count;
   const std::uint32_t* indices;
   const std::uint32_t* row_of;  ///< sorted place -> row of the particle store
@@ -40,13 +43,22 @@ struct SphInput {
   float poly6_laplacian;
 };
 
+/// Where the first sum over the lists leaves who of them is near, for the sums that follow: the lists
+/// themselves, or null where they must stay whole.
+struct NearLists {
+  std::uint32_t* indices;
+  std::uint32_t* count;
+};
+
+/// [begin, end): clusters.
 struct SphKernels {
   /// ρ_i = ρ0_i Σ_j (m_j/ρ0_j) W_ij, p_i = k (ρ_i − ρ0), negative ones times cohesion.
   /// Writes density, pressure and volume, and the density also by row.
-  void (*density)(const SphInput&, std::size_t begin, std::size_t end, float* density, float* pressure,
-                  float* volume, float* density_by_row) noexcept;
+  void (*density)(const SphInput&, std::size_t begin, std::size_t end, const NearLists& near, float* density,
+                  float* pressure, float* volume, float* density_by_row) noexcept;
   /// a_i = (1/ρ_i) Σ_j V_j [ (p_i + p_j)/2 |∇W_spiky| r̂ + μ (v_j − v_i) ∇²W_visc ], by row: pairs of one
-  /// group into `same`, pairs of two groups into `cross` (null where there is one group).
+  /// group into `same`, pairs of two groups, μ the mean of theirs, into `cross` (null where there is one
+  /// group).
   void (*conservative)(const SphInput&, std::size_t begin, std::size_t end, const float* density,
                        const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept;
   /// [TK eq. 1, 2] to the letter: a_i = (1/ρ_i) Σ_j V_j [ −p_j ∇W_poly6 + μ v_j ∇²W_poly6 ], j = i included.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -131,6 +132,27 @@ TEST(accelerations, have_the_same_bits_at_every_level_and_thread_count) {
       }
     }
   }
+}
+
+TEST(density, leaves_in_the_lists_who_is_within_the_radius_of_the_cluster) {
+  World world;
+  find_neighbors(world.x, 2, best_instruction_level(), world.sph);
+  const std::size_t listed = world.sph.lists.total;
+  compute_density(2, best_instruction_level(), world.sph);
+  std::size_t near = 0;
+  const CellGrid& grid = world.sph.grid;
+  for (std::size_t c = 0; c < grid.clusters(); ++c) {
+    const auto list = world.sph.lists.of(c);
+    near += list.size();
+    for (std::size_t j = 0; j < world.x.size(); ++j) {
+      float nearest = 2;
+      for (std::size_t i = grid.cluster_start[c]; i < grid.cluster_start[c + 1]; ++i)
+        nearest = std::min(nearest, (grid.sorted.get(i) - grid.sorted.get(j)).norm());
+      const bool kept = std::binary_search(list.begin(), list.end(), static_cast<std::uint32_t>(j));
+      EXPECT_TRUE(kept || nearest > 0.999999f) << c << ' ' << j;
+    }
+  }
+  EXPECT_LT(near, listed);
 }
 
 TEST(accelerations, of_coincident_particles_are_finite) {
