@@ -45,25 +45,28 @@ struct Searcher {
               .cluster_start = cells.cluster_start.data(),
               .origin = {cells.origin.x(), cells.origin.y(), cells.origin.z()},
               .edge = {cells.along, cells.across, cells.across},
+              .inverse_edge = {1.0f / cells.along, 1.0f / cells.across, 1.0f / cells.across},
               .dims = {cells.dims[0], cells.dims[1], cells.dims[2]},
               .squared_radius = radius * radius,
               .reach = radius + cells.rounding} {}
 
   /// Appends the list of a cluster.
   void find_near_cluster(std::size_t cluster, Scratch& scratch, std::uint32_t* count) const {
+    const Bounds box = kernels.box_of(input, cluster);
     std::size_t most = 0;
-    const std::size_t runs = find_runs(cluster, scratch, most);
+    const std::size_t runs = find_runs(box, scratch, most);
     count[cluster] = static_cast<std::uint32_t>(
-        kernels.near_cluster(input, cluster, scratch.runs.data(), runs, scratch.room(most)));
+        kernels.near_cluster(input, box, scratch.runs.data(), runs, scratch.room(most)));
     scratch.size += count[cluster];
   }
   /// Appends the lists of a cluster's points.
   void find_near_points(std::size_t cluster, Scratch& scratch, std::uint32_t* count) const {
+    const Bounds box = kernels.box_of(input, cluster);
     std::size_t most = 0;
-    const std::size_t runs = find_runs(cluster, scratch, most);
+    const std::size_t runs = find_runs(box, scratch, most);
     scratch.near_cluster.resize(std::max(scratch.near_cluster.size(), most + k_cluster));
     const std::size_t n =
-        kernels.near_cluster(input, cluster, scratch.runs.data(), runs, scratch.near_cluster.data());
+        kernels.near_cluster(input, box, scratch.runs.data(), runs, scratch.near_cluster.data());
     for (std::vector<float>* values : {&scratch.x, &scratch.y, &scratch.z})
       values->resize(std::max(values->size(), n + k_cluster));
     for (std::size_t k = 0; k < n; ++k) {
@@ -81,9 +84,9 @@ struct Searcher {
   }
 
  private:
-  std::size_t find_runs(std::size_t cluster, Scratch& scratch, std::size_t& points) const {
+  std::size_t find_runs(const Bounds& box, Scratch& scratch, std::size_t& points) const {
     scratch.runs.resize(std::max(scratch.runs.size(), grid.columns() + 1));
-    const std::size_t runs = kernels.find_runs(input, cluster, scratch.runs.data());
+    const std::size_t runs = kernels.find_runs(input, box, scratch.runs.data());
     for (std::size_t r = 0; r < runs; ++r) points += scratch.runs[r].end - scratch.runs[r].begin;
     return runs;
   }

@@ -10,63 +10,79 @@ namespace {
 /// pairs are taken one by one.
 constexpr float k_rounding = 1e-5f;
 
-struct Box {
-  float low[3], high[3];
-};
+constexpr Ints k_count = {0, 1, 2, 3, 4, 5, 6, 7};
 
-Box cluster_box(const SearchInput& in, std::size_t cluster) {
-  const std::size_t begin = in.cluster_start[cluster], end = in.cluster_start[cluster + 1];
+/// The smallest of eight values in every lane.
+MALLOW_INLINE Floats smallest(Floats v) {
+  const Floats by_four = __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
+  v = v < by_four ? v : by_four;
+  const Floats by_two = __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5);
+  v = v < by_two ? v : by_two;
+  const Floats by_one = __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6);
+  return v < by_one ? v : by_one;
+}
+
+Bounds box_of(const SearchInput& in, std::size_t cluster) noexcept {
+  const std::size_t first = in.cluster_start[cluster];
+  const Ints in_cluster = k_count < static_cast<int>(in.cluster_start[cluster + 1] - first);
   const float* const axes[3] = {in.sorted.x, in.sorted.y, in.sorted.z};
-  Box box;
+  Bounds box;
   for (int a = 0; a < 3; ++a) {
-    box.low[a] = box.high[a] = axes[a][begin];
-    for (std::size_t i = begin + 1; i < end; ++i) {
-      const float value = axes[a][i];
-      box.low[a] = value < box.low[a] ? value : box.low[a];
-      box.high[a] = value > box.high[a] ? value : box.high[a];
-    }
+    const Floats values = load(axes[a] + first);
+    // Lanes behind a short cluster count as its first point.
+    const Floats own = in_cluster ? values : all(values[0]);
+    box.low[a] = smallest(own)[0];
+    box.high[a] = -smallest(-own)[0];
   }
   return box;
 }
 
 /// Cell of a coordinate that is given from the origin on.
 int cell_of(const SearchInput& in, int axis, float from_origin) {
-  const float cell = from_origin / in.edge[axis], last = static_cast<float>(in.dims[axis] - 1);
+  const float cell = from_origin * in.inverse_edge[axis], last = static_cast<float>(in.dims[axis] - 1);
   return static_cast<int>(cell < 0.0f ? 0.0f : cell > last ? last : cell);
 }
 
-/// Distance along an axis between a box and a cell. Cells at the border also hold what lies beyond.
-float distance(const SearchInput& in, int axis, const Box& from_origin, int cell) {
+/// Squared distance along an axis between a box and a cell. Cells at the border also hold what lies beyond.
+float squared_distance(const SearchInput& in, int axis, const Bounds& from_origin, int cell) {
   const float low = static_cast<float>(cell) * in.edge[axis], high = low + in.edge[axis];
-  if (low > from_origin.high[axis] && cell > 0) return low - from_origin.high[axis];
-  if (high < from_origin.low[axis] && cell < in.dims[axis] - 1) return from_origin.low[axis] - high;
-  return 0;
+  const float below = cell > 0 ? low - from_origin.high[axis] : 0.0f;
+  const float above = cell < in.dims[axis] - 1 ? from_origin.low[axis] - high : 0.0f;
+  const float distance = below > above ? below : above;
+  return distance > 0.0f ? distance * distance : 0.0f;
 }
 
-std::size_t find_runs(const SearchInput& in, std::size_t cluster, Run* runs) noexcept {
-  Box box = cluster_box(in, cluster);
-  int first[3], last[3];
+/// Cells along an axis that a box and what is within reach of it lie in.
+struct CellRange {
+  int first, last;
+};
+CellRange cells_within(const SearchInput& in, int axis, const Bounds& from_origin, float reach) {
+  return {cell_of(in, axis, from_origin.low[axis] - reach),
+          cell_of(in, axis, from_origin.high[axis] + reach)};
+}
+
+std::size_t find_runs(const SearchInput& in, const Bounds& box, Run* runs) noexcept {
+  Bounds from_origin;
   for (int a = 0; a < 3; ++a) {
-    box.low[a] -= in.origin[a];
-    box.high[a] -= in.origin[a];
-    first[a] = cell_of(in, a, box.low[a] - in.reach);
-    last[a] = cell_of(in, a, box.high[a] + in.reach);
+    from_origin.low[a] = box.low[a] - in.origin[a];
+    from_origin.high[a] = box.high[a] - in.origin[a];
   }
   const float squared_reach = in.reach * in.reach;
+  const auto nx = static_cast<std::size_t>(in.dims[0]), ny = static_cast<std::size_t>(in.dims[1]);
+  const CellRange slices = cells_within(in, 2, from_origin, in.reach);
   std::size_t count = 0;
-  for (int z = first[2]; z <= last[2]; ++z) {
-    const float dz = distance(in, 2, box, z);
-    for (int y = first[1]; y <= last[1]; ++y) {
-      const float dy = distance(in, 1, box, y);
-      const float rest = squared_reach - (dy * dy + dz * dz);
-      if (rest < 0) continue;
-      const float reach = __builtin_sqrtf(rest);
-      const std::size_t column =
-          (static_cast<std::size_t>(z) * static_cast<std::size_t>(in.dims[1]) + static_cast<std::size_t>(y)) *
-          static_cast<std::size_t>(in.dims[0]);
-      const std::size_t x0 = column + static_cast<std::size_t>(cell_of(in, 0, box.low[0] - reach));
-      const std::size_t x1 = column + static_cast<std::size_t>(cell_of(in, 0, box.high[0] + reach));
-      runs[count] = {in.cell_start[x0], in.cell_start[x1 + 1]};
+  for (int z = slices.first; z <= slices.last; ++z) {
+    const float squared_y = squared_reach - squared_distance(in, 2, from_origin, z);
+    if (squared_y < 0) continue;
+    const CellRange rows = cells_within(in, 1, from_origin, __builtin_sqrtf(squared_y));
+    const std::uint32_t* column =
+        in.cell_start + (static_cast<std::size_t>(z) * ny + static_cast<std::size_t>(rows.first)) * nx;
+    for (int y = rows.first; y <= rows.last; ++y, column += nx) {
+      const float squared_x = squared_y - squared_distance(in, 1, from_origin, y);
+      // The last bit of a root may have let in a row beyond the reach.
+      const CellRange cells =
+          cells_within(in, 0, from_origin, squared_x > 0 ? __builtin_sqrtf(squared_x) : 0);
+      runs[count] = {column[cells.first], column[cells.last + 1]};
       count += runs[count].begin < runs[count].end;
     }
   }
@@ -108,23 +124,25 @@ MALLOW_INLINE std::size_t compress(const Ints& mask, const Ints& values, std::ui
 #endif
 }
 
-constexpr Ints k_count = {0, 1, 2, 3, 4, 5, 6, 7};
-
-std::size_t near_cluster(const SearchInput& in, std::size_t cluster, const Run* runs, std::size_t count,
+std::size_t near_cluster(const SearchInput& in, const Bounds& box, const Run* runs, std::size_t count,
                          std::uint32_t* out) noexcept {
-  const Box box = cluster_box(in, cluster);
-  const float limit = in.squared_radius * (1.0f + k_rounding);
+  // Copies that what is written to `out` cannot alias.
+  const float *const sx = in.sorted.x, *const sy = in.sorted.y, *const sz = in.sorted.z;
+  const Floats low[3] = {all(box.low[0]), all(box.low[1]), all(box.low[2])};
+  const Floats high[3] = {all(box.high[0]), all(box.high[1]), all(box.high[2])};
+  const Floats limit = all(in.squared_radius * (1.0f + k_rounding));
   const Floats zero = {};
   const std::uint32_t* const start = out;
   for (std::size_t r = 0; r < count; ++r) {
-    for (std::uint32_t j = runs[r].begin; j < runs[r].end; j += k_cluster) {
-      const Floats x = load(in.sorted.x + j), y = load(in.sorted.y + j), z = load(in.sorted.z + j);
-      const Floats dx = larger(larger(box.low[0] - x, x - box.high[0]), zero);
-      const Floats dy = larger(larger(box.low[1] - y, y - box.high[1]), zero);
-      const Floats dz = larger(larger(box.low[2] - z, z - box.high[2]), zero);
-      const Ints in_run = k_count < static_cast<int>(runs[r].end - j);
-      const Ints near = (dx * dx + dy * dy + dz * dz <= limit) & in_run;
-      out += compress(near, k_count + static_cast<int>(j), out);
+    const Ints end = k_count * 0 + static_cast<int>(runs[r].end);
+    const std::uint32_t behind = runs[r].end;
+    for (std::uint32_t j = runs[r].begin; j < behind; j += k_cluster) {
+      const Floats x = load(sx + j), y = load(sy + j), z = load(sz + j);
+      const Floats dx = larger(larger(low[0] - x, x - high[0]), zero);
+      const Floats dy = larger(larger(low[1] - y, y - high[1]), zero);
+      const Floats dz = larger(larger(low[2] - z, z - high[2]), zero);
+      const Ints places = k_count + static_cast<int>(j);
+      out += compress((dx * dx + dy * dy + dz * dz <= limit) & (places < end), places, out);
     }
   }
   return static_cast<std::size_t>(out - start);
@@ -132,12 +150,13 @@ std::size_t near_cluster(const SearchInput& in, std::size_t cluster, const Run* 
 
 std::size_t near_point(const SearchInput& in, std::size_t point, std::size_t n, const std::uint32_t* places,
                        ConstVectors from, std::uint32_t* out) noexcept {
-  const float x = in.sorted.x[point], y = in.sorted.y[point], z = in.sorted.z[point];
+  const Floats x = all(in.sorted.x[point]), y = all(in.sorted.y[point]), z = all(in.sorted.z[point]);
+  const Floats limit = all(in.squared_radius);
   const std::uint32_t* const start = out;
   for (std::size_t k = 0; k < n; k += k_cluster) {
     const Floats dx = x - load(from.x + k), dy = y - load(from.y + k), dz = z - load(from.z + k);
     const Ints listed = k_count < static_cast<int>(n - k);
-    const Ints near = (dx * dx + dy * dy + dz * dz <= in.squared_radius) & listed;
+    const Ints near = (dx * dx + dy * dy + dz * dz <= limit) & listed;
     Ints values;
     __builtin_memcpy(&values, places + k, sizeof values);
     out += compress(near, values, out);
@@ -148,6 +167,6 @@ std::size_t near_point(const SearchInput& in, std::size_t point, std::size_t n, 
 }  // namespace
 
 extern const SearchKernels search_kernels;
-const SearchKernels search_kernels = {find_runs, near_cluster, near_point};
+const SearchKernels search_kernels = {box_of, find_runs, near_cluster, near_point};
 
 }  // namespace mallow::MALLOW_LEVEL

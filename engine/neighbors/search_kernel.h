@@ -11,10 +11,15 @@ struct SearchInput {
   const std::uint32_t* cell_start;
   const std::uint32_t* cluster_start;
   float origin[3];
-  float edge[3];  ///< of a cell
+  float edge[3];          ///< of a cell
+  float inverse_edge[3];  ///< 1/edge
   int dims[3];
   float squared_radius;
   float reach;  ///< the radius, and what coordinates may be off by
+};
+
+struct Bounds {
+  float low[3], high[3];
 };
 
 /// Sorted points [begin, end).
@@ -23,13 +28,15 @@ struct Run {
 };
 
 struct SearchKernels {
-  /// Runs of points that hold all whose distance from the cluster's box is at most the radius, ascending;
-  /// returns how many. runs: room for one a column of the grid.
-  std::size_t (*find_runs)(const SearchInput&, std::size_t cluster, Run* runs) noexcept;
-  /// Of the points in these runs those within the radius of the cluster's box, ascending; returns how many.
-  /// None that is within the radius of a point of the cluster is left out. out: room for all of the runs'
+  /// The box of a cluster's points.
+  Bounds (*box_of)(const SearchInput&, std::size_t cluster) noexcept;
+  /// Runs of points that hold all whose distance from the box is at most the radius, ascending; returns how
+  /// many. runs: room for one a column of the grid.
+  std::size_t (*find_runs)(const SearchInput&, const Bounds& box, Run* runs) noexcept;
+  /// Of the points in these runs those within the radius of the box, ascending; returns how many. None that
+  /// is within the radius of a point in the box is left out. out: room for all of the runs'
   /// points and k_cluster more.
-  std::size_t (*near_cluster)(const SearchInput&, std::size_t cluster, const Run* runs, std::size_t count,
+  std::size_t (*near_cluster)(const SearchInput&, const Bounds& box, const Run* runs, std::size_t count,
                               std::uint32_t* out) noexcept;
   /// Of n points, given by their places and coordinates, those within the radius of a sorted point, in order;
   /// returns how many. out: room for n + k_cluster.
