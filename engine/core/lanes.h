@@ -1,71 +1,166 @@
 #pragma once
 
+// Vectors of the widest registers of an instruction level, for kernel files. Whoever works lane by lane in
+// them, each lane on its own, gets the same bits at every level: the width only says how many lanes go at
+// once.
+//
+// Everything here is in an anonymous namespace of the level, so that no level's code can stand in for
+// another's (core/isa.h).
 #include "core/isa.h"
 #include "core/raw_columns.h"
 
-#ifdef __SSE__
-#include <immintrin.h>
-#endif
-
-/// Eight lanes as one value, for kernel files only: everything here lives in the level's own namespace, so
-/// that the linker keeps each level's copy apart. Arithmetic, comparisons and `?:` are the compiler's own on
-/// vector types; it splits them where registers are narrower. Each lane rounds like a float.
 namespace mallow::MALLOW_LEVEL {
+namespace {
 
-using Floats = float __attribute__((vector_size(k_cluster * sizeof(float))));
-using Ints = int __attribute__((vector_size(k_cluster * sizeof(int))));
-
-#define MALLOW_INLINE [[gnu::always_inline]] static inline
-
-MALLOW_INLINE Floats load(const float* from) {
-  Floats value;
-  __builtin_memcpy(&value, from, sizeof value);
-  return value;
-}
-MALLOW_INLINE void store(const Floats& value, float* to) {
-  __builtin_memcpy(to, &value, sizeof value);
-}
-MALLOW_INLINE Floats all(float value) {
-  return Floats{} + value;
-}
-/// The larger of two numbers, `b` where one is not a number.
-MALLOW_INLINE Floats larger(const Floats& a, const Floats& b) {
-  // By name where there is an instruction: GCC 12 compares and blends.
-#if defined(__AVX__)
-  return reinterpret_cast<Floats>(_mm256_max_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b)));
+#if defined(__AVX512F__)
+#define MALLOW_WIDTH 16
+#elif defined(__AVX__)
+#define MALLOW_WIDTH 8
 #else
-  return a > b ? a : b;
+#define MALLOW_WIDTH 4
+#endif
+constexpr std::size_t k_width = MALLOW_WIDTH;
+static_assert(k_lanes % k_width == 0);
+
+using Lanes = float __attribute__((vector_size(k_width * sizeof(float))));
+/// All bits of a lane are set or none; what comparisons give and `mask ? a : b` takes.
+using LaneMask = int __attribute__((vector_size(k_width * sizeof(int))));
+using LaneBytes = std::uint8_t __attribute__((vector_size(k_width)));
+using Quad = float __attribute__((vector_size(16)));
+
+struct LaneVec3 {
+  Lanes x, y, z;
+};
+
+inline Lanes load(const float* from) {
+  Lanes lanes;
+  __builtin_memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+inline void store(const Lanes& lanes, float* to) {
+  __builtin_memcpy(to, &lanes, sizeof lanes);
+}
+inline Lanes all_lanes(float value) {
+  return Lanes{} + value;
+}
+
+/// The square root of each lane; a loop that compilers make one instruction.
+inline Lanes square_root(Lanes lanes) {
+  float values[k_width];
+  __builtin_memcpy(values, &lanes, sizeof lanes);
+  for (std::size_t l = 0; l < k_width; ++l) values[l] = __builtin_sqrtf(values[l]);
+  __builtin_memcpy(&lanes, values, sizeof lanes);
+  return lanes;
+}
+
+/// Bit l is that of lane l.
+inline unsigned bits(const LaneMask& mask) {
+#if MALLOW_WIDTH == 4 && defined(__SSE__)
+  return static_cast<unsigned>(__builtin_ia32_movmskps((Lanes)mask));
+#elif MALLOW_WIDTH == 8
+  return static_cast<unsigned>(__builtin_ia32_movmskps256((Lanes)mask));
+#elif MALLOW_WIDTH == 16
+  const Lanes lanes = (Lanes)mask;
+  const auto low = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3, 4, 5, 6, 7);
+  const auto high = __builtin_shufflevector(lanes, lanes, 8, 9, 10, 11, 12, 13, 14, 15);
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(low)) |
+         static_cast<unsigned>(__builtin_ia32_movmskps256(high)) << 8;
+#else
+  unsigned result = 0;
+  for (std::size_t l = 0; l < k_width; ++l) result |= (mask[l] != 0 ? 1u : 0u) << l;
+  return result;
 #endif
 }
-/// Zero where the mask is.
-MALLOW_INLINE Floats where(const Ints& mask, const Floats& value) {
-  return reinterpret_cast<Floats>(reinterpret_cast<Ints>(value) & mask);
-}
-/// Whether the mask is set in any lane.
-MALLOW_INLINE bool any(const Ints& mask) {
-#if defined(__AVX__)
-  return _mm256_movemask_ps(reinterpret_cast<__m256>(mask)) != 0;
-#else
-  const Ints folded = mask | __builtin_shufflevector(mask, mask, 4, 5, 6, 7, 0, 1, 2, 3);
-  long long parts[2];
-  __builtin_memcpy(parts, &folded, sizeof parts);
-  return (parts[0] | parts[1]) != 0;
-#endif
-}
-MALLOW_INLINE Floats square_root(const Floats& value) {
-  Floats root;
-#if defined(__AVX__)
-  root = reinterpret_cast<Floats>(_mm256_sqrt_ps(reinterpret_cast<__m256>(value)));
-#elif defined(__SSE__)
-  __m128 half[2];
-  __builtin_memcpy(half, &value, sizeof value);
-  half[0] = _mm_sqrt_ps(half[0]);
-  half[1] = _mm_sqrt_ps(half[1]);
-  __builtin_memcpy(&root, half, sizeof root);
-#else
-  for (std::size_t l = 0; l < k_cluster; ++l) root[l] = __builtin_sqrtf(value[l]);
-#endif
-  return root;
+inline bool any(const LaneMask& mask) {
+  return bits(mask) != 0;
 }
 
+/// 1 where the mask is set.
+inline LaneBytes bytes(const LaneMask& mask) {
+  return __builtin_convertvector(mask & 1, LaneBytes);
+}
+
+// Shuffles within each four lanes, named as x86 names them.
+#if MALLOW_WIDTH == 4
+#define MALLOW_UNPACK_LOW 0, 4, 1, 5
+#define MALLOW_UNPACK_HIGH 2, 6, 3, 7
+#define MALLOW_PAIR_LOW 0, 1, 4, 5
+#define MALLOW_PAIR_HIGH 2, 3, 6, 7
+#elif MALLOW_WIDTH == 8
+#define MALLOW_UNPACK_LOW 0, 8, 1, 9, 4, 12, 5, 13
+#define MALLOW_UNPACK_HIGH 2, 10, 3, 11, 6, 14, 7, 15
+#define MALLOW_PAIR_LOW 0, 1, 8, 9, 4, 5, 12, 13
+#define MALLOW_PAIR_HIGH 2, 3, 10, 11, 6, 7, 14, 15
+#else
+#define MALLOW_UNPACK_LOW 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29
+#define MALLOW_UNPACK_HIGH 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31
+#define MALLOW_PAIR_LOW 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29
+#define MALLOW_PAIR_HIGH 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31
+#endif
+
+/// Transposes every 4 x 4 block: lane 4 g + t of vector c becomes lane 4 g + c of vector t.
+inline void transpose_fours(Lanes* v) {
+  const Lanes a = __builtin_shufflevector(v[0], v[1], MALLOW_UNPACK_LOW);
+  const Lanes b = __builtin_shufflevector(v[2], v[3], MALLOW_UNPACK_LOW);
+  const Lanes c = __builtin_shufflevector(v[0], v[1], MALLOW_UNPACK_HIGH);
+  const Lanes d = __builtin_shufflevector(v[2], v[3], MALLOW_UNPACK_HIGH);
+  v[0] = __builtin_shufflevector(a, b, MALLOW_PAIR_LOW);
+  v[1] = __builtin_shufflevector(a, b, MALLOW_PAIR_HIGH);
+  v[2] = __builtin_shufflevector(c, d, MALLOW_PAIR_LOW);
+  v[3] = __builtin_shufflevector(c, d, MALLOW_PAIR_HIGH);
+}
+
+inline Quad load_quad(const float* from) {
+  Quad quad;
+  __builtin_memcpy(&quad, from, sizeof quad);
+  return quad;
+}
+inline void store_quad(const Quad& quad, float* to) {
+  __builtin_memcpy(to, &quad, sizeof quad);
+}
+
+/// Lanes 4 g to 4 g + 3 are the four floats at from + 4 g stride.
+inline Lanes load_quads(const float* from, [[maybe_unused]] std::size_t stride) {
+#if MALLOW_WIDTH == 4
+  return load_quad(from);
+#else
+  const auto eight = [](const Quad& a, const Quad& b) {
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+  };
+  const auto low = eight(load_quad(from), load_quad(from + 4 * stride));
+#if MALLOW_WIDTH == 8
+  return low;
+#else
+  const auto high = eight(load_quad(from + 8 * stride), load_quad(from + 12 * stride));
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#endif
+#endif
+}
+inline void store_quads(const Lanes& v, float* to, [[maybe_unused]] std::size_t stride) {
+  store_quad(__builtin_shufflevector(v, v, 0, 1, 2, 3), to);
+#if MALLOW_WIDTH >= 8
+  store_quad(__builtin_shufflevector(v, v, 4, 5, 6, 7), to + 4 * stride);
+#endif
+#if MALLOW_WIDTH == 16
+  store_quad(__builtin_shufflevector(v, v, 8, 9, 10, 11), to + 8 * stride);
+  store_quad(__builtin_shufflevector(v, v, 12, 13, 14, 15), to + 12 * stride);
+#endif
+}
+
+/// columns[c]: number c of k_width rows that lie `stride` floats apart. Columns come in fours.
+inline void load_columns(const float* rows, std::size_t stride, std::size_t count, Lanes* columns) {
+  for (std::size_t c = 0; c < count; c += 4) {
+    for (std::size_t t = 0; t < 4; ++t) columns[c + t] = load_quads(rows + t * stride + c, stride);
+    transpose_fours(columns + c);
+  }
+}
+/// The reverse; spoils the columns.
+inline void store_columns(Lanes* columns, std::size_t count, std::size_t stride, float* rows) {
+  for (std::size_t c = 0; c < count; c += 4) {
+    transpose_fours(columns + c);
+    for (std::size_t t = 0; t < 4; ++t) store_quads(columns[c + t], rows + t * stride + c, stride);
+  }
+}
+
+}  // namespace
 }  // namespace mallow::MALLOW_LEVEL

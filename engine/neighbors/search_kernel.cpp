@@ -1,7 +1,7 @@
 // Neighbours of clusters (after Pall & Hess 2013) and of points.
 #include "neighbors/search_kernel.h"
 
-#include "core/lanes.h"
+#include "core/cluster_lanes.h"
 
 namespace mallow::MALLOW_LEVEL {
 namespace {

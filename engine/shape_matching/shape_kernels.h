@@ -7,9 +7,6 @@ namespace mallow {
 
 /// Floats of a row: twelve sums and padding, one cache line, so that a neighbour costs one load and one add.
 inline constexpr std::size_t k_row = 16;
-/// Newton iterations within which any region converges that Newton's method can decide; what has not by then
-/// is solved otherwise.
-inline constexpr int k_enough_iterations = 8;
 
 /// Lists behind each other in one array.
 struct RegionLists {
@@ -51,13 +48,6 @@ struct ShapeKernels {
   /// sums row j, of region j: Σ_{i∈N_j} of rows.
   void (*sum_regions)(const ShapeInput&, std::size_t begin, std::size_t end, const float* rows,
                       float* sums) noexcept;
-  /// A_j = R_g B_j + Σ w u x̄ᵀ − (Σ w u) c̄ᵀ, R_j by Newton's method from the last rotation. Replaces sums row
-  /// j by R_j − R_g (row by row) and u of the centre − (R_j − R_g) c̄. Regions that Newton cannot decide
-  /// (singular, mirrored, far away) keep their sums row, with their A in front, and get undecided[j] = 1.
-  /// With fewer than k_enough_iterations a region whose Hessian is definite is decided where it has got to;
-  /// with 0 none is. begin: a multiple of k_lanes.
-  void (*solve_rotations)(const ShapeInput&, std::size_t begin, std::size_t end, int iterations, float* sums,
-                          float* const* rotation, std::uint8_t* undecided) noexcept;
   /// g_i − x_i = w_i (Σ (R_j − R_g) x̄_i + Σ (...)) − u_i. [TK eq. 7]
   void (*goals)(const ShapeInput&, std::size_t begin, std::size_t end, const float* sums,
                 Vectors pull) noexcept;

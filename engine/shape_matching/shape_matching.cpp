@@ -110,11 +110,11 @@ void sum_regions(const VectorColumn& positions, std::size_t begin, int threads, 
 void solve_rotations(const VectorColumn& positions, std::size_t begin, int iterations, int threads,
                      InstructionLevel level, ShapeMatching& shape) {
   const ShapeInput in = input(positions, begin, shape);
-  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
+  const RotationKernels& kernels = MALLOW_SELECT(level, rotation_kernels);
   float* const rotation[4] = {shape.rotation[0].data(), shape.rotation[1].data(), shape.rotation[2].data(),
                               shape.rotation[3].data()};
   parallel_for(threads, shape.region_weight.size(), [&](std::size_t first, std::size_t last) {
-    kernels.solve_rotations(in, first, last, iterations, shape.sums.data(), rotation, shape.undecided.data());
+    kernels.solve(in, first, last, iterations, shape.sums.data(), rotation, shape.undecided.data());
     solve_undecided(in, first, last, shape);
   });
 }

@@ -9,6 +9,7 @@
 #include "core/isa.h"
 #include "neighbors/cell_grid.h"
 #include "neighbors/neighbor_lists.h"
+#include "shape_matching/rotation_kernels.h"
 #include "shape_matching/shape_kernels.h"
 
 namespace mallow {

@@ -3,7 +3,7 @@
 // (Solenthaler & Pajarola 2008); pressure and viscosity are antisymmetric, so that momentum is kept.
 #include "sph/sph_kernels.h"
 
-#include "core/lanes.h"
+#include "core/cluster_lanes.h"
 
 namespace mallow::MALLOW_LEVEL {
 namespace {

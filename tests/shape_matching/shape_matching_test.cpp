@@ -2,6 +2,7 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "levels.h"
@@ -328,15 +329,14 @@ World turned(double angle, int iterations, int threads = 2,
   return world;
 }
 
-TEST(rotation, after_one_iteration_is_off_by_less_than_the_cube_of_the_regions_turn) {
+TEST(rotation, after_one_iteration_is_off_by_less_than_the_fifth_power_of_the_regions_turn) {
   for (const double angle : {0.02, 0.05, 0.1, 0.2, 0.4}) {
     // The stretch turns regions at the surface, which are not round, by up to 0.2 rad more.
     const World exact = turned(angle, 0), one = turned(angle, 1), two = turned(angle, 2);
     for (std::size_t j = 0; j < exact.x.size(); ++j) {
       const double turn = Eigen::AngleAxisd(exact.rotation(j)).angle();
-      const double cube = turn * turn * turn;
-      EXPECT_LT(angle_between(one, exact, j), cube + 2e-6);
-      EXPECT_LT(angle_between(two, exact, j), cube * cube * cube + 2e-6);
+      EXPECT_LT(angle_between(one, exact, j), std::pow(turn, 5) + 2e-6);
+      EXPECT_LT(angle_between(two, exact, j), std::pow(turn, 25) + 2e-6);
     }
     EXPECT_LT(largest_angle(turned(angle, k_enough_iterations), exact), 2e-6);
   }
@@ -357,7 +357,7 @@ TEST(rotation, after_one_iteration_is_exact_where_a_round_region_only_turned) {
 TEST(rotation, that_has_not_converged_goes_on_in_the_next_step) {
   const World exact = turned(0.6, 0);
   World world = turned(0.6, 1);
-  EXPECT_GT(largest_angle(world, exact), 0.05);
+  EXPECT_GT(largest_angle(world, exact), 0.02);
   world.match(2, best_instruction_level(), 1);
   EXPECT_LT(largest_angle(world, exact), 1e-3);
   world.match(2, best_instruction_level(), 1);
@@ -390,6 +390,69 @@ TEST(rotation, has_the_same_bits_at_every_level_and_thread_count_for_any_iterati
         for (std::size_t i = 0; i < world.x.size(); ++i)
           ASSERT_EQ(world.shape.pull.get(i), reference.shape.pull.get(i));
       }
+  }
+}
+
+/// Regions that own nothing but a matrix A and a last rotation: A = B + sums with B = 1, c̄ = 0.
+struct MatrixRegions {
+  ShapeMatching shape;
+  explicit MatrixRegions(std::size_t n) {
+    shape.reference.resize(n);
+    shape.center.resize(n);
+    shape.region_weight.resize(n);
+    for (Column<float>& column : shape.moment) column.resize(n);
+    for (Column<float>& column : shape.rotation) column.resize(n);
+    shape.sums.resize(n * k_row);
+    shape.undecided.resize(n);
+  }
+  void set(std::size_t j, const Eigen::Matrix3d& a, const Eigen::Quaterniond& last) {
+    shape.region_weight[j] = 1;
+    for (std::size_t k = 0; k < 3; ++k) shape.moment[k][j] = 1;
+    for (int k = 0; k < 9; ++k)
+      shape.sums[j * k_row + static_cast<std::size_t>(k)] =
+          static_cast<float>(a(k / 3, k % 3) - (k % 4 == 0 ? 1 : 0));
+    for (std::size_t k = 0; k < 4; ++k)
+      shape.rotation[k][j] = static_cast<float>(last.coeffs()[static_cast<Eigen::Index>(k)]);
+  }
+  void solve(InstructionLevel level) {
+    const VectorColumn x(shape.reference.size());
+    solve_rotations(x, 0, k_enough_iterations, 1, level, shape);
+  }
+  std::vector<float> row(std::size_t j) const {
+    std::vector<float> values(shape.sums.data() + j * k_row, shape.sums.data() + (j + 1) * k_row);
+    for (const Column<float>& column : shape.rotation) values.push_back(column[j]);
+    values.push_back(shape.undecided[j]);
+    return values;
+  }
+};
+
+TEST(rotation, does_not_depend_on_the_regions_beside_it) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  // Turned little and much, stretched, mirrored; and no whole number of lanes.
+  constexpr std::size_t n = 61;
+  std::vector<Eigen::Matrix3d> matrices;
+  std::vector<Eigen::Quaterniond> last;
+  for (std::size_t j = 0; j < n; ++j) {
+    const Eigen::Vector3d axis = Eigen::Vector3d(uniform(random), uniform(random), 2).normalized();
+    const Eigen::Vector3d stretch(1.5, 1 + 0.5 * uniform(random), j % 7 == 0 ? -0.3 : 0.5);
+    last.emplace_back(Eigen::AngleAxisd(3 * uniform(random), axis));
+    matrices.push_back(last[j] * Eigen::AngleAxisd(std::pow(uniform(random), 3), axis.unitOrthogonal()) *
+                       stretch.asDiagonal().toDenseMatrix());
+  }
+  for (const InstructionLevel level : levels()) {
+    MatrixRegions together(n);
+    for (std::size_t j = 0; j < n; ++j) together.set(j, matrices[j], last[j]);
+    together.solve(level);
+    for (std::size_t j = 0; j < n; ++j) {
+      MatrixRegions alone(1);
+      alone.set(0, matrices[j], last[j]);
+      alone.solve(level);
+      EXPECT_EQ(alone.row(0), together.row(j)) << "region " << j;
+      // Padding stays inert.
+      EXPECT_EQ(alone.shape.rotation[3].data()[1], 0);
+      EXPECT_EQ(alone.shape.undecided.data()[1], 0);
+    }
   }
 }
 

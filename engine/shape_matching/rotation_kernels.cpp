@@ -1,0 +1,180 @@
+// The rotations of model section 2: polar factors with det +1, warm-started. [TK eq. 7; Kugelstadt et al.
+// 2018]
+#include "shape_matching/rotation_kernels.h"
+
+#include "core/lanes.h"
+
+namespace mallow::MALLOW_LEVEL {
+namespace {
+
+// R of unit quaternions x y z w, row by row.
+inline void rotation_matrices(const Lanes* q, Lanes* r) {
+  const Lanes x = q[0], y = q[1], z = q[2], w = q[3];
+  r[0] = 1.0f - 2.0f * (y * y + z * z);
+  r[1] = 2.0f * (x * y - w * z);
+  r[2] = 2.0f * (x * z + w * y);
+  r[3] = 2.0f * (x * y + w * z);
+  r[4] = 1.0f - 2.0f * (x * x + z * z);
+  r[5] = 2.0f * (y * z - w * x);
+  r[6] = 2.0f * (x * z - w * y);
+  r[7] = 2.0f * (y * z + w * x);
+  r[8] = 1.0f - 2.0f * (x * x + y * y);
+}
+
+// A Newton step of all lanes.
+struct Step {
+  LaneVec3 tangent;   // ω − c: the axis times the tangent of the turn
+  LaneMask definite;  // the Hessian is; elsewhere the tangent is 0
+  LaneMask last;      // what is left after the step is below single precision
+};
+
+Lanes dot(const LaneVec3& a, const LaneVec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+// Where A is round, ω is the tangent of the turn exactly. Taken for half the turn's quaternion instead, it
+// left θ³/4, and one iteration a step spun a tumbling cube up by a quarter in 600 steps of 0.08 rad.
+//
+// c comes of expanding M = exp(θ) S in θ: ω = tan θ + c + O(θ⁵). What c leaves is below 1.4 κ |c| |ω|² for
+// every A tried, κ = tr(H) tr(H⁻¹)/9 >= 1, so that most regions that turn by up to 0.15 rad a step take one
+// iteration, where without c all took two.
+Step newton_step(const Lanes* r, const Lanes* a, const Lanes& scale) {
+  // Smallest over largest pivot of the Hessian that counts as definite.
+  constexpr float k_definite = 1e-3f;
+  // (7e-7 rad)²: single precision's own error is about as large.
+  constexpr float k_squared_error = 5e-13f;
+  Lanes m[9];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m[3 * i + j] = r[i] * a[j] + r[3 + i] * a[3 + j] + r[6 + i] * a[6 + j];
+  const LaneVec3 b = {m[7] - m[5], m[2] - m[6], m[3] - m[1]};
+  const Lanes hxx = m[4] + m[8], hyy = m[0] + m[8], hzz = m[0] + m[4];
+  const Lanes hxy = -0.5f * (m[1] + m[3]), hxz = -0.5f * (m[2] + m[6]), hyz = -0.5f * (m[5] + m[7]);
+  // Cofactors of the symmetric Hessian; its leading minors say whether it is definite.
+  const Lanes cxx = hyy * hzz - hyz * hyz, cxy = hxz * hyz - hxy * hzz, cxz = hxy * hyz - hxz * hyy;
+  const Lanes cyy = hxx * hzz - hxz * hxz, cyz = hxy * hxz - hxx * hyz, czz = hxx * hyy - hxy * hxy;
+  const Lanes det = hxx * cxx + hxy * cxy + hxz * cxz;
+  const Lanes trace = hxx + hyy + hzz;
+  const Lanes minors = trace * (cxx + cyy + czz);
+  const LaneMask definite = (trace > k_definite * scale) & (hxx > 0.0f) & (czz > 0.0f) &
+                            (det > k_definite * minors) & (cxx > 0.0f) & (cyy > 0.0f);
+  const Lanes inverse = definite ? 1.0f / det : Lanes{};
+  const auto solve = [&](const LaneVec3& v) {
+    return LaneVec3{inverse * (cxx * v.x + cxy * v.y + cxz * v.z),
+                    inverse * (cxy * v.x + cyy * v.y + cyz * v.z),
+                    inverse * (cxz * v.x + cyz * v.y + czz * v.z)};
+  };
+  const LaneVec3 omega = solve(b);
+  const LaneVec3 again = solve(omega);
+  const Lanes squared = dot(omega, omega), gain = 0.25f * dot(omega, b), share = 0.25f * squared;
+  const LaneVec3 c = {gain * again.x - share * omega.x, gain * again.y - share * omega.y,
+                      gain * again.z - share * omega.z};
+  const Lanes correction = dot(c, c);
+  // Far from the maximum the expansion says nothing.
+  const Lanes near = correction < 0.0625f * squared ? all_lanes(1.0f) : Lanes{};
+  const Lanes growth = minors * inverse * (1.0f / 9.0f) * squared;
+  return {{omega.x - near * c.x, omega.y - near * c.y, omega.z - near * c.z},
+          definite,
+          correction * growth * growth < k_squared_error};
+}
+
+// q ← q turned by an angle whose tangent is given, normalised: (1 + √(1 + t²), t) is the half angle's
+// quaternion.
+void turn(const LaneVec3& tangent, const LaneMask& active, Lanes* q) {
+  const Lanes x = q[0], y = q[1], z = q[2], w = q[3];
+  const Lanes tx = tangent.x, ty = tangent.y, tz = tangent.z;
+  const Lanes secant = square_root(1.0f + dot(tangent, tangent)), tw = 1.0f + secant;
+  const Lanes norm = 1.0f / square_root(2.0f * secant * tw * (x * x + y * y + z * z + w * w));
+  const Lanes nx = tw * x + w * tx + y * tz - z * ty;
+  const Lanes ny = tw * y + w * ty + z * tx - x * tz;
+  const Lanes nz = tw * z + w * tz + x * ty - y * tx;
+  const Lanes nw = tw * w - x * tx - y * ty - z * tz;
+  q[0] = active ? nx * norm : x;
+  q[1] = active ? ny * norm : y;
+  q[2] = active ? nz * norm : z;
+  q[3] = active ? nw * norm : w;
+}
+
+// Newton's method for the maximum of tr(Rᵀ A). A maximum over rotations is the polar factor with det +1;
+// where the Hessian is not clearly definite a lane is left undecided. A lane stops at its own last step,
+// whatever its neighbours do, so that its bits do not depend on them. Returns where the rotation is good: the
+// Hessian is definite and the last step was small, or more iterations were not wanted: what is left then is
+// for the next step's to take up.
+LaneMask newton(const Lanes* a, const Lanes& scale, int iterations, Lanes* q) {
+  const bool early = iterations > 0 && iterations < k_enough_iterations;
+  LaneMask active = ~LaneMask{}, good = {};
+  Lanes r[9];
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    rotation_matrices(q, r);
+    const Step step = newton_step(r, a, scale);
+    active &= step.definite;
+    turn(step.tangent, active, q);
+    good |= active & step.last;
+    active &= ~step.last;
+    if (!any(active)) return good;
+  }
+  return early ? good | active : good;
+}
+
+// A_j row by row, from the sums; moment: xx yy zz yz xz xy.
+void region_matrices(const float* g, const Lanes* sums, const LaneVec3& center, const Lanes* moment,
+                     Lanes* a) {
+  const Lanes xx = moment[0], yy = moment[1], zz = moment[2], yz = moment[3], xz = moment[4], xy = moment[5];
+  for (int i = 0; i < 3; ++i) {
+    const float gx = g[3 * i], gy = g[3 * i + 1], gz = g[3 * i + 2];
+    a[3 * i] = gx * xx + gy * xy + gz * xz + (sums[3 * i] - sums[9 + i] * center.x);
+    a[3 * i + 1] = gx * xy + gy * yy + gz * yz + (sums[3 * i + 1] - sums[9 + i] * center.y);
+    a[3 * i + 2] = gx * xz + gy * yz + gz * zz + (sums[3 * i + 2] - sums[9 + i] * center.z);
+  }
+}
+
+// k_width regions from j on; rows: their sums. Where Newton does not decide, the last rotation stays.
+LaneBytes solve_lanes(const ShapeInput& in, std::size_t j, int iterations, float* rows,
+                      float* const* rotation) {
+  Lanes sums[12], a[12], moment[6], q[4], r[9];
+  load_columns(rows, k_row, 12, sums);
+  const LaneVec3 center = {load(in.center.x + j), load(in.center.y + j), load(in.center.z + j)};
+  for (int k = 0; k < 6; ++k) moment[k] = load(in.moment[k] + j);
+  for (int k = 0; k < 4; ++k) q[k] = load(rotation[k] + j);
+  region_matrices(in.frame_rotation, sums, center, moment, a);
+  Lanes turned[4] = {q[0], q[1], q[2], q[3]};
+  const LaneMask good = newton(a, moment[0] + moment[1] + moment[2], iterations, turned);
+  for (int k = 0; k < 4; ++k) store(good ? turned[k] : q[k], rotation[k] + j);
+  rotation_matrices(turned, r);
+  const Lanes inverse = 1.0f / load(in.region_weight + j);
+  for (int i = 0; i < 3; ++i) {
+    const float* const g = in.frame_rotation + 3 * i;
+    const Lanes x = r[3 * i] - g[0], y = r[3 * i + 1] - g[1], z = r[3 * i + 2] - g[2];
+    const Lanes shift = sums[9 + i] * inverse - (x * center.x + y * center.y + z * center.z);
+    a[3 * i] = good ? x : a[3 * i];
+    a[3 * i + 1] = good ? y : a[3 * i + 1];
+    a[3 * i + 2] = good ? z : a[3 * i + 2];
+    a[9 + i] = good ? shift : sums[9 + i];
+  }
+  store_columns(a, 12, k_row, rows);
+  return bytes(~good);
+}
+
+void solve(const ShapeInput& in, std::size_t begin, std::size_t end, int iterations, float* sums,
+           float* const* rotation, std::uint8_t* undecided) noexcept {
+  std::size_t j = begin;
+  for (; j + k_width <= end; j += k_width) {
+    const LaneBytes left = solve_lanes(in, j, iterations, sums + j * k_row, rotation);
+    __builtin_memcpy(undecided + j, &left, k_width);
+  }
+  if (j == end) return;
+  // The other columns are padded, rows and flags are not. A padded lane has no moment, so it is undecided and
+  // keeps its zeros.
+  const std::size_t rest = (end - j) * k_row * sizeof(float);
+  alignas(64) float rows[k_width * k_row] = {};
+  __builtin_memcpy(rows, sums + j * k_row, rest);
+  const LaneBytes left = solve_lanes(in, j, iterations, rows, rotation);
+  __builtin_memcpy(sums + j * k_row, rows, rest);
+  __builtin_memcpy(undecided + j, &left, end - j);
+}
+
+}  // namespace
+
+extern const RotationKernels rotation_kernels;
+const RotationKernels rotation_kernels = {solve};
+
+}  // namespace mallow::MALLOW_LEVEL
