@@ -40,6 +40,15 @@ inline Lanes load(const float* from) {
 inline void store(const Lanes& lanes, float* to) {
   __builtin_memcpy(to, &lanes, sizeof lanes);
 }
+/// The same for the first `count` <= k_width lanes, where no more lie in memory; the others repeat the first.
+inline Lanes load_some(const float* from, std::size_t count) {
+  float values[k_width];
+  for (std::size_t l = 0; l < k_width; ++l) values[l] = from[l < count ? l : 0];
+  return load(values);
+}
+inline void store_some(const Lanes& lanes, std::size_t count, float* to) {
+  __builtin_memcpy(to, &lanes, count * sizeof(float));
+}
 inline Lanes all_lanes(float value) {
   return Lanes{} + value;
 }

@@ -11,7 +11,11 @@ struct ContactStep {
   float contact_offset;  ///< gap at which a particle touches [m]
 };
 
-/// The velocity after contact of a particle at x that would move with v. [model 5]
+/// The velocity after contact of a particle that would move with v and is nearest to `surface` of the
+/// collider. [model 5]
+Vec3 resolve_contact(const Collider& collider, const SurfacePoint& surface, const ContactStep& step,
+                     const Vec3& v);
+/// The same of a particle at x.
 Vec3 resolve_contact(const Collider& collider, const ContactStep& step, const Vec3& x, const Vec3& v);
 
 }  // namespace mallow

@@ -1,8 +1,11 @@
 #include "motion/motion.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "core/parallel.h"
+#include "motion/block_contact.h"
 
 namespace mallow {
 namespace {
@@ -21,43 +24,86 @@ void translate(Union& shapes, const Vec3& offset) {
   for (Primitive& part : shapes.parts) std::visit([&](auto& shape) { translate(shape, offset); }, part);
 }
 
+ConstVectors raw_or_null(const VectorColumn* column) {
+  return column ? raw(*column) : ConstVectors{};
+}
+
+ForcesInput forces(const MotionInput& in, const ParticleStore& store) {
+  return {
+      .position = raw(store.position),
+      .velocity = raw(store.velocity),
+      .sph_acceleration = raw_or_null(in.sph_acceleration),
+      .cross_group = raw_or_null(in.cross_group),
+      .user = raw_or_null(in.user),
+      .pull = raw_or_null(in.pull),
+      .group_begin = in.begin,
+      .pin = store.pin.empty() ? nullptr : store.pin.data(),
+      .gravity = {in.gravity[0], in.gravity[1], in.gravity[2]},
+      .time_step = in.time_step,
+      .sph_factor = in.alpha * in.time_step,
+      .elastic_factor = in.elastic_factor,
+  };
+}
+
+bool is_pinned(const ForcesInput& forces, std::size_t row) {
+  return forces.pin && forces.pin[row] != 0;
+}
+
+/// Σ |a_ext| over the unpinned of a block, row by row.
+double sum_external(const ForcesInput& forces, const MotionKernels& kernels, std::size_t begin,
+                    std::size_t end, ConstVectors free, ConstVectors velocity) {
+  std::array<float, k_block> external;
+  kernels.external(forces, begin, end, free, velocity, external.data());
+  double sum = 0;
+  for (std::size_t i = begin; i < end; ++i)
+    if (!is_pinned(forces, i)) sum += static_cast<double>(external[i - begin]);
+  return sum;
+}
+
+std::size_t first_bad_row(const ParticleStore& store, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i)
+    if (!(store.next_velocity.get(i).allFinite() && store.next_position.get(i).allFinite())) return i;
+  return SIZE_MAX;
+}
+
 /// The particles [begin, end) of the store; only reads and writes their own rows.
-MotionSums move_block(const MotionInput& in, std::size_t begin, std::size_t end, ParticleStore& store) {
-  MotionSums sums;
-  for (std::size_t i = begin; i < end; ++i) {
-    const Vec3 x = store.position.get(i);
-    Vec3 v = store.velocity.get(i);
-    if (!store.pin.empty() && store.pin[i] != 0) {
-      v = in.pin_velocities[store.pin[i] - 1u];
-    } else {
-      Vec3 external = in.gravity;
-      if (in.cross_group) external += in.cross_group->get(i);
-      if (in.user) external += in.user->get(i);
-      v += in.time_step * external;
-      if (in.sph_acceleration) v += in.alpha * in.time_step * in.sph_acceleration->get(i);
-      if (in.pull) v += in.elastic_factor * in.pull->get(i - in.begin);
-      const Vec3 free = v;
-      for (const Collider& collider : in.colliders) v = resolve_contact(collider, in.contact, x, v);
-      ++sums.unpinned;
-      if (in.measure_external)
-        sums.external += static_cast<double>((external + (v - free) / in.time_step).norm());
+MotionSums move_block(const MotionInput& in, const ForcesInput& forces, const MotionKernels& kernels,
+                      std::size_t begin, std::size_t end, ParticleStore& store) {
+  MotionSums sums{.unpinned = end - begin};
+  const BlockBounds bounds = kernels.blend(forces, begin, end, raw(store.next_velocity));
+  if (forces.pin) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!is_pinned(forces, i)) continue;
+      store.next_velocity.set(i, in.pin_velocities[forces.pin[i] - 1u]);
+      --sums.unpinned;
     }
-    const Vec3 moved = x + in.time_step * v;
-    store.next_velocity.set(i, v);
-    store.next_position.set(i, moved);
-    if (!(v.allFinite() && moved.allFinite()) && sums.bad_row == SIZE_MAX) sums.bad_row = i;
   }
+  std::array<std::array<float, k_block>, 3> free;
+  if (in.measure_external)
+    for (std::size_t a = 0; a < 3; ++a)
+      std::copy_n(store.next_velocity.axis(a) + begin, end - begin, free[a].data());
+  if (!in.colliders.empty())
+    resolve_contacts({begin, end, store.position, forces.pin, bounds}, in.colliders, in.contact, kernels,
+                     store.next_velocity);
+  const ConstVectors velocity = raw(std::as_const(store.next_velocity));
+  if (in.measure_external)
+    sums.external =
+        sum_external(forces, kernels, begin, end, {free[0].data(), free[1].data(), free[2].data()}, velocity);
+  if (!kernels.advance(forces, begin, end, velocity, raw(store.next_position)))
+    sums.bad_row = first_bad_row(store, begin, end);
   return sums;
 }
 
 }  // namespace
 
-MotionSums move_particles(const MotionInput& in, int threads, ParticleStore& store,
+MotionSums move_particles(const MotionInput& in, int threads, InstructionLevel level, ParticleStore& store,
                           std::vector<MotionSums>& partial) {
+  const MotionKernels& kernels = MALLOW_SELECT(level, motion_kernels);
+  const ForcesInput input = forces(in, store);
   return parallel_reduce(
       threads, in.end - in.begin, partial, MotionSums{},
       [&](std::size_t begin, std::size_t end) {
-        return move_block(in, in.begin + begin, in.begin + end, store);
+        return move_block(in, input, kernels, in.begin + begin, in.begin + end, store);
       },
       [](MotionSums a, const MotionSums& b) {
         a.external += b.external;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/isa.h"
 #include "mallow/collider.h"
 #include "motion/contact.h"
 #include "particles/particle_store.h"
@@ -35,7 +36,7 @@ struct MotionSums {
 };
 
 /// Blend, contact, positions: v' and x' into the store's next columns. [model 4, 5; TK eq. 10, 11, 13]
-MotionSums move_particles(const MotionInput& input, int threads, ParticleStore& store,
+MotionSums move_particles(const MotionInput& input, int threads, InstructionLevel level, ParticleStore& store,
                           std::vector<MotionSums>& partial);
 
 /// Colliders at the end of a step.

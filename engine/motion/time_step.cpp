@@ -4,31 +4,58 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "motion/motion_kernels.h"
 
 namespace mallow {
 
+namespace {
+
+/// The first row of [begin, end) that is as fast as the fastest of them: the first such stretch of rows, then
+/// the first in it.
+std::size_t row_of(float squared_velocity, const ForcesInput& forces, const MotionKernels& kernels,
+                   std::size_t begin, std::size_t end) {
+  for (const std::size_t stretch : {k_lanes, std::size_t{1}}) {
+    const auto holds_it = [&](std::size_t i) {
+      const float here = kernels.fastest(forces, i, std::min(end, i + stretch));
+      return here == squared_velocity || std::isnan(here);
+    };
+    while (begin + stretch < end && !holds_it(begin)) begin += stretch;
+  }
+  return begin;
+}
+
+}  // namespace
+
 Fastest fastest_particle(const ParticleStore& store, float time_step, const VectorColumn& sph_acceleration,
                          const Vec3& gravity, const VectorColumn* cross_group, const VectorColumn* user,
-                         int threads, std::vector<Fastest>& partial) {
+                         int threads, InstructionLevel level, std::vector<Fastest>& partial) {
+  const MotionKernels& kernels = MALLOW_SELECT(level, motion_kernels);
+  const ForcesInput forces{.position = {},
+                           .velocity = raw(store.velocity),
+                           .sph_acceleration = raw(sph_acceleration),
+                           .cross_group = cross_group ? raw(*cross_group) : ConstVectors{},
+                           .user = user ? raw(*user) : ConstVectors{},
+                           .pull = {},
+                           .group_begin = 0,
+                           .pin = store.pin.empty() ? nullptr : store.pin.data(),
+                           .gravity = {gravity[0], gravity[1], gravity[2]},
+                           .time_step = time_step,
+                           .sph_factor = 0,
+                           .elastic_factor = 0};
   const auto faster = [](const Fastest& a, const Fastest& b) {
     // Not `>`: a velocity that is not a number must win, so that it is seen.
     return b.squared_velocity <= a.squared_velocity || std::isnan(a.squared_velocity) ? a : b;
   };
-  return parallel_reduce(
+  // Of each block the speed; whose it is, is asked of one block only.
+  Fastest fastest = parallel_reduce(
       threads, store.size(), partial, Fastest{},
       [&](std::size_t begin, std::size_t end) {
-        Fastest best;
-        for (std::size_t i = begin; i < end; ++i) {
-          if (!store.pin.empty() && store.pin[i] != 0) continue;
-          Vec3 acceleration = sph_acceleration.get(i) + gravity;
-          if (cross_group) acceleration += cross_group->get(i);
-          if (user) acceleration += user->get(i);
-          const Vec3 velocity = store.velocity.get(i) + time_step * acceleration;
-          best = faster(best, {velocity.squaredNorm(), static_cast<std::uint32_t>(i)});
-        }
-        return best;
+        return Fastest{kernels.fastest(forces, begin, end), static_cast<std::uint32_t>(begin)};
       },
       faster);
+  fastest.row = static_cast<std::uint32_t>(row_of(fastest.squared_velocity, forces, kernels, fastest.row,
+                                                  std::min(store.size(), fastest.row + k_block)));
+  return fastest;
 }
 
 double limited_time_step(const TimeStepLimits& limits, double max_velocity) {

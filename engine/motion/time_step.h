@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/isa.h"
 #include "particles/particle_store.h"
 
 namespace mallow {
@@ -18,7 +19,7 @@ struct Fastest {
 /// external: gravity is `gravity`, user forces and other groups are columns or null.
 Fastest fastest_particle(const ParticleStore& store, float time_step, const VectorColumn& sph_acceleration,
                          const Vec3& gravity, const VectorColumn* cross_group, const VectorColumn* user,
-                         int threads, std::vector<Fastest>& partial);
+                         int threads, InstructionLevel level, std::vector<Fastest>& partial);
 
 /// What bounds the step beside V.
 struct TimeStepLimits {

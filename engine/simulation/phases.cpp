@@ -97,7 +97,7 @@ float choose_time_step(Simulation::State& state, StepReport& report) {
   if (!state.sph_ran) return state.config.time_step;
   const Fastest fastest =
       fastest_particle(state.store, state.config.time_step, state.sph.acceleration, state.config.gravity,
-                       state.cross_group(), state.user(), state.threads, state.partial_fastest);
+                       state.cross_group(), state.user(), state.threads, state.level, state.partial_fastest);
   const double velocity =
       fastest.squared_velocity == -1 ? 0.0 : std::sqrt(static_cast<double>(fastest.squared_velocity));
   const double step = limited_time_step(limits(state), velocity);
@@ -132,7 +132,8 @@ void move_groups(Simulation::State& state, float time_step) {
         .pin_velocities = state.pin_velocities,
         .measure_external = measure,
     };
-    const MotionSums sums = move_particles(input, state.threads, state.store, state.partial_motion);
+    const MotionSums sums =
+        move_particles(input, state.threads, state.level, state.store, state.partial_motion);
     if (sums.bad_row != SIZE_MAX) {
       refuse_step(state, static_cast<double>(time_step), std::numeric_limits<double>::quiet_NaN(),
                   static_cast<std::uint32_t>(sums.bad_row));

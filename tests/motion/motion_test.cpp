@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "levels.h"
 #include "motion/contact.h"
 #include "motion/motion.h"
 #include "motion/time_step.h"
@@ -72,24 +73,48 @@ TEST(time_step, acoustic_limit_is_that_of_sound_and_of_viscous_diffusion) {
 }
 
 TEST(fastest_particle, sees_numbers_that_are_not_finite_and_passes_over_pinned_ones) {
+  // No whole number of lanes.
+  constexpr std::size_t n = 603;
   ParticleStore store;
-  const std::vector<Vec3> x(600, Vec3(0, 0, 0));
-  std::vector<Vec3> v(600, Vec3(1, 0, 0));
-  v[300] = {0, 5, 0};
+  const std::vector<Vec3> x(n, Vec3(0, 0, 0));
+  std::vector<Vec3> v(n, Vec3(1, 0, 0));
+  v[300] = v[301] = {0, 5, 0};
   v[310] = {0, 0, 50};
   store.insert(0, x, v);
-  store.pin.resize(600);
+  store.pin.resize(n);
   store.pin[310] = 1;
-  const VectorColumn none(600);
+  const VectorColumn none(n);
   std::vector<Fastest> partial;
-  const auto find = [&] {
-    return fastest_particle(store, 0.1f, none, {0, 0, 0}, nullptr, nullptr, 2, partial);
-  };
-  EXPECT_EQ(find().row, 300u);
-  EXPECT_FLOAT_EQ(find().squared_velocity, 25);
-  store.velocity.set(20, {std::nanf(""), 0, 0});
-  EXPECT_EQ(find().row, 20u);
-  EXPECT_TRUE(std::isnan(find().squared_velocity));
+  for (const InstructionLevel level : levels()) {
+    const auto find = [&] {
+      return fastest_particle(store, 0.1f, none, {0, 0, 0}, nullptr, nullptr, 2, level, partial);
+    };
+    store.velocity.set(20, v[20]);
+    EXPECT_EQ(find().row, 300u);
+    EXPECT_FLOAT_EQ(find().squared_velocity, 25);
+    for (const std::size_t row : {n - 1, std::size_t{512}, std::size_t{0}}) {
+      store.velocity.set(row, {0, 0, 6});
+      EXPECT_EQ(find().row, row);
+      store.velocity.set(row, v[row]);
+    }
+    store.velocity.set(20, {std::nanf(""), 0, 0});
+    EXPECT_EQ(find().row, 20u);
+    EXPECT_TRUE(std::isnan(find().squared_velocity));
+  }
+}
+
+TEST(fastest_particle, is_not_there_where_all_are_pinned) {
+  ParticleStore store;
+  const std::vector<Vec3> x(20, Vec3(0, 0, 0));
+  store.insert(0, x, x);
+  store.pin.resize(20);
+  for (std::uint16_t& pin : store.pin) pin = 1;
+  const VectorColumn none(20);
+  std::vector<Fastest> partial;
+  for (const InstructionLevel level : levels())
+    EXPECT_EQ(
+        fastest_particle(store, 0.1f, none, {0, 0, 1}, nullptr, nullptr, 1, level, partial).squared_velocity,
+        -1);
 }
 
 TEST(move_colliders, takes_every_part_of_a_union_along) {

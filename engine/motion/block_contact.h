@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+
+#include "core/column.h"
+#include "motion/contact.h"
+#include "motion/motion_kernels.h"
+
+namespace mallow {
+
+/// Rows [begin, end) of the store, at most k_block of them, that meet obstacles with new velocities.
+struct ContactBlock {
+  std::size_t begin, end;
+  const VectorColumn& position;
+  const std::uint16_t* pin;  ///< rows whose pin is not 0 meet nothing; null: all do
+  BlockBounds bounds;        ///< of the positions and of the velocities before contact
+};
+
+/// v of every row becomes what resolve_contact makes of it with each collider in order, bit for bit. It is
+/// asked only of rows within reach of the collider, and only for those parts of a union within reach of the
+/// block: a surface farther than contact_offset + Δt |v − u| leaves v alone, for |n| = 1. [model 5]
+void resolve_contacts(const ContactBlock& block, std::span<const Collider> colliders, const ContactStep& step,
+                      const MotionKernels& kernels, VectorColumn& velocity);
+
+}  // namespace mallow

@@ -1,0 +1,205 @@
+// Blend and positions of model section 4 [TK eq. 10, 11, 13], V of section 3 [TK eq. 12], and the distances
+// that tell whom contact may concern. Each lane is a particle. Sums of three are taken as x + (y + z), as
+// Eigen takes them.
+#include "motion/motion_kernels.h"
+
+#include "core/lanes.h"
+
+namespace mallow::MALLOW_LEVEL {
+namespace {
+
+// k_width rows from one on, or the rest of a block. The rest is loaded float by float: what lies behind it
+// may be another thread's, or nobody's.
+struct WholeRows {
+  std::size_t row;
+  Lanes get(const float* column) const { return load(column + row); }
+  void put(const Lanes& lanes, float* column) const { store(lanes, column + row); }
+  unsigned valid(unsigned bits) const { return bits; }
+};
+struct LastRows {
+  std::size_t row, count;
+  Lanes get(const float* column) const { return load_some(column + row, count); }
+  void put(const Lanes& lanes, float* column) const { store_some(lanes, count, column + row); }
+  unsigned valid(unsigned bits) const { return bits & ((1u << count) - 1); }
+};
+
+template <class Body>
+void for_rows(std::size_t begin, std::size_t end, const Body& body) {
+  std::size_t i = begin;
+  for (; i + k_width <= end; i += k_width) body(WholeRows{i});
+  if (i < end) body(LastRows{i, end - i});
+}
+
+template <class Rows>
+LaneVec3 get(const Rows& rows, const ConstVectors& columns) {
+  return {rows.get(columns.x), rows.get(columns.y), rows.get(columns.z)};
+}
+void add(const LaneVec3& term, LaneVec3& sum) {
+  sum.x += term.x;
+  sum.y += term.y;
+  sum.z += term.z;
+}
+void add(const Lanes& factor, const LaneVec3& term, LaneVec3& sum) {
+  add({factor * term.x, factor * term.y, factor * term.z}, sum);
+}
+Lanes squared(const LaneVec3& v) {
+  return v.x * v.x + (v.y * v.y + v.z * v.z);
+}
+Lanes smaller(const Lanes& a, const Lanes& b) {
+  return b < a ? b : a;
+}
+Lanes larger(const Lanes& a, const Lanes& b) {
+  return b > a ? b : a;
+}
+float smallest(const Lanes& lanes) {
+  float result = lanes[0];
+  for (std::size_t l = 1; l < k_width; ++l) result = lanes[l] < result ? lanes[l] : result;
+  return result;
+}
+float largest(const Lanes& lanes) {
+  return -smallest(-lanes);
+}
+
+// a_ext without contact.
+template <class Rows>
+LaneVec3 external_acceleration(const ForcesInput& in, const Rows& rows, LaneVec3 sum) {
+  if (in.cross_group.x) add(get(rows, in.cross_group), sum);
+  if (in.user.x) add(get(rows, in.user), sum);
+  return sum;
+}
+LaneVec3 gravity(const ForcesInput& in) {
+  return {all_lanes(in.gravity[0]), all_lanes(in.gravity[1]), all_lanes(in.gravity[2])};
+}
+
+BlockBounds blend(const ForcesInput& in, std::size_t begin, std::size_t end, Vectors velocity) noexcept {
+  constexpr float k_infinity = __builtin_inff();
+  LaneVec3 min = {all_lanes(k_infinity), all_lanes(k_infinity), all_lanes(k_infinity)};
+  LaneVec3 max = {all_lanes(-k_infinity), all_lanes(-k_infinity), all_lanes(-k_infinity)};
+  Lanes fastest = {};
+  for_rows(begin, end, [&](auto rows) {
+    LaneVec3 v = get(rows, in.velocity);
+    add(all_lanes(in.time_step), external_acceleration(in, rows, gravity(in)), v);
+    if (in.sph_acceleration.x) add(all_lanes(in.sph_factor), get(rows, in.sph_acceleration), v);
+    if (in.pull.x) {
+      auto group_rows = rows;
+      group_rows.row -= in.group_begin;
+      add(all_lanes(in.elastic_factor), get(group_rows, in.pull), v);
+    }
+    rows.put(v.x, velocity.x);
+    rows.put(v.y, velocity.y);
+    rows.put(v.z, velocity.z);
+    const LaneVec3 x = get(rows, in.position);
+    min = {smaller(min.x, x.x), smaller(min.y, x.y), smaller(min.z, x.z)};
+    max = {larger(max.x, x.x), larger(max.y, x.y), larger(max.z, x.z)};
+    fastest = larger(fastest, squared(v));
+  });
+  return {{smallest(min.x), smallest(min.y), smallest(min.z)},
+          {largest(max.x), largest(max.y), largest(max.z)},
+          largest(fastest)};
+}
+
+void reach(ConstVectors velocity, const float* surface_velocity, float time_step, float offset,
+           std::size_t begin, std::size_t end, float* reach) noexcept {
+  for_rows(begin, end, [&](auto rows) {
+    LaneVec3 w = get(rows, velocity);
+    w.x -= surface_velocity[0];
+    w.y -= surface_velocity[1];
+    w.z -= surface_velocity[2];
+    const Lanes distance = offset + time_step * square_root(squared(w));
+    rows.row -= begin;
+    rows.put(distance, reach);
+  });
+}
+
+// What of x is beyond a range, on either side.
+Lanes beyond(const Lanes& x, float low, float high) {
+  return larger(larger(low - x, x - high), Lanes{});
+}
+
+// Squares are compared, so that there is no root; "not farther" holds for what is not a number, too.
+LaneMask is_near(const Obstacle& o, const LaneVec3& x, const Lanes& reach) {
+  const Lanes squared_reach = reach * reach;
+  if (o.kind == Obstacle::plane) return ~((o.a[0] * x.x + (o.a[1] * x.y + o.a[2] * x.z)) - o.b[0] > reach);
+  if (o.kind == Obstacle::sphere) {
+    const Lanes distance = squared({x.x - o.a[0], x.y - o.a[1], x.z - o.a[2]});
+    const Lanes limit = o.inside ? o.b[0] - reach : o.b[0] + reach;
+    return o.inside ? ~((distance < limit * limit) & (limit > 0.0f)) : ~(distance > limit * limit);
+  }
+  if (!o.inside) {
+    const LaneVec3 outside = {beyond(x.x, o.a[0], o.b[0]), beyond(x.y, o.a[1], o.b[1]),
+                              beyond(x.z, o.a[2], o.b[2])};
+    return ~(squared(outside) > squared_reach);
+  }
+  const auto depth = [](const Lanes& y, float low, float high) { return smaller(y - low, high - y); };
+  return ~((depth(x.x, o.a[0], o.b[0]) > reach) & (depth(x.y, o.a[1], o.b[1]) > reach) &
+           (depth(x.z, o.a[2], o.b[2]) > reach));
+}
+
+void mark(const Obstacle& obstacle, ConstVectors position, float slack, std::size_t begin, std::size_t end,
+          const float* reach, std::uint8_t* flags) noexcept {
+  for_rows(begin, end, [&](auto rows) {
+    const LaneVec3 x = get(rows, position);
+    rows.row -= begin;
+    unsigned near = rows.valid(bits(is_near(obstacle, x, rows.get(reach) + slack)));
+    for (; near != 0; near &= near - 1) flags[rows.row + static_cast<unsigned>(__builtin_ctz(near))] |= 1;
+  });
+}
+
+bool advance(const ForcesInput& in, std::size_t begin, std::size_t end, ConstVectors velocity,
+             Vectors position) noexcept {
+  LaneMask bad = {};
+  for_rows(begin, end, [&](auto rows) {
+    const LaneVec3 v = get(rows, velocity);
+    LaneVec3 x = get(rows, in.position);
+    add(all_lanes(in.time_step), v, x);
+    rows.put(x.x, position.x);
+    rows.put(x.y, position.y);
+    rows.put(x.z, position.z);
+    // 0 of what is finite, else not a number.
+    const Lanes none = (v.x - v.x) + (v.y - v.y) + (v.z - v.z) + (x.x - x.x) + (x.y - x.y) + (x.z - x.z);
+    bad |= none != 0.0f;
+  });
+  return !any(bad);
+}
+
+void external(const ForcesInput& in, std::size_t begin, std::size_t end, ConstVectors free,
+              ConstVectors velocity, float* external) noexcept {
+  for_rows(begin, end, [&](auto rows) {
+    LaneVec3 a = external_acceleration(in, rows, gravity(in));
+    const LaneVec3 v = get(rows, velocity);
+    rows.row -= begin;
+    const LaneVec3 before = get(rows, free);
+    add({(v.x - before.x) / in.time_step, (v.y - before.y) / in.time_step, (v.z - before.z) / in.time_step},
+        a);
+    rows.put(square_root(squared(a)), external);
+  });
+}
+
+float fastest(const ForcesInput& in, std::size_t begin, std::size_t end) noexcept {
+  Lanes most = all_lanes(-1);
+  LaneMask undefined = {};
+  for_rows(begin, end, [&](auto rows) {
+    LaneVec3 a = get(rows, in.sph_acceleration);
+    add(gravity(in), a);
+    LaneVec3 v = get(rows, in.velocity);
+    add(all_lanes(in.time_step), external_acceleration(in, rows, a), v);
+    Lanes speed = squared(v);
+    if (in.pin) {
+      // Where a block ends, lanes that have no row repeat the first of theirs.
+      const std::size_t count =
+          static_cast<std::size_t>(__builtin_popcount(rows.valid(~0u >> (32 - k_width))));
+      for (std::size_t l = 0; l < k_width; ++l)
+        if (in.pin[rows.row + (l < count ? l : 0)] != 0) speed[l] = -1;
+    }
+    most = larger(most, speed);
+    undefined |= speed != speed;
+  });
+  return any(undefined) ? __builtin_nanf("") : largest(most);
+}
+
+}  // namespace
+
+extern const MotionKernels motion_kernels;
+const MotionKernels motion_kernels = {blend, reach, mark, advance, external, fastest};
+
+}  // namespace mallow::MALLOW_LEVEL

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "core/isa.h"
+#include "core/raw_columns.h"
+
+namespace mallow {
+
+/// What acts on the particles of one group. All columns are by row of the store, but for the pull; those
+/// whose x is null are terms that the scene does not have and are not read.
+///
+/// symbol   | column           | unit | eq.
+/// x, v     | position, velocity | m, m/s | at the start of the step
+/// a^SPH    | sph_acceleration | m/s² | model 1
+/// a_ext    | gravity + cross_group + user | m/s² | model 4, contact not in it
+/// g − x    | pull             | m    | model 2, by row of the group
+struct ForcesInput {
+  ConstVectors position;
+  ConstVectors velocity;
+  ConstVectors sph_acceleration;
+  ConstVectors cross_group;
+  ConstVectors user;
+  ConstVectors pull;
+  std::size_t group_begin;   ///< row of pull's first
+  const std::uint16_t* pin;  ///< 0: free; null: all are
+  float gravity[3];          ///< [m/s²]
+  float time_step;           ///< Δt [s]
+  float sph_factor;          ///< α Δt [s]
+  float elastic_factor;      ///< (1 − α) Δt/(Δt0 Δt_SM) [1/s]
+};
+
+/// Within which a block of particles lies and how fast it is.
+struct BlockBounds {
+  float min[3], max[3];  ///< of the positions [m]
+  float squared_speed;   ///< largest |v|² [m²/s²]
+};
+
+/// One primitive of an obstacle. What is inside keeps particles in.
+struct Obstacle {
+  enum Kind { plane, sphere, box } kind;
+  bool inside;
+  float a[3];  ///< unit normal, centre, least corner
+  float b[3];  ///< offset, radius (in b[0]), greatest corner
+};
+
+/// All but contact itself of model section 4, and which particles contact cannot concern (model 5). They
+/// write to no row outside [begin, end).
+struct MotionKernels {
+  /// v' before contact of free particles and of pinned ones alike, and what it says of the rows.
+  BlockBounds (*blend)(const ForcesInput&, std::size_t begin, std::size_t end, Vectors velocity) noexcept;
+  /// reach[k] = offset + Δt |v − u| of row begin + k: no surface that is farther is touched.
+  void (*reach)(ConstVectors velocity, const float* surface_velocity, float time_step, float offset,
+                std::size_t begin, std::size_t end, float* reach) noexcept;
+  /// flags[k] |= 1 unless row begin + k is farther than reach[k] + slack from the obstacle.
+  void (*mark)(const Obstacle&, ConstVectors position, float slack, std::size_t begin, std::size_t end,
+               const float* reach, std::uint8_t* flags) noexcept;
+  /// x' = x + Δt v'. Returns whether all that is new is finite.
+  bool (*advance)(const ForcesInput&, std::size_t begin, std::size_t end, ConstVectors velocity,
+                  Vectors position) noexcept;
+  /// external[k] = |a_ext + (v' − free)/Δt| of row begin + k. free: v' before contact, from `begin` on.
+  void (*external)(const ForcesInput&, std::size_t begin, std::size_t end, ConstVectors free,
+                   ConstVectors velocity, float* external) noexcept;
+  /// Largest |v + Δt (a^SPH + a_ext)|² of unpinned rows: NaN where one is, -1 where there is none.
+  float (*fastest)(const ForcesInput&, std::size_t begin, std::size_t end) noexcept;
+};
+MALLOW_DECLARE_LEVELS(MotionKernels, motion_kernels)
+
+}  // namespace mallow
