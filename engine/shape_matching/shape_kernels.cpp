@@ -16,7 +16,7 @@ void displacement(const ShapeInput& in, std::size_t i, float* u) {
 
 void write_rows(const ShapeInput& in, std::size_t begin, std::size_t end, float* rows) noexcept {
   for (std::size_t i = begin; i < end; ++i) {
-    float* const row = rows + i * k_row;
+    float* const row = rows + (i - begin) * k_row;
     const float x = in.reference.x[i], y = in.reference.y[i], z = in.reference.z[i];
     float u[3];
     displacement(in, i, u);
@@ -62,18 +62,32 @@ void sum_rows(const float* rows, const std::uint32_t* list, std::uint32_t n, flo
   for (std::size_t p = 0; p < k_parts; ++p) reinterpret_cast<Part*>(sum)[p] = (a[p] + b[p]) + (c[p] + d[p]);
 }
 
-void sum_regions(const ShapeInput& in, std::size_t begin, std::size_t end, const float* rows,
-                 float* sums) noexcept {
-  for (std::size_t j = begin; j < end; ++j)
-    sum_rows(rows, in.regions.indices + in.regions.begin[j], in.regions.count[j], sums + j * k_row);
+void sum_runs(const float* rows, std::size_t count, const RunLengths& lengths, float* table) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    Part sum[k_parts] = {};
+    const Part* row = reinterpret_cast<const Part*>(rows + i * k_row);
+    Part* entry = reinterpret_cast<Part*>(table + i * lengths.levels * k_row);
+    std::uint32_t length = 0;
+    for (std::uint32_t level = 0; level < lengths.levels; ++level, entry += k_parts) {
+      for (; length < lengths.length[level]; ++length, row += k_parts)
+        for (std::size_t p = 0; p < k_parts; ++p) sum[p] += row[p];
+      for (std::size_t p = 0; p < k_parts; ++p) entry[p] = sum[p];
+    }
+  }
 }
 
-void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float* sums,
+void sum_regions(const ShapeInput& in, std::size_t begin, std::size_t end, const float* table,
+                 float* sums) noexcept {
+  for (std::size_t j = begin; j < end; ++j)
+    sum_rows(table, in.regions.entries + in.regions.begin[j], in.regions.count[j], sums + j * k_row);
+}
+
+void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float* table,
            Vectors pull) noexcept {
   for (std::size_t i = begin; i < end; ++i) {
     alignas(64) float s[k_row];
     float u[3];
-    sum_rows(sums, in.memberships.indices + in.memberships.begin[i], in.memberships.count[i], s);
+    sum_rows(table, in.memberships.entries + in.memberships.begin[i], in.memberships.count[i], s);
     displacement(in, i, u);
     const float x = in.reference.x[i], y = in.reference.y[i], z = in.reference.z[i], w = in.weight[i];
     pull.x[i] = w * (s[0] * x + s[1] * y + s[2] * z + s[9]) - u[0];
@@ -212,6 +226,6 @@ void solve_rotations(const ShapeInput& in, std::size_t begin, std::size_t end, i
 }  // namespace
 
 extern const ShapeKernels shape_kernels;
-const ShapeKernels shape_kernels = {write_rows, sum_regions, solve_rotations, goals};
+const ShapeKernels shape_kernels = {write_rows, sum_runs, sum_regions, solve_rotations, goals};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -7,15 +7,28 @@ namespace mallow {
 
 /// Floats of a row: twelve sums and padding, one cache line, so that a neighbour costs one load and one add.
 inline constexpr std::size_t k_row = 16;
+/// Consecutive rows.
+struct Run {
+  std::uint32_t first, count;
+};
+/// Rows in the longest run that a table has a sum of, and how many lengths it can have.
+inline constexpr std::uint32_t k_longest_run = 32;
+inline constexpr std::uint32_t k_max_levels = 16;
+/// Lengths of the runs that a table of rows has sums of, ascending from 1: entry i levels + l of the table is
+/// the sum of the length[l] rows from i on.
+struct RunLengths {
+  std::uint32_t length[k_max_levels] = {1};
+  std::uint32_t levels = 1;
+};
 /// Newton iterations within which any region converges that Newton's method can decide; what has not by then
 /// is solved otherwise.
 inline constexpr int k_enough_iterations = 8;
 
-/// Lists behind each other in one array.
+/// Lists of the entries of a table of rows, behind each other in one array.
 struct RegionLists {
   const std::uint32_t* begin;
   const std::uint32_t* count;
-  const std::uint32_t* indices;
+  const std::uint32_t* entries;
 };
 
 /// The regions of one group: particle i is in the regions N_i, region j holds the particles N_j. Where every
@@ -46,10 +59,12 @@ struct ShapeInput {
 };
 
 struct ShapeKernels {
-  /// Row i: w u x̄ᵀ (row by row), w u.
+  /// Rows of particles [begin, end), from `rows` on: w u x̄ᵀ (row by row), w u.
   void (*write_rows)(const ShapeInput&, std::size_t begin, std::size_t end, float* rows) noexcept;
-  /// sums row j, of region j: Σ_{i∈N_j} of rows.
-  void (*sum_regions)(const ShapeInput&, std::size_t begin, std::size_t end, const float* rows,
+  /// The table entries of the first `count` rows. Reads longest length − 1 rows more: zero beyond the last.
+  void (*sum_runs)(const float* rows, std::size_t count, const RunLengths& lengths, float* table) noexcept;
+  /// sums row j, of region j: Σ_{i∈N_j} of rows, by a table of them.
+  void (*sum_regions)(const ShapeInput&, std::size_t begin, std::size_t end, const float* table,
                       float* sums) noexcept;
   /// A_j = R_g B_j + Σ w u x̄ᵀ − (Σ w u) c̄ᵀ, R_j by Newton's method from the last rotation. Replaces sums row
   /// j by R_j − R_g (row by row) and u of the centre − (R_j − R_g) c̄. Regions that Newton cannot decide
@@ -58,8 +73,8 @@ struct ShapeKernels {
   /// with 0 none is. begin: a multiple of k_lanes.
   void (*solve_rotations)(const ShapeInput&, std::size_t begin, std::size_t end, int iterations, float* sums,
                           float* const* rotation, std::uint8_t* undecided) noexcept;
-  /// g_i − x_i = w_i (Σ (R_j − R_g) x̄_i + Σ (...)) − u_i. [TK eq. 7]
-  void (*goals)(const ShapeInput&, std::size_t begin, std::size_t end, const float* sums,
+  /// g_i − x_i = w_i (Σ (R_j − R_g) x̄_i + Σ (...)) − u_i, by a table of the rows of sums. [TK eq. 7]
+  void (*goals)(const ShapeInput&, std::size_t begin, std::size_t end, const float* table,
                 Vectors pull) noexcept;
 };
 MALLOW_DECLARE_LEVELS(ShapeKernels, shape_kernels)
