@@ -101,7 +101,8 @@ void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::s
   coded.members = runs[0];
   coded.lengths = choose_lengths(runs, rows);
   const Pieces pieces(coded.lengths);
-  const std::uint32_t levels = coded.lengths.levels;
+  const auto all = static_cast<std::uint32_t>(rows);
+  coded.rows = rows;
   coded.begin.resize_unset(n);
   coded.count.resize_unset(n);
   coded.block_begin.resize((n + k_block - 1) / k_block);
@@ -132,7 +133,7 @@ void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::s
         for_each_part(run.count, [&](std::uint32_t part) {
           while (part > 0) {
             const std::uint32_t level = pieces.level[part];
-            coded.entries[next++] = row * levels + level;
+            coded.entries[next++] = level * all + row;
             row += coded.lengths.length[level];
             part -= coded.lengths.length[level];
           }
@@ -146,8 +147,8 @@ std::vector<std::uint32_t> decode(const TableLists& coded, std::size_t list) {
   std::vector<std::uint32_t> rows;
   for (std::uint32_t k = 0; k < coded.count[list]; ++k) {
     const std::uint32_t entry = coded.entries[coded.begin[list] + k];
-    const std::uint32_t row = entry / coded.lengths.levels;
-    for (std::uint32_t r = 0; r < coded.lengths.length[entry % coded.lengths.levels]; ++r)
+    const std::uint32_t row = entry % static_cast<std::uint32_t>(coded.rows);
+    for (std::uint32_t r = 0; r < coded.lengths.length[entry / coded.rows]; ++r)
       rows.push_back(row + r);
   }
   return rows;

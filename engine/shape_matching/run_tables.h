@@ -12,7 +12,7 @@
 namespace mallow {
 
 /// Lists of rows, to be summed, as lists of entries of a table that holds sums of consecutive rows: entry
-/// row * levels + l is the sum of the lengths.length[l] rows from `row` on. One entry stands for a whole run
+/// l rows + i is the sum of the lengths.length[l] rows from i on. One entry stands for a whole run
 /// where the table has its length, for a part of it otherwise. Unlike differences of running totals the
 /// entries of a list only add, so no digit cancels. A table is worth its lengths only where enough lists use
 /// them; with none but 1 it is the rows themselves, and the lists are plain.
@@ -21,6 +21,7 @@ struct TableLists {
   Column<std::uint32_t> count;    ///< per list: entries
   Column<std::uint32_t> entries;  ///< lists behind each other
   RunLengths lengths;
+  std::size_t rows = 0;     ///< of the table
   std::size_t members = 0;  ///< rows in all lists
 
   // Scratch.

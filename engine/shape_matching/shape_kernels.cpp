@@ -62,13 +62,14 @@ void sum_rows(const float* rows, const std::uint32_t* list, std::uint32_t n, flo
   for (std::size_t p = 0; p < k_parts; ++p) reinterpret_cast<Part*>(sum)[p] = (a[p] + b[p]) + (c[p] + d[p]);
 }
 
-void sum_runs(const float* rows, std::size_t count, const RunLengths& lengths, float* table) noexcept {
+void sum_runs(const float* rows, std::size_t count, const RunLengths& lengths, std::size_t all,
+              float* table) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     Part sum[k_parts] = {};
     const Part* row = reinterpret_cast<const Part*>(rows + i * k_row);
-    Part* entry = reinterpret_cast<Part*>(table + i * lengths.levels * k_row);
+    Part* entry = reinterpret_cast<Part*>(table + i * k_row);
     std::uint32_t length = 0;
-    for (std::uint32_t level = 0; level < lengths.levels; ++level, entry += k_parts) {
+    for (std::uint32_t level = 0; level < lengths.levels; ++level, entry += all * k_parts) {
       for (; length < lengths.length[level]; ++length, row += k_parts)
         for (std::size_t p = 0; p < k_parts; ++p) sum[p] += row[p];
       for (std::size_t p = 0; p < k_parts; ++p) entry[p] = sum[p];

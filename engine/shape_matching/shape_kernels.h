@@ -14,8 +14,9 @@ struct Run {
 /// Rows in the longest run that a table has a sum of, and how many lengths it can have.
 inline constexpr std::uint32_t k_longest_run = 32;
 inline constexpr std::uint32_t k_max_levels = 16;
-/// Lengths of the runs that a table of rows has sums of, ascending from 1: entry i levels + l of the table is
-/// the sum of the length[l] rows from i on.
+/// Lengths of the runs that a table of rows has sums of, ascending from 1: entry l rows + i of the table is the
+/// sum of the length[l] rows from i on. Entries of one length lie together: lists of neighbouring rows read
+/// neighbouring entries.
 struct RunLengths {
   std::uint32_t length[k_max_levels] = {1};
   std::uint32_t levels = 1;
@@ -61,8 +62,10 @@ struct ShapeInput {
 struct ShapeKernels {
   /// Rows of particles [begin, end), from `rows` on: w u x̄ᵀ (row by row), w u.
   void (*write_rows)(const ShapeInput&, std::size_t begin, std::size_t end, float* rows) noexcept;
-  /// The table entries of the first `count` rows. Reads longest length − 1 rows more: zero beyond the last.
-  void (*sum_runs)(const float* rows, std::size_t count, const RunLengths& lengths, float* table) noexcept;
+  /// The table entries of the first `count` rows, those of one length `all` entries behind those of the one
+  /// before. Reads longest length − 1 rows more: zero beyond the last.
+  void (*sum_runs)(const float* rows, std::size_t count, const RunLengths& lengths, std::size_t all,
+                   float* table) noexcept;
   /// sums row j, of region j: Σ_{i∈N_j} of rows, by a table of them.
   void (*sum_regions)(const ShapeInput&, std::size_t begin, std::size_t end, const float* table,
                       float* sums) noexcept;

@@ -96,7 +96,7 @@ void write_particle_table(const ShapeInput& in, int threads, const ShapeKernels&
   const std::size_t n = shape.reference.size();
   const RunLengths& lengths = shape.regions.lengths;
   parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
-    float* const table = shape.table.data() + first * lengths.levels * k_row;
+    float* const table = shape.table.data() + first * k_row;
     if (lengths.levels == 1) {
       kernels.write_rows(in, first, last, table);
       return;
@@ -105,7 +105,7 @@ void write_particle_table(const ShapeInput& in, int threads, const ShapeKernels&
     const std::size_t reach = last + lengths.length[lengths.levels - 1] - 1, end = std::min(n, reach);
     kernels.write_rows(in, first, end, rows);
     std::fill(rows + (end - first) * k_row, rows + (reach - first) * k_row, 0.0f);
-    kernels.sum_runs(rows, last - first, lengths, table);
+    kernels.sum_runs(rows, last - first, lengths, n, table);
   });
 }
 
@@ -141,9 +141,10 @@ void compute_goals(const VectorColumn& positions, std::size_t begin, int threads
   const RunLengths& lengths = shape.by_particle().lengths;
   const float* table = shape.sums.data();
   if (lengths.levels > 1) {
-    parallel_for(threads, shape.region_weight.size(), [&](std::size_t first, std::size_t last) {
-      kernels.sum_runs(shape.sums.data() + first * k_row, last - first, lengths,
-                       shape.table.data() + first * lengths.levels * k_row);
+    const std::size_t regions = shape.region_weight.size();
+    parallel_for(threads, regions, [&](std::size_t first, std::size_t last) {
+      kernels.sum_runs(shape.sums.data() + first * k_row, last - first, lengths, regions,
+                       shape.table.data() + first * k_row);
     });
     table = shape.table.data();
   }
