@@ -39,7 +39,7 @@ struct RegionScene {
     solve_rotations(x, 0, k_enough_iterations, 1, level, shape);
     compute_goals(x, 0, 1, level, shape);
     const RegionLists lists{shape.regions.begin.data(), shape.regions.count.data(),
-                            shape.regions.entries.data()};
+                            shape.regions.entries.data(), false};
     input = {.regions = lists,
              .memberships = lists,
              .position = raw(std::as_const(x)),
@@ -63,7 +63,7 @@ struct RegionScene {
     return {
         {"particles", size()},
         {"average_neighbors", shape.average_neighbors},
-        {"average_entries", static_cast<double>(shape.regions.entries.size()) / static_cast<double>(size())},
+        {"average_entries", static_cast<double>(shape.regions.total) / static_cast<double>(size())},
         {"table_levels", shape.regions.lengths.levels}};
   }
 };

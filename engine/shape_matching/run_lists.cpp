@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 
 #include "core/parallel.h"
@@ -11,8 +12,10 @@ namespace mallow {
 namespace {
 
 constexpr std::size_t k_max_runs = std::numeric_limits<std::uint32_t>::max();
-/// Runs of a point at first guess.
-constexpr std::size_t k_guess = 24;
+/// Relative, of squared distances: far above their rounding.
+constexpr float k_slack = 1e-5f;
+/// One of so many blocks is searched to learn how many runs there will be.
+constexpr std::size_t k_sampled = 64;
 
 /// Ends of a column's points across, so that lattice lines are searched as the lines they are.
 struct ColumnBounds {
@@ -40,13 +43,17 @@ float gap(float low, float high, float value) {
 struct Search {
   const ColumnOrder& columns;
   float squared_radius;
+  float slack;  ///< of squared distances, for what is only narrowed down [m²]
   int reach[2];
   std::vector<ColumnBounds> bounds;
   const float* along;
   const float* across[2];
 
   Search(const ColumnOrder& order, float radius, int threads)
-      : columns(order), squared_radius(radius * radius), bounds(order.columns()) {
+      : columns(order),
+        squared_radius(radius * radius),
+        slack(k_slack * squared_radius),
+        bounds(order.columns()) {
     along = order.sorted.axis(static_cast<std::size_t>(order.along));
     for (std::size_t k = 0; k < 2; ++k) {
       across[k] = order.sorted.axis(static_cast<std::size_t>(order.across[k]));
@@ -90,7 +97,7 @@ struct Search {
                 std::max({0.0f, bounds[c].low[k] - mine.high[k], mine.low[k] - bounds[c].high[k]});
             squared += g * g;
           }
-          if (squared > squared_radius) continue;
+          if (squared > squared_radius + slack) continue;
           const auto at =
               static_cast<std::uint32_t>(std::lower_bound(along + start, along + end, first_along) - along);
           near.push_back({start, end, at, at, bounds[c]});
@@ -98,24 +105,19 @@ struct Search {
     }
   }
 
-  /// Narrows a column to what can be in reach of a point. A point's distance is no less, also as rounded,
-  /// than that of the nearest place in the column's bounds with the same coordinate along.
+  /// Narrows a column to what can be in reach of a point, and little more: what is in it is tested.
   bool narrow(float x, float a, float b, Near& n) const {
     const float ga = gap(n.bounds.low[0], n.bounds.high[0], a),
                 gb = gap(n.bounds.low[1], n.bounds.high[1], b);
-    const float squared_a = ga * ga, squared_b = gb * gb;
-    if (squared_a + squared_b > squared_radius) return false;
-    const auto out = [&](std::uint32_t k) {
-      const float d = along[k] - x;
-      return (d * d + squared_a) + squared_b > squared_radius;
-    };
-    const auto below = [&](std::uint32_t k) { return along[k] < x && out(k); };
-    const auto above = [&](std::uint32_t k) { return along[k] > x && out(k); };
-    while (n.low > n.start && !below(n.low - 1)) --n.low;
-    while (n.low < n.end && below(n.low)) ++n.low;
+    const float squared = squared_radius - (ga * ga + gb * gb);
+    if (squared < -slack) return false;
+    const float chord = std::sqrt(squared + 2 * slack);
+    // Differences as the test takes them: rounded, they are in the order of the points.
+    while (n.low > n.start && along[n.low - 1] - x >= -chord) --n.low;
+    while (n.low < n.end && along[n.low] - x < -chord) ++n.low;
     n.high = std::max(n.high, n.low);
-    while (n.high > n.low && above(n.high - 1)) --n.high;
-    while (n.high < n.end && !above(n.high)) ++n.high;
+    while (n.high > n.low && along[n.high - 1] - x > chord) --n.high;
+    while (n.high < n.end && along[n.high] - x <= chord) ++n.high;
     return true;
   }
 
@@ -191,6 +193,25 @@ struct Search {
   }
 };
 
+/// From one of k_sampled blocks, and a tenth more.
+std::size_t estimate_runs(const Search& search, int threads, RunLists& lists) {
+  const std::size_t n = lists.count.size(), blocks = (n + k_block - 1) / k_block;
+  std::atomic<std::size_t> points = 0, runs = 0;
+  parallel_for(
+      threads, (blocks + k_sampled - 1) / k_sampled,
+      [&](std::size_t sample, std::size_t) {
+        thread_local Scratch scratch;
+        // Not the first: a body's border has fewer.
+        const std::size_t block = std::min(blocks - 1, sample * k_sampled + k_sampled / 2);
+        const std::size_t begin = block * k_block, end = std::min(n, begin + k_block);
+        search.search_block(begin, end, scratch, lists);
+        points += end - begin;
+        runs += scratch.runs.size();
+      },
+      1);
+  return (runs * n / points) * 11 / 10 + n;
+}
+
 }  // namespace
 
 void find_runs(const ColumnOrder& columns, float radius, int threads, RunLists& lists) {
@@ -198,8 +219,8 @@ void find_runs(const ColumnOrder& columns, float radius, int threads, RunLists& 
   lists.begin.resize_unset(n);
   lists.count.resize_unset(n);
   lists.members.resize_unset(n);
-  if (lists.runs.size() < n) lists.runs.resize_unset(k_guess * n);
   const Search search(columns, radius, threads);
+  if (lists.runs.size() < n) lists.runs.resize_unset(estimate_runs(search, threads, lists));
   for (;;) {
     std::atomic<std::size_t> used = 0;
     parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {

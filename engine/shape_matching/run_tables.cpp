@@ -1,11 +1,16 @@
 #include "shape_matching/run_tables.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/parallel.h"
+#include "mallow/errors.h"
 
 namespace mallow {
 namespace {
+
+/// Entries that 32-bit places can name.
+constexpr std::size_t k_max_entries = std::numeric_limits<std::uint32_t>::max();
 
 using Histogram = TableLists::Histogram;
 
@@ -117,13 +122,18 @@ void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::s
     }
     coded.block_begin[begin / k_block] = sum;
   });
-  std::uint32_t total = 0;
+  std::size_t total = 0;
   for (std::uint32_t& block : coded.block_begin) {
     const std::uint32_t sum = block;
-    block = total;
+    block = static_cast<std::uint32_t>(total);
     total += sum;
   }
-  coded.entries.resize_unset(total);
+  if (std::max(total, rows * coded.lengths.levels) > k_max_entries)
+    throw ConfigError("support_radius", "the regions would need " + std::to_string(total) +
+                                            " entries; at most 4294967295 fit: choose a smaller radius");
+  coded.total = total;
+  coded.entries.resize_unset(total + k_prefetch + 4);
+  std::fill(coded.entries.begin() + total, coded.entries.end(), 0u);
   parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
     std::uint32_t next = coded.block_begin[begin / k_block];
     for (std::size_t j = begin; j < end; ++j) {
@@ -148,8 +158,7 @@ std::vector<std::uint32_t> decode(const TableLists& coded, std::size_t list) {
   for (std::uint32_t k = 0; k < coded.count[list]; ++k) {
     const std::uint32_t entry = coded.entries[coded.begin[list] + k];
     const std::uint32_t row = entry % static_cast<std::uint32_t>(coded.rows);
-    for (std::uint32_t r = 0; r < coded.lengths.length[entry / coded.rows]; ++r)
-      rows.push_back(row + r);
+    for (std::uint32_t r = 0; r < coded.lengths.length[entry / coded.rows]; ++r) rows.push_back(row + r);
   }
   return rows;
 }

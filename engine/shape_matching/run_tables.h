@@ -19,7 +19,8 @@ namespace mallow {
 struct TableLists {
   Column<std::uint32_t> begin;    ///< per list: where it starts in `entries`
   Column<std::uint32_t> count;    ///< per list: entries
-  Column<std::uint32_t> entries;  ///< lists behind each other
+  Column<std::uint32_t> entries;  ///< lists behind each other, and some of row 0 for whoever reads ahead
+  std::size_t total = 0;          ///< entries of all lists
   RunLengths lengths;
   std::size_t rows = 0;     ///< of the table
   std::size_t members = 0;  ///< rows in all lists

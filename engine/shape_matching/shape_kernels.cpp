@@ -49,10 +49,15 @@ void add_row(const float* rows, std::uint32_t i, Part* sum) {
 
 /// Adds the rows of a list. Four accumulators in a fixed order hide the latency of the addition. sum: on a
 /// 64-byte boundary, as rows are.
-void sum_rows(const float* rows, const std::uint32_t* list, std::uint32_t n, float* sum) {
+void sum_rows(const float* rows, const RegionLists& lists, std::size_t which, float* sum) {
+  const std::uint32_t* const list = lists.entries + lists.begin[which];
+  const std::uint32_t n = lists.count[which];
   Part a[k_parts] = {}, b[k_parts] = {}, c[k_parts] = {}, d[k_parts] = {};
   std::uint32_t k = 0;
   for (; k + 4 <= n; k += 4) {
+    if (lists.prefetch)
+      for (std::uint32_t ahead = k + k_prefetch; ahead < k + k_prefetch + 4; ++ahead)
+        __builtin_prefetch(rows + static_cast<std::size_t>(list[ahead]) * k_row);
     add_row(rows, list[k], a);
     add_row(rows, list[k + 1], b);
     add_row(rows, list[k + 2], c);
@@ -79,8 +84,7 @@ void sum_runs(const float* rows, std::size_t count, const RunLengths& lengths, s
 
 void sum_regions(const ShapeInput& in, std::size_t begin, std::size_t end, const float* table,
                  float* sums) noexcept {
-  for (std::size_t j = begin; j < end; ++j)
-    sum_rows(table, in.regions.entries + in.regions.begin[j], in.regions.count[j], sums + j * k_row);
+  for (std::size_t j = begin; j < end; ++j) sum_rows(table, in.regions, j, sums + j * k_row);
 }
 
 void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float* table,
@@ -88,7 +92,7 @@ void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float
   for (std::size_t i = begin; i < end; ++i) {
     alignas(64) float s[k_row];
     float u[3];
-    sum_rows(table, in.memberships.entries + in.memberships.begin[i], in.memberships.count[i], s);
+    sum_rows(table, in.memberships, i, s);
     displacement(in, i, u);
     const float x = in.reference.x[i], y = in.reference.y[i], z = in.reference.z[i], w = in.weight[i];
     pull.x[i] = w * (s[0] * x + s[1] * y + s[2] * z + s[9]) - u[0];

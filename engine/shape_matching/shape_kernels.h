@@ -14,9 +14,9 @@ struct Run {
 /// Rows in the longest run that a table has a sum of, and how many lengths it can have.
 inline constexpr std::uint32_t k_longest_run = 32;
 inline constexpr std::uint32_t k_max_levels = 16;
-/// Lengths of the runs that a table of rows has sums of, ascending from 1: entry l rows + i of the table is the
-/// sum of the length[l] rows from i on. Entries of one length lie together: lists of neighbouring rows read
-/// neighbouring entries.
+/// Lengths of the runs that a table of rows has sums of, ascending from 1: entry l rows + i of the table is
+/// the sum of the length[l] rows from i on. Entries of one length lie together: lists of neighbouring rows
+/// read neighbouring entries.
 struct RunLengths {
   std::uint32_t length[k_max_levels] = {1};
   std::uint32_t levels = 1;
@@ -25,11 +25,15 @@ struct RunLengths {
 /// is solved otherwise.
 inline constexpr int k_enough_iterations = 8;
 
+/// Entries of a list between the one whose row is asked for from memory and the one that is added: as much
+/// time as memory takes.
+inline constexpr std::uint32_t k_prefetch = 96;
 /// Lists of the entries of a table of rows, behind each other in one array.
 struct RegionLists {
   const std::uint32_t* begin;
   const std::uint32_t* count;
-  const std::uint32_t* entries;
+  const std::uint32_t* entries;  ///< and k_prefetch more, of any entries
+  bool prefetch;                 ///< the table is larger than the caches near the core
 };
 
 /// The regions of one group: particle i is in the regions N_i, region j holds the particles N_j. Where every
