@@ -60,11 +60,10 @@ struct RegionScene {
   std::size_t size() const { return x.size(); }
   double neighbors() const { return static_cast<double>(shape.regions.members); }
   Json about() const {
-    return {
-        {"particles", size()},
-        {"average_neighbors", shape.average_neighbors},
-        {"average_entries", static_cast<double>(shape.regions.total) / static_cast<double>(size())},
-        {"table_levels", shape.regions.lengths.levels}};
+    return {{"particles", size()},
+            {"average_neighbors", shape.average_neighbors},
+            {"average_entries", static_cast<double>(shape.regions.total) / static_cast<double>(size())},
+            {"table_levels", shape.regions.lengths.levels}};
   }
 };
 

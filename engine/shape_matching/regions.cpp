@@ -119,11 +119,11 @@ std::size_t weigh_particles(bool every, int threads, const RegionScratch& scratc
 
 /// W_j, c̄_j and B_j of the regions [begin, end).
 void measure_regions(std::size_t begin, std::size_t end, const MomentKernels& kernels,
-                     const RegionScratch& scratch, ShapeMatching& shape) {
+                     const double* moment_rows, const RegionScratch& scratch, ShapeMatching& shape) {
   for (std::size_t j = begin; j < end; ++j) {
     double s[k_moment_row];
     const std::span<const Run> runs = scratch.near.of(scratch.owners.empty() ? j : scratch.owners[j]);
-    kernels.sum_runs(scratch.moment_rows.data(), runs.data(), runs.size(), s);
+    kernels.sum_runs(moment_rows, runs.data(), runs.size(), s);
     const double weight = s[0];
     // In double, what cancels here is less than what the single precision of positions has lost.
     const Eigen::Vector3d center = Eigen::Vector3d(s[1], s[2], s[3]) / weight;
@@ -227,16 +227,17 @@ void build_regions(int threads, InstructionLevel level, RegionScratch& scratch, 
   shape.weight.resize_unset(n);
   shape.average_neighbors =
       static_cast<double>(weigh_particles(every, threads, scratch, shape)) / static_cast<double>(n);
-  scratch.moment_rows.resize_unset(n * k_moment_row);
+  // The table is not in use yet, and lends its memory.
+  shape.table.resize_unset(std::max(shape.table.size(), n * k_moment_row * sizeof(double) / sizeof(float)));
+  auto* const moment_rows = reinterpret_cast<double*>(shape.table.data());
   parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
-    kernels.write_rows(raw(std::as_const(shape.reference)), shape.weight.data(), begin, end,
-                       scratch.moment_rows.data());
+    kernels.write_rows(raw(std::as_const(shape.reference)), shape.weight.data(), begin, end, moment_rows);
   });
   shape.region_weight.resize_unset(regions);
   shape.center.resize_unset(regions);
   for (Column<float>& column : shape.moment) column.resize_unset(regions);
   parallel_for(threads, regions, [&](std::size_t begin, std::size_t end) {
-    measure_regions(begin, end, kernels, scratch, shape);
+    measure_regions(begin, end, kernels, moment_rows, scratch, shape);
   });
   if (!every) {
     turn_around(threads, scratch);

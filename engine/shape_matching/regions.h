@@ -17,14 +17,11 @@ struct ShapeMatching;
 struct RegionScratch {
   ColumnOrder columns;
   RunLists near;                       ///< per particle: those within the region radius
-  Column<double> moment_rows;          ///< k_moment_row doubles a particle
   Column<std::uint32_t> owners;        ///< particles that own a region, ascending; with a stride above 1
   Column<std::uint32_t> first_region;  ///< per particle: regions of the particles before it
   std::vector<std::uint32_t> block_begin;
 
-  std::size_t bytes() const {
-    return columns.bytes() + near.bytes() + moment_rows.bytes() + owners.bytes() + first_region.bytes();
-  }
+  std::size_t bytes() const { return columns.bytes() + near.bytes() + owners.bytes() + first_region.bytes(); }
 };
 
 /// x̄ ← x of the rows [begin, end) of a store. Rotations start from none; regions are due to be built.

@@ -209,7 +209,7 @@ std::size_t estimate_runs(const Search& search, int threads, RunLists& lists) {
         runs += scratch.runs.size();
       },
       1);
-  return (runs * n / points) * 11 / 10 + n;
+  return (runs * n / points) * 11 / 10 + k_block;
 }
 
 }  // namespace
