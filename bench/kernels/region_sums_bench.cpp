@@ -19,20 +19,27 @@ struct RegionScene {
   VectorColumn x;
   ShapeMatching shape;
   ShapeInput input;
-  Column<float> sums;  ///< as the first sum leaves them
+  Column<float> sums;            ///< as the first sum leaves them
+  Column<float> particle_table;  ///< of the rows of particles; that of the regions is where the shape has it
 
   RegionScene(const LatticeScene& scene, InstructionLevel level) : x(lattice_points(scene)) {
-    CellGrid grid;
+    RegionScratch scratch;
     shape.region_radius = scene.radius;
-    update_reference(x, 0, x.size(), shape);
-    build_regions(1, level, grid, shape);
+    shape.spacing = scene.spacing;
+    update_reference(x, 0, x.size(), 1, shape);
+    sort_reference(1, scratch.columns, shape);
+    x = reordered(x, scratch.columns.order.span());
+    build_regions(1, level, scratch, shape);
     x = bent(x);
     sum_regions(x, 0, 1, level, shape);
     sums.resize(shape.sums.size());
     std::copy(shape.sums.begin(), shape.sums.end(), sums.begin());
+    particle_table.resize(shape.table.size());
+    std::copy(shape.table.begin(), shape.table.end(), particle_table.begin());
     solve_rotations(x, 0, k_enough_iterations, 1, level, shape);
+    compute_goals(x, 0, 1, level, shape);
     const RegionLists lists{shape.regions.begin.data(), shape.regions.count.data(),
-                            shape.regions.indices.data()};
+                            shape.regions.entries.data(), false};
     input = {.regions = lists,
              .memberships = lists,
              .position = raw(std::as_const(x)),
@@ -47,9 +54,17 @@ struct RegionScene {
     for (int i = 0; i < 9; ++i) input.frame_rotation[i] = rotation(i / 3, i % 3);
     for (int i = 0; i < 3; ++i) input.frame_translation[i] = static_cast<float>(shape.frame.translation[i]);
   }
+  const float* region_table() const {
+    return shape.regions.lengths.levels > 1 ? shape.table.data() : shape.sums.data();
+  }
   std::size_t size() const { return x.size(); }
-  double neighbors() const { return static_cast<double>(shape.regions.total); }
-  Json about() const { return {{"particles", size()}, {"average_neighbors", shape.regions.average()}}; }
+  double neighbors() const { return static_cast<double>(shape.regions.members); }
+  Json about() const {
+    return {{"particles", size()},
+            {"average_neighbors", shape.average_neighbors},
+            {"average_entries", static_cast<double>(shape.regions.total) / static_cast<double>(size())},
+            {"table_levels", shape.regions.lengths.levels}};
+  }
 };
 
 /// A kernel of the table on the rows of a scene.
@@ -116,13 +131,13 @@ void add_level(const LatticeScene& scene, int threads, InstructionLevel level, K
   set.add(about("write_rows", "particle"), [=] {
     return on_rows(scene, threads, level, false,
                    [](const ShapeKernels& k, RegionScene& s, std::size_t begin, std::size_t end) {
-                     k.write_rows(s.input, begin, end, s.shape.rows.data());
+                     k.write_rows(s.input, begin, end, s.sums.data() + begin * k_row);
                    });
   });
   set.add(compared("region_sums"), [=] {
     return on_rows(scene, threads, level, true,
                    [](const ShapeKernels& k, RegionScene& s, std::size_t begin, std::size_t end) {
-                     k.sum_regions(s.input, begin, end, s.shape.rows.data(), s.sums.data());
+                     k.sum_regions(s.input, begin, end, s.particle_table.data(), s.sums.data());
                    });
   });
   // With the rigid frame and the rows.
@@ -130,7 +145,7 @@ void add_level(const LatticeScene& scene, int threads, InstructionLevel level, K
   set.add(compared("goals"), [=] {
     return on_rows(scene, threads, level, true,
                    [](const ShapeKernels& k, RegionScene& s, std::size_t begin, std::size_t end) {
-                     k.goals(s.input, begin, end, s.shape.sums.data(), raw(s.shape.pull));
+                     k.goals(s.input, begin, end, s.region_table(), raw(s.shape.pull));
                    });
   });
   set.add(compared("goals_phase"), [=] { return phase(scene, threads, level, compute_goals); });

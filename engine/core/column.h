@@ -50,6 +50,16 @@ class Column {
     if (size < size_) std::memset(static_cast<void*>(data_ + size), 0, (padded(size) - size) * sizeof(T));
     size_ = size;
   }
+  /// Keeps nothing: values are whatever they are, only the padding is zero. For columns that are written whole
+  /// next, so that the threads that write them touch them first.
+  void resize_unset(std::size_t size) {
+    if (padded(size) > capacity_) {
+      release();
+      grow(padded(size));
+    }
+    std::memset(static_cast<void*>(data_ + size), 0, (padded(size) - size) * sizeof(T));
+    size_ = size;
+  }
   void release() {
     if (data_) ::operator delete[](data_, std::align_val_t{64});
     data_ = nullptr;
@@ -102,6 +112,14 @@ class VectorColumn {
     const std::size_t kept = std::min(size, old.size_);
     for (std::size_t axis = 0; axis < 3 && kept > 0; ++axis)
       std::copy_n(old.axis(axis), kept, this->axis(axis));
+  }
+  /// Keeps nothing: see Column::resize_unset.
+  void resize_unset(std::size_t size) {
+    stride_ = padded(size);
+    size_ = size;
+    values_.resize_unset(3 * stride_);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      std::fill(this->axis(axis) + size, this->axis(axis) + stride_, 0.0f);
   }
   void release() {
     values_.release();

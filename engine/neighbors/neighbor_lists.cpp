@@ -18,7 +18,7 @@ constexpr std::size_t k_max_entries = std::numeric_limits<std::uint32_t>::max();
 
 /// What a thread needs for the lists of one block.
 struct Scratch {
-  std::vector<Run> runs;
+  std::vector<PlaceRun> runs;
   std::vector<std::uint32_t> near_cluster;
   std::vector<float> x, y, z;
   std::vector<std::uint32_t> found;  ///< the lists of the block so far

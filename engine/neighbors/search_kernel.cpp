@@ -61,7 +61,7 @@ CellRange cells_within(const SearchInput& in, int axis, const Bounds& from_origi
           cell_of(in, axis, from_origin.high[axis] + reach)};
 }
 
-std::size_t find_runs(const SearchInput& in, const Bounds& box, Run* runs) noexcept {
+std::size_t find_runs(const SearchInput& in, const Bounds& box, PlaceRun* runs) noexcept {
   Bounds from_origin;
   for (int a = 0; a < 3; ++a) {
     from_origin.low[a] = box.low[a] - in.origin[a];
@@ -124,7 +124,7 @@ MALLOW_INLINE std::size_t compress(const Ints& mask, const Ints& values, std::ui
 #endif
 }
 
-std::size_t near_cluster(const SearchInput& in, const Bounds& box, const Run* runs, std::size_t count,
+std::size_t near_cluster(const SearchInput& in, const Bounds& box, const PlaceRun* runs, std::size_t count,
                          std::uint32_t* out) noexcept {
   // Copies that what is written to `out` cannot alias.
   const float *const sx = in.sorted.x, *const sy = in.sorted.y, *const sz = in.sorted.z;

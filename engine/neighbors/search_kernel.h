@@ -23,7 +23,7 @@ struct Bounds {
 };
 
 /// Sorted points [begin, end).
-struct Run {
+struct PlaceRun {
   std::uint32_t begin, end;
 };
 
@@ -32,11 +32,11 @@ struct SearchKernels {
   Bounds (*box_of)(const SearchInput&, std::size_t cluster) noexcept;
   /// Runs of points that hold all whose distance from the box is at most the radius, ascending; returns how
   /// many. runs: room for one a column of the grid.
-  std::size_t (*find_runs)(const SearchInput&, const Bounds& box, Run* runs) noexcept;
+  std::size_t (*find_runs)(const SearchInput&, const Bounds& box, PlaceRun* runs) noexcept;
   /// Of the points in these runs those within the radius of the box, ascending; returns how many. None that
   /// is within the radius of a point in the box is left out. out: room for all of the runs'
   /// points and k_cluster more.
-  std::size_t (*near_cluster)(const SearchInput&, const Bounds& box, const Run* runs, std::size_t count,
+  std::size_t (*near_cluster)(const SearchInput&, const Bounds& box, const PlaceRun* runs, std::size_t count,
                               std::uint32_t* out) noexcept;
   /// Of n points, given by their places and coordinates, those within the radius of a sorted point, in order;
   /// returns how many. out: room for n + k_cluster.

@@ -51,7 +51,9 @@ void ParticleStore::permute(std::size_t begin, std::span<const std::uint32_t> or
     parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
       for (std::size_t k = first; k < last; ++k) scratch[k] = values[begin + order[k]];
     });
-    std::copy_n(scratch, n, values + begin);
+    parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
+      std::copy(scratch + first, scratch + last, values + begin + first);
+    });
   };
   for (VectorColumn* column : {&position, &velocity})
     for (std::size_t a = 0; a < 3; ++a) gather(column->axis(a), next_position.axis(a));

@@ -1,33 +1,30 @@
+#include "shape_matching/regions.h"
+
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.h"
+#include "shape_matching/moment_kernels.h"
 #include "shape_matching/shape_matching.h"
 
 namespace mallow {
 namespace {
 
-/// Lists of all particles within the region radius of each particle.
-void search(int threads, InstructionLevel level, CellGrid& grid, const ShapeMatching& shape,
-            NeighborLists& lists) {
-  const std::size_t n = shape.reference.size();
-  build_cell_grid(shape.reference, 0, n, shape.region_radius, threads, grid);
-  // The reference shape before this one had about as many pairs.
-  const auto capacity = static_cast<std::size_t>(1.1 * shape.average_neighbors * static_cast<double>(n));
-  build_neighbor_lists(grid, shape.region_radius, threads, level, lists, capacity);
-  // The grid may order the particles of a cell border otherwise than they lie (rounding), so go through its
-  // order.
-  const std::uint32_t* const order = grid.order.data();
-  for (std::size_t k = 0; k < lists.indices.size(); ++k) {
-    std::uint32_t& index = lists.indices[k];
-    if (index < n) index = order[index];
+/// Largest trace of a region's moments, in W |c̄|², that rounding alone can leave where all its particles are
+/// at one place.
+constexpr double k_no_extent = 1e-13;
+
+/// Width of columns: the spacing of the particles, or of as many spread evenly over their bounds.
+float column_width(const ShapeMatching& shape) {
+  if (shape.spacing > 0) return shape.spacing;
+  const VectorColumn& x = shape.reference;
+  double volume = 1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto [low, high] = std::minmax_element(x.axis(a), x.axis(a) + x.size());
+    volume *= std::max(static_cast<double>(*high) - static_cast<double>(*low),
+                       static_cast<double>(shape.region_radius));
   }
-  Column<std::uint32_t> begin_of(n), count_of(n);
-  for (std::size_t s = 0; s < n; ++s) {
-    begin_of[order[s]] = lists.begin[s];
-    count_of[order[s]] = lists.count[s];
-  }
-  lists.begin.swap(begin_of);
-  lists.count.swap(count_of);
+  return static_cast<float>(std::cbrt(volume / static_cast<double>(x.size())));
 }
 
 /// 32 well-mixed bits of a number (Mueller's integer hash).
@@ -37,79 +34,126 @@ std::uint32_t scattered(std::uint32_t x) {
   return x ^ (x >> 16);
 }
 
-/// The particles that own regions, ascending.
-std::vector<std::uint32_t> choose_owners(const NeighborLists& near, std::uint32_t stride) {
-  std::vector<std::uint32_t> owners;
-  const auto drawn = [&](std::uint32_t i) { return is_drawn(i, stride); };
-  for (std::uint32_t i = 0; i < near.count.size(); ++i) {
-    const std::span<const std::uint32_t> list = near.of(i);
-    // i is in j's region where j is in i's list: distances are symmetric to the bit. A drawn i is in its own.
-    if (drawn(i) || std::none_of(list.begin(), list.end(), drawn)) owners.push_back(i);
-  }
-  return owners;
+bool any_drawn(std::span<const Run> runs, std::uint32_t stride) {
+  for (const Run& run : runs)
+    for (std::uint32_t k = 0; k < run.count; ++k)
+      if (is_drawn(run.first + k, stride)) return true;
+  return false;
 }
 
-/// Lists behind each other, without space between.
-void append(std::span<const std::uint32_t> list, std::size_t row, NeighborLists& lists) {
-  lists.begin[row] = static_cast<std::uint32_t>(lists.total);
-  lists.count[row] = static_cast<std::uint32_t>(list.size());
-  std::copy(list.begin(), list.end(), lists.indices.data() + lists.total);
-  lists.total += list.size();
-}
-
-void resize(std::size_t rows, std::size_t entries, NeighborLists& lists) {
-  lists.begin.resize(rows);
-  lists.count.resize(rows);
-  lists.indices.resize(entries);
-  lists.total = 0;
-}
-
-/// Keeps the lists of the owners, and turns them around for the particles.
-void keep_owned(const NeighborLists& near, const std::vector<std::uint32_t>& owners, ShapeMatching& shape) {
-  const std::size_t n = near.count.size();
-  constexpr std::uint32_t k_none = 0xffffffff;
-  std::vector<std::uint32_t> region_of(n, k_none);
-  std::size_t entries = 0;
-  for (std::uint32_t j = 0; j < owners.size(); ++j) {
-    region_of[owners[j]] = j;
-    entries += near.count[owners[j]];
-  }
-  resize(owners.size(), entries, shape.regions);
-  for (std::size_t j = 0; j < owners.size(); ++j) append(near.of(owners[j]), j, shape.regions);
-  resize(n, entries, shape.memberships);
-  std::vector<std::uint32_t> mine;
-  for (std::size_t i = 0; i < n; ++i) {
-    mine.clear();
-    for (const std::uint32_t j : near.of(i))
-      if (region_of[j] != k_none) mine.push_back(region_of[j]);
-    append(mine, i, shape.memberships);
-  }
-}
-
-/// W_j, c̄_j and B_j of the regions [begin, end). `owners`: empty where every particle is one.
-void measure_regions(const std::vector<std::uint32_t>& owners, std::size_t begin, std::size_t end,
-                     ShapeMatching& shape) {
-  for (std::size_t j = begin; j < end; ++j) {
-    // Relative to the owner and in double: exact enough that no step needs to do it again.
-    const Eigen::Vector3d owner = shape.reference.get(owners.empty() ? j : owners[j]).cast<double>();
-    double weight = 0;
-    Eigen::Vector3d first(0, 0, 0);
-    Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
-    for (const std::uint32_t i : shape.regions.of(j)) {
-      const Eigen::Vector3d d = shape.reference.get(i).cast<double>() - owner;
-      const double w = static_cast<double>(shape.weight[i]);
-      weight += w;
-      first += w * d;
-      second += w * d * d.transpose();
+/// The particles that own regions, and how many regions those before each particle own.
+void choose_owners(std::uint32_t stride, int threads, RegionScratch& scratch) {
+  const std::size_t n = scratch.near.count.size();
+  Column<std::uint32_t>& first_region = scratch.first_region;
+  first_region.resize_unset(n + 1);
+  scratch.block_begin.resize((n + k_block - 1) / k_block);
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t owners = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      first_region[i] = owners;
+      // i is in j's region where j is in i's list. A drawn i is in its own.
+      owners += is_drawn(static_cast<std::uint32_t>(i), stride) || !any_drawn(scratch.near.of(i), stride);
     }
-    const Eigen::Vector3d offset = first / weight;
-    second -= weight * offset * offset.transpose();
-    shape.region_weight[j] = static_cast<float>(weight);
-    shape.center.set(j, (owner + offset).cast<float>());
-    const double entries[6] = {second(0, 0), second(1, 1), second(2, 2),
-                               second(1, 2), second(0, 2), second(0, 1)};
-    for (std::size_t k = 0; k < 6; ++k) shape.moment[k][j] = static_cast<float>(entries[k]);
+    scratch.block_begin[begin / k_block] = owners;
+  });
+  std::uint32_t total = 0;
+  for (std::uint32_t& block : scratch.block_begin) {
+    const std::uint32_t owners = block;
+    block = total;
+    total += owners;
   }
+  first_region[n] = total;
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) first_region[i] += scratch.block_begin[begin / k_block];
+  });
+  scratch.owners.resize_unset(total);
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (first_region[i] < first_region[i + 1])
+        scratch.owners[first_region[i]] = static_cast<std::uint32_t>(i);
+  });
+}
+
+/// Turns the lists of near particles into those of the regions that they own: what is consecutive stays so.
+/// Reads and writes each list in its place.
+void turn_around(int threads, RegionScratch& scratch) {
+  RunLists& lists = scratch.near;
+  const Column<std::uint32_t>& first_region = scratch.first_region;
+  parallel_for(threads, lists.count.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Run* const runs = lists.runs.data() + lists.begin[i];
+      std::uint32_t count = 0;
+      for (std::uint32_t r = 0; r < lists.count[i]; ++r) {
+        const std::uint32_t from = first_region[runs[r].first],
+                            to = first_region[runs[r].first + runs[r].count];
+        if (from == to) continue;
+        if (count > 0 && runs[count - 1].first + runs[count - 1].count == from)
+          runs[count - 1].count += to - from;
+        else
+          runs[count++] = {from, to - from};
+      }
+      lists.count[i] = count;
+    }
+  });
+}
+
+/// w_i, from how many regions a particle is in; Σ |N_i| of all particles, whatever the stride.
+std::size_t weigh_particles(bool every, int threads, const RegionScratch& scratch, ShapeMatching& shape) {
+  const RunLists& near = scratch.near;
+  return parallel_reduce(
+      threads, near.count.size(), shape.partial_count, std::size_t{0},
+      [&](std::size_t begin, std::size_t end) {
+        std::size_t sum = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+          std::uint32_t memberships = every ? near.members[i] : 0;
+          if (!every)
+            for (const Run& run : near.of(i))
+              memberships += scratch.first_region[run.first + run.count] - scratch.first_region[run.first];
+          shape.weight[i] = 1.0f / static_cast<float>(memberships);
+          sum += near.members[i];
+        }
+        return sum;
+      },
+      [](std::size_t a, std::size_t b) { return a + b; });
+}
+
+/// W_j, c̄_j and B_j of the regions [begin, end).
+void measure_regions(std::size_t begin, std::size_t end, const MomentKernels& kernels,
+                     const double* moment_rows, const RegionScratch& scratch, ShapeMatching& shape) {
+  for (std::size_t j = begin; j < end; ++j) {
+    double s[k_moment_row];
+    const std::span<const Run> runs = scratch.near.of(scratch.owners.empty() ? j : scratch.owners[j]);
+    kernels.sum_runs(moment_rows, runs.data(), runs.size(), s);
+    const double weight = s[0];
+    // In double, what cancels here is less than what the single precision of positions has lost.
+    const Eigen::Vector3d center = Eigen::Vector3d(s[1], s[2], s[3]) / weight;
+    double moment[6] = {s[4] - weight * center[0] * center[0], s[5] - weight * center[1] * center[1],
+                        s[6] - weight * center[2] * center[2], s[7] - weight * center[1] * center[2],
+                        s[8] - weight * center[0] * center[2], s[9] - weight * center[0] * center[1]};
+    if (moment[0] + moment[1] + moment[2] < k_no_extent * weight * center.squaredNorm())
+      std::fill_n(moment, 6, 0.0);
+    shape.region_weight[j] = static_cast<float>(weight);
+    shape.center.set(j, center.cast<float>());
+    for (std::size_t k = 0; k < 6; ++k) shape.moment[k][j] = static_cast<float>(moment[k]);
+  }
+}
+
+/// Room for the sums of n particles and of regions, whose rotations start from none.
+void make_room(std::size_t n, std::size_t regions, int threads, ShapeMatching& shape) {
+  for (Column<float>& column : shape.rotation) column.resize_unset(regions);
+  // Also the padding, where a zero quaternion would have no direction.
+  parallel_for(threads, padded(regions), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = 0; k < 4; ++k)
+      std::fill(shape.rotation[k].data() + begin, shape.rotation[k].data() + end, k == 3 ? 1.0f : 0.0f);
+  });
+  // Behind the last row rows of zeros, for runs that would reach beyond it.
+  shape.sums.resize_unset((regions + k_longest_run) * k_row);
+  std::fill(shape.sums.data() + regions * k_row, shape.sums.end(), 0.0f);
+  shape.undecided.resize_unset(regions);
+  const std::size_t of_regions = shape.by_particle().lengths.levels;
+  shape.table.resize_unset(
+      std::max(n * shape.regions.lengths.levels, of_regions > 1 ? regions * of_regions : 0) * k_row);
+  shape.pull.resize_unset(n);
 }
 
 }  // namespace
@@ -120,64 +164,86 @@ bool is_drawn(std::uint32_t row, std::uint32_t stride) {
 
 std::size_t ShapeMatching::bytes() const {
   std::size_t sum = reference.bytes() + regions.bytes() + memberships.bytes() + weight.bytes() +
-                    region_weight.bytes() + center.bytes() + rows.bytes() + sums.bytes() + undecided.bytes() +
-                    pull.bytes();
+                    region_weight.bytes() + center.bytes() + table.bytes() + sums.bytes() +
+                    undecided.bytes() + pull.bytes();
   for (const Column<float>& column : moment) sum += column.bytes();
   for (const Column<float>& column : rotation) sum += column.bytes();
   return sum;
 }
 
-void update_reference(const VectorColumn& positions, std::size_t begin, std::size_t end,
+void update_reference(const VectorColumn& positions, std::size_t begin, std::size_t end, int threads,
                       ShapeMatching& shape) {
   const std::size_t n = end - begin;
-  Eigen::Vector3d mean(0, 0, 0);
-  for (std::size_t i = begin; i < end; ++i) mean += positions.get(i).cast<double>();
-  mean /= static_cast<double>(n);
-  shape.reference.resize(n);
-  shape.total_moment = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d x = positions.get(begin + i).cast<double>() - mean;
-    shape.total_moment += x.squaredNorm();
-    shape.reference.set(i, x.cast<float>());
-  }
-  shape.total_moment /= static_cast<double>(n);
+  using Sums = std::array<double, 12>;
+  const auto add = [](Sums a, const Sums& b) {
+    for (std::size_t k = 0; k < 3; ++k) a[k] += b[k];
+    return a;
+  };
+  Sums mean = parallel_reduce(
+      threads, n, shape.partial, Sums{},
+      [&](std::size_t first, std::size_t last) {
+        Sums sum{};
+        for (std::size_t a = 0; a < 3; ++a)
+          for (std::size_t i = begin + first; i < begin + last; ++i)
+            sum[a] += static_cast<double>(positions.axis(a)[i]);
+        return sum;
+      },
+      add);
+  for (double& m : mean) m /= static_cast<double>(n);
+  shape.reference.resize_unset(n);
+  const Sums squares = parallel_reduce(
+      threads, n, shape.partial, Sums{},
+      [&](std::size_t first, std::size_t last) {
+        Sums sum{};
+        for (std::size_t a = 0; a < 3; ++a)
+          for (std::size_t i = first; i < last; ++i) {
+            const double x = static_cast<double>(positions.axis(a)[begin + i]) - mean[a];
+            sum[a] += x * x;
+            shape.reference.axis(a)[i] = static_cast<float>(x);
+          }
+        return sum;
+      },
+      add);
+  shape.total_moment = (squares[0] + squares[1] + squares[2]) / static_cast<double>(n);
   shape.frame = {};
   shape.built = false;
 }
 
-void build_regions(int threads, InstructionLevel level, CellGrid& grid, ShapeMatching& shape) {
+void sort_reference(int threads, ColumnOrder& columns, ShapeMatching& shape) {
+  order_by_columns(shape.reference, 0, shape.reference.size(), column_width(shape), threads, columns);
+  shape.reference.swap(columns.sorted);
+}
+
+void build_regions(int threads, InstructionLevel level, RegionScratch& scratch, ShapeMatching& shape) {
   const std::size_t n = shape.reference.size();
-  std::vector<std::uint32_t> owners;
-  if (shape.region_stride == 1) {
-    search(threads, level, grid, shape, shape.regions);
-    shape.average_neighbors = shape.regions.average();
-  } else {
-    NeighborLists near;
-    search(threads, level, grid, shape, near);
-    shape.average_neighbors = near.average();
-    owners = choose_owners(near, static_cast<std::uint32_t>(shape.region_stride));
-    keep_owned(near, owners, shape);
+  const bool every = shape.region_stride == 1;
+  const MomentKernels& kernels = MALLOW_SELECT(level, moment_kernels);
+  order_by_columns(shape.reference, 0, n, column_width(shape), threads, scratch.columns);
+  find_runs(scratch.columns, shape.region_radius, threads, scratch.near);
+  scratch.owners.resize(0);
+  if (!every) choose_owners(static_cast<std::uint32_t>(shape.region_stride), threads, scratch);
+  const std::size_t regions = every ? n : scratch.owners.size();
+  encode(scratch.near, scratch.owners.span(), n, threads, shape.regions);
+  shape.weight.resize_unset(n);
+  shape.average_neighbors =
+      static_cast<double>(weigh_particles(every, threads, scratch, shape)) / static_cast<double>(n);
+  // The table is not in use yet, and lends its memory.
+  shape.table.resize_unset(std::max(shape.table.size(), n * k_moment_row * sizeof(double) / sizeof(float)));
+  auto* const moment_rows = reinterpret_cast<double*>(shape.table.data());
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    kernels.write_rows(raw(std::as_const(shape.reference)), shape.weight.data(), begin, end, moment_rows);
+  });
+  shape.region_weight.resize_unset(regions);
+  shape.center.resize_unset(regions);
+  for (Column<float>& column : shape.moment) column.resize_unset(regions);
+  parallel_for(threads, regions, [&](std::size_t begin, std::size_t end) {
+    measure_regions(begin, end, kernels, moment_rows, scratch, shape);
+  });
+  if (!every) {
+    turn_around(threads, scratch);
+    encode(scratch.near, {}, regions, threads, shape.memberships);
   }
-
-  const std::size_t regions = shape.regions.count.size();
-  shape.region_weight.resize(regions);
-  shape.center.resize(regions);
-  for (Column<float>& column : shape.moment) column.resize(regions);
-  for (std::size_t k = 0; k < 4; ++k) {
-    shape.rotation[k].resize(regions);
-    // Also the padding, where a zero quaternion would have no direction.
-    std::fill_n(shape.rotation[k].data(), padded(regions), k == 3 ? 1.0f : 0.0f);
-  }
-  shape.sums.resize(regions * k_row);
-  shape.undecided.resize(regions);
-  shape.weight.resize(n);
-  shape.rows.resize(n * k_row);
-  shape.pull.resize(n);
-
-  const Column<std::uint32_t>& memberships = owners.empty() ? shape.regions.count : shape.memberships.count;
-  for (std::size_t i = 0; i < n; ++i) shape.weight[i] = 1.0f / static_cast<float>(memberships[i]);
-  parallel_for(threads, regions,
-               [&](std::size_t begin, std::size_t end) { measure_regions(owners, begin, end, shape); });
+  make_room(n, regions, threads, shape);
   shape.built = true;
 }
 

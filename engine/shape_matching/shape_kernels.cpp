@@ -16,7 +16,7 @@ void displacement(const ShapeInput& in, std::size_t i, float* u) {
 
 void write_rows(const ShapeInput& in, std::size_t begin, std::size_t end, float* rows) noexcept {
   for (std::size_t i = begin; i < end; ++i) {
-    float* const row = rows + i * k_row;
+    float* const row = rows + (i - begin) * k_row;
     const float x = in.reference.x[i], y = in.reference.y[i], z = in.reference.z[i];
     float u[3];
     displacement(in, i, u);
@@ -49,10 +49,15 @@ void add_row(const float* rows, std::uint32_t i, Part* sum) {
 
 /// Adds the rows of a list. Four accumulators in a fixed order hide the latency of the addition. sum: on a
 /// 64-byte boundary, as rows are.
-void sum_rows(const float* rows, const std::uint32_t* list, std::uint32_t n, float* sum) {
+void sum_rows(const float* rows, const RegionLists& lists, std::size_t which, float* sum) {
+  const std::uint32_t* const list = lists.entries + lists.begin[which];
+  const std::uint32_t n = lists.count[which];
   Part a[k_parts] = {}, b[k_parts] = {}, c[k_parts] = {}, d[k_parts] = {};
   std::uint32_t k = 0;
   for (; k + 4 <= n; k += 4) {
+    if (lists.prefetch)
+      for (std::uint32_t ahead = k + k_prefetch; ahead < k + k_prefetch + 4; ++ahead)
+        __builtin_prefetch(rows + static_cast<std::size_t>(list[ahead]) * k_row);
     add_row(rows, list[k], a);
     add_row(rows, list[k + 1], b);
     add_row(rows, list[k + 2], c);
@@ -62,18 +67,32 @@ void sum_rows(const float* rows, const std::uint32_t* list, std::uint32_t n, flo
   for (std::size_t p = 0; p < k_parts; ++p) reinterpret_cast<Part*>(sum)[p] = (a[p] + b[p]) + (c[p] + d[p]);
 }
 
-void sum_regions(const ShapeInput& in, std::size_t begin, std::size_t end, const float* rows,
-                 float* sums) noexcept {
-  for (std::size_t j = begin; j < end; ++j)
-    sum_rows(rows, in.regions.indices + in.regions.begin[j], in.regions.count[j], sums + j * k_row);
+void sum_runs(const float* rows, std::size_t count, const RunLengths& lengths, std::size_t all,
+              float* table) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    Part sum[k_parts] = {};
+    const Part* row = reinterpret_cast<const Part*>(rows + i * k_row);
+    Part* entry = reinterpret_cast<Part*>(table + i * k_row);
+    std::uint32_t length = 0;
+    for (std::uint32_t level = 0; level < lengths.levels; ++level, entry += all * k_parts) {
+      for (; length < lengths.length[level]; ++length, row += k_parts)
+        for (std::size_t p = 0; p < k_parts; ++p) sum[p] += row[p];
+      for (std::size_t p = 0; p < k_parts; ++p) entry[p] = sum[p];
+    }
+  }
 }
 
-void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float* sums,
+void sum_regions(const ShapeInput& in, std::size_t begin, std::size_t end, const float* table,
+                 float* sums) noexcept {
+  for (std::size_t j = begin; j < end; ++j) sum_rows(table, in.regions, j, sums + j * k_row);
+}
+
+void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float* table,
            Vectors pull) noexcept {
   for (std::size_t i = begin; i < end; ++i) {
     alignas(64) float s[k_row];
     float u[3];
-    sum_rows(sums, in.memberships.indices + in.memberships.begin[i], in.memberships.count[i], s);
+    sum_rows(table, in.memberships, i, s);
     displacement(in, i, u);
     const float x = in.reference.x[i], y = in.reference.y[i], z = in.reference.z[i], w = in.weight[i];
     pull.x[i] = w * (s[0] * x + s[1] * y + s[2] * z + s[9]) - u[0];
@@ -85,6 +104,6 @@ void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float
 }  // namespace
 
 extern const ShapeKernels shape_kernels;
-const ShapeKernels shape_kernels = {write_rows, sum_regions, goals};
+const ShapeKernels shape_kernels = {write_rows, sum_runs, sum_regions, goals};
 
 }  // namespace mallow::MALLOW_LEVEL

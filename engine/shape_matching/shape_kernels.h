@@ -7,12 +7,30 @@ namespace mallow {
 
 /// Floats of a row: twelve sums and padding, one cache line, so that a neighbour costs one load and one add.
 inline constexpr std::size_t k_row = 16;
+/// Consecutive rows.
+struct Run {
+  std::uint32_t first, count;
+};
+/// Rows in the longest run that a table has a sum of, and how many lengths it can have.
+inline constexpr std::uint32_t k_longest_run = 32;
+inline constexpr std::uint32_t k_max_levels = 16;
+/// Lengths of the runs that a table of rows has sums of, ascending from 1: entry l rows + i of the table is
+/// the sum of the length[l] rows from i on. Entries of one length lie together: lists of neighbouring rows
+/// read neighbouring entries.
+struct RunLengths {
+  std::uint32_t length[k_max_levels] = {1};
+  std::uint32_t levels = 1;
+};
 
-/// Lists behind each other in one array.
+/// Entries of a list between the one whose row is asked for from memory and the one that is added: as much
+/// time as memory takes.
+inline constexpr std::uint32_t k_prefetch = 96;
+/// Lists of the entries of a table of rows, behind each other in one array.
 struct RegionLists {
   const std::uint32_t* begin;
   const std::uint32_t* count;
-  const std::uint32_t* indices;
+  const std::uint32_t* entries;  ///< and k_prefetch more, of any entries
+  bool prefetch;                 ///< the table is larger than the caches near the core
 };
 
 /// The regions of one group: particle i is in the regions N_i, region j holds the particles N_j. Where every
@@ -43,13 +61,17 @@ struct ShapeInput {
 };
 
 struct ShapeKernels {
-  /// Row i: w u x̄ᵀ (row by row), w u.
+  /// Rows of particles [begin, end), from `rows` on: w u x̄ᵀ (row by row), w u.
   void (*write_rows)(const ShapeInput&, std::size_t begin, std::size_t end, float* rows) noexcept;
-  /// sums row j, of region j: Σ_{i∈N_j} of rows.
-  void (*sum_regions)(const ShapeInput&, std::size_t begin, std::size_t end, const float* rows,
+  /// The table entries of the first `count` rows, those of one length `all` entries behind those of the one
+  /// before. Reads longest length − 1 rows more: zero beyond the last.
+  void (*sum_runs)(const float* rows, std::size_t count, const RunLengths& lengths, std::size_t all,
+                   float* table) noexcept;
+  /// sums row j, of region j: Σ_{i∈N_j} of rows, by a table of them.
+  void (*sum_regions)(const ShapeInput&, std::size_t begin, std::size_t end, const float* table,
                       float* sums) noexcept;
-  /// g_i − x_i = w_i (Σ (R_j − R_g) x̄_i + Σ (...)) − u_i. [TK eq. 7]
-  void (*goals)(const ShapeInput&, std::size_t begin, std::size_t end, const float* sums,
+  /// g_i − x_i = w_i (Σ (R_j − R_g) x̄_i + Σ (...)) − u_i, by a table of the rows of sums. [TK eq. 7]
+  void (*goals)(const ShapeInput&, std::size_t begin, std::size_t end, const float* table,
                 Vectors pull) noexcept;
 };
 MALLOW_DECLARE_LEVELS(ShapeKernels, shape_kernels)

@@ -58,12 +58,12 @@ void read_alphas(Simulation::State& state) {
 }
 
 void take_reference(Simulation::State& state, Group& group) {
-  // In cell order, so that the rows of a region lie near each other.
-  build_cell_grid(state.store.position, group.begin, group.end, group.shape.region_radius, state.threads,
-                  state.region_grid);
-  state.store.permute(group.begin, state.region_grid.order.span(), state.threads);
+  ColumnOrder& columns = state.region_scratch.columns;
+  group.shape.spacing = group.spacing;
+  update_reference(state.store.position, group.begin, group.end, state.threads, group.shape);
+  sort_reference(state.threads, columns, group.shape);
+  state.store.permute(group.begin, columns.order.span(), state.threads);
   state.sph.kept.forget();
-  update_reference(state.store.position, group.begin, group.end, group.shape);
 }
 
 int update_references(Simulation::State& state) {
@@ -76,7 +76,7 @@ int update_references(Simulation::State& state) {
       ++updated;
     }
     if (group.matches_shape() && !group.shape.built)
-      build_regions(state.threads, state.level, state.region_grid, group.shape);
+      build_regions(state.threads, state.level, state.region_scratch, group.shape);
   }
   return updated;
 }

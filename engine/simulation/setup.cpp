@@ -267,7 +267,7 @@ void Simulation::prepare() {
   read_alphas(s);
   for (Group& group : s.groups)
     if (group.matches_shape() && !group.shape.built)
-      build_regions(s.threads, s.level, s.region_grid, group.shape);
+      build_regions(s.threads, s.level, s.region_scratch, group.shape);
   s.prepared = true;
 }
 

@@ -52,7 +52,7 @@ struct Simulation::State {
   std::size_t checked_particles = 0;  ///< ids below were looked at for overlaps
   bool sph_ran = false;               ///< in the last step
   // Scratch.
-  CellGrid region_grid;
+  RegionScratch region_scratch;
   std::vector<Fastest> partial_fastest;
   std::vector<MotionSums> partial_motion;
 
@@ -81,7 +81,7 @@ void move_groups(Simulation::State& state, float time_step);
 /// next positions and velocities become the present ones; time, step and colliders move on.
 void finish_step(Simulation::State& state, float time_step);
 
-/// Sorts the rows of a group into cell order and takes its positions as reference shape.
+/// Takes the positions of a group as its reference shape and sorts its rows for that.
 void take_reference(Simulation::State& state, Group& group);
 
 /// Writes the wall time between laps into a report.

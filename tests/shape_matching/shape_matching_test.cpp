@@ -17,7 +17,7 @@ constexpr int k_strides[] = {1, 2, 4, 8};
 struct World {
   VectorColumn x;
   ShapeMatching shape;
-  CellGrid grid;
+  RegionScratch scratch;
 
   explicit World(std::size_t n = 600, float side = 8, float radius = 2.0f, int stride = 1) : x(n) {
     shape.region_stride = stride;
@@ -34,8 +34,8 @@ struct World {
   }
   void build(float radius) {
     shape.region_radius = radius;
-    update_reference(x, 0, x.size(), shape);
-    build_regions(2, best_instruction_level(), grid, shape);
+    update_reference(x, 0, x.size(), 2, shape);
+    build_regions(2, best_instruction_level(), scratch, shape);
   }
   void match(int threads = 2, InstructionLevel level = best_instruction_level(),
              int iterations = k_enough_iterations) {
@@ -171,13 +171,15 @@ TEST(regions, of_a_stride_are_whole_and_leave_no_particle_out) {
       ASSERT_EQ(shape.center.size(), owners.size());
       Lists memberships(world.x.size());
       for (std::size_t j = 0; j < owners.size(); ++j) {
-        std::vector<std::size_t> region(shape.regions.of(j).begin(), shape.regions.of(j).end());
+        const auto coded = decode(shape.regions, j);
+        std::vector<std::size_t> region(coded.begin(), coded.end());
         std::sort(region.begin(), region.end());
         EXPECT_EQ(region, neighbors[owners[j]]);
         for (const std::size_t i : region) memberships[i].push_back(j);
       }
       for (std::size_t i = 0; i < world.x.size(); ++i) {
-        std::vector<std::size_t> mine(shape.memberships.of(i).begin(), shape.memberships.of(i).end());
+        const auto coded = decode(shape.memberships, i);
+        std::vector<std::size_t> mine(coded.begin(), coded.end());
         std::sort(mine.begin(), mine.end());
         EXPECT_EQ(mine, memberships[i]);
         EXPECT_FALSE(mine.empty());
@@ -206,8 +208,8 @@ TEST(regions, of_every_particle_need_no_second_list) {
   const World every = strided(1), fourth = strided(4);
   EXPECT_EQ(every.shape.regions.count.size(), every.x.size());
   EXPECT_EQ(every.shape.memberships.bytes(), 0u);
-  EXPECT_LT(fourth.shape.regions.total, every.shape.regions.total / 3);
-  EXPECT_EQ(fourth.shape.memberships.total, fourth.shape.regions.total);
+  EXPECT_LT(fourth.shape.regions.members, every.shape.regions.members / 3);
+  EXPECT_EQ(fourth.shape.memberships.members, fourth.shape.regions.members);
   EXPECT_EQ(fourth.shape.average_neighbors, every.shape.average_neighbors);
 }
 
@@ -263,16 +265,16 @@ TEST(rotation, is_the_polar_factor_of_every_region_to_single_precision) {
   for (std::size_t j = 0; j < world.x.size(); ++j) {
     Eigen::Vector3d c(0, 0, 0), cr(0, 0, 0);
     double total = 0;
-    for (const auto i : world.shape.regions.of(j)) {
-      const double w = 1.0 / world.shape.regions.count[i];
+    for (const auto i : decode(world.shape.regions, j)) {
+      const double w = static_cast<double>(world.shape.weight[i]);
       total += w;
       c += w * world.x.get(i).cast<double>();
       cr += w * reference[i];
     }
     Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
-    for (const auto i : world.shape.regions.of(j))
-      a += (world.x.get(i).cast<double>() - c / total) * (reference[i] - cr / total).transpose() /
-           world.shape.regions.count[i];
+    for (const auto i : decode(world.shape.regions, j))
+      a += (world.x.get(i).cast<double>() - c / total) * (reference[i] - cr / total).transpose() *
+           static_cast<double>(world.shape.weight[i]);
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Eigen::Matrix3d r = svd.matrixU() * svd.matrixV().transpose();
     if (r.determinant() < 0 || svd.singularValues()[1] < 1e-2 * svd.singularValues()[0]) continue;

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/column.h"
+#include "core/isa.h"
+#include "particles/column_order.h"
+#include "shape_matching/run_lists.h"
+
+namespace mallow {
+
+struct ShapeMatching;
+
+/// What building regions needs besides them; all groups take turns with it.
+struct RegionScratch {
+  ColumnOrder columns;
+  RunLists near;                       ///< per particle: those within the region radius
+  Column<std::uint32_t> owners;        ///< particles that own a region, ascending; with a stride above 1
+  Column<std::uint32_t> first_region;  ///< per particle: regions of the particles before it
+  std::vector<std::uint32_t> block_begin;
+
+  std::size_t bytes() const { return columns.bytes() + near.bytes() + owners.bytes() + first_region.bytes(); }
+};
+
+/// x̄ ← x of the rows [begin, end) of a store. Rotations start from none; regions are due to be built.
+void update_reference(const VectorColumn& positions, std::size_t begin, std::size_t end, int threads,
+                      ShapeMatching& shape);
+/// Puts the rows of a reference shape in the order in which regions are fast: row k becomes what row
+/// columns.order[k] was. The other columns of the particles have to follow.
+void sort_reference(int threads, ColumnOrder& columns, ShapeMatching& shape);
+/// Regions of the reference shape: owners, lists, weights, centres, moments. One of every region_stride
+/// particles owns a region, and so does every particle that is in none of theirs. Right for any order of the
+/// particles, fast after sort_reference, and owners are spread evenly then.
+void build_regions(int threads, InstructionLevel level, RegionScratch& scratch, ShapeMatching& shape);
+/// Whether a row is drawn to own a region: of every `stride` in a row one is, at a scattered place. Every
+/// third row of a lattice of 12 is whole columns of it, and bent ten times as wrongly as every second or
+/// fourth.
+bool is_drawn(std::uint32_t row, std::uint32_t stride);
+
+}  // namespace mallow

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/column.h"
+#include "particles/column_order.h"
+#include "shape_matching/shape_kernels.h"
+
+namespace mallow {
+
+/// Per row a list of rows as runs, ascending and apart from each other.
+struct RunLists {
+  Column<std::uint32_t> begin;    ///< per row: where its list starts in `runs`
+  Column<std::uint32_t> count;    ///< per row: runs
+  Column<std::uint32_t> members;  ///< per row: rows in its runs
+  Column<Run> runs;               ///< the lists, with unused space between blocks
+
+  std::span<const Run> of(std::size_t row) const { return {runs.data() + begin[row], count[row]}; }
+  std::size_t bytes() const { return begin.bytes() + count.bytes() + members.bytes() + runs.bytes(); }
+};
+
+/// Per point the points within a radius of it, itself included, by their rows: a row is what a point was
+/// before the order sorted it. Where the lists of a block of points lie in `runs` may differ from call to
+/// call, what they hold does not. Of two points each is in the other's list, or none. Throws ConfigError
+/// where there would be 2^32 runs.
+void find_runs(const ColumnOrder& columns, float radius, int threads, RunLists& lists);
+
+}  // namespace mallow

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/column.h"
+#include "shape_matching/run_lists.h"
+#include "shape_matching/shape_kernels.h"
+
+namespace mallow {
+
+/// Lists of rows, to be summed, as lists of entries of a table that holds sums of consecutive rows: entry
+/// l rows + i is the sum of the lengths.length[l] rows from i on. One entry stands for a whole run
+/// where the table has its length, for a part of it otherwise. Unlike differences of running totals the
+/// entries of a list only add, so no digit cancels. A table is worth its lengths only where enough lists use
+/// them; with none but 1 it is the rows themselves, and the lists are plain.
+struct TableLists {
+  Column<std::uint32_t> begin;    ///< per list: where it starts in `entries`
+  Column<std::uint32_t> count;    ///< per list: entries
+  Column<std::uint32_t> entries;  ///< lists behind each other, and some of row 0 for whoever reads ahead
+  std::size_t total = 0;          ///< entries of all lists
+  RunLengths lengths;
+  std::size_t rows = 0;     ///< of the table
+  std::size_t members = 0;  ///< rows in all lists
+
+  // Scratch.
+  using Histogram = std::array<std::uint64_t, k_longest_run + 1>;
+  std::vector<Histogram> partial_runs;
+  std::vector<std::uint32_t> block_begin;
+
+  std::size_t bytes() const { return begin.bytes() + count.bytes() + entries.bytes(); }
+};
+
+/// Chooses the lengths of a table of `rows` rows that make lists cheapest, table included. runs[n]: how many
+/// runs of n rows the lists have; longer ones count as several.
+RunLengths choose_lengths(const TableLists::Histogram& runs, std::size_t rows);
+/// The lists of `owners`, or all where there are none, for a table of `rows` rows.
+void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::size_t rows, int threads,
+            TableLists& coded);
+/// The rows of a list.
+std::vector<std::uint32_t> decode(const TableLists& coded, std::size_t list);
+
+}  // namespace mallow
