@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
-#include <new>
 #include <span>
 #include <type_traits>
 #include <utility>
 
+#include "core/column_memory.h"
 #include "core/raw_columns.h"
 #include "mallow/vec3.h"
 
@@ -61,7 +61,7 @@ class Column {
     size_ = size;
   }
   void release() {
-    if (data_) ::operator delete[](data_, std::align_val_t{64});
+    if (data_) free_column(data_, allocated(capacity_));
     data_ = nullptr;
     size_ = capacity_ = 0;
   }
@@ -81,9 +81,12 @@ class Column {
   std::span<T> span() { return {data_, size_}; }
 
  private:
+  static constexpr std::size_t k_read_ahead = 64;
+  static std::size_t allocated(std::size_t capacity) { return capacity * sizeof(T) + k_read_ahead; }
+
   void grow(std::size_t capacity) {
-    T* data = static_cast<T*>(::operator new[](capacity * sizeof(T) + 64, std::align_val_t{64}));
-    std::memset(static_cast<void*>(data + capacity), 0, 64);
+    T* data = static_cast<T*>(allocate_column(allocated(capacity)));
+    std::memset(static_cast<void*>(data + capacity), 0, k_read_ahead);
     if (size_ > 0) std::memcpy(static_cast<void*>(data), data_, size_ * sizeof(T));
     const std::size_t size = size_;
     release();
