@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "neighbors/search_kernel.h"
 
 namespace mallow {
 namespace {
@@ -82,24 +83,24 @@ struct CellIndex {
   Vec3 origin;
   float inverse_along, inverse_across;
   float last[3];
-  std::uint32_t nx, ny;
+  int dims[3];
 
   explicit CellIndex(const CellGrid& grid)
       : origin(grid.origin),
         inverse_along(1.0f / grid.along),
         inverse_across(1.0f / grid.across),
-        nx(static_cast<std::uint32_t>(grid.dims[0])),
-        ny(static_cast<std::uint32_t>(grid.dims[1])) {
+        dims{grid.dims[0], grid.dims[1], grid.dims[2]} {
     for (std::size_t a = 0; a < 3; ++a) last[a] = static_cast<float>(grid.dims[a] - 1);
   }
   std::uint32_t operator()(float x, float y, float z) const {
     // Clamped before it is rounded down: a coordinate far outside would not fit an integer.
     const auto coordinate = [&](float value, std::size_t a, float inverse) {
-      return static_cast<std::uint32_t>(static_cast<std::int32_t>(
-          std::clamp((value - origin[static_cast<int>(a)]) * inverse, 0.0f, last[a])));
+      return static_cast<int>(std::clamp((value - origin[static_cast<int>(a)]) * inverse, 0.0f, last[a]));
     };
-    return (coordinate(z, 2, inverse_across) * ny + coordinate(y, 1, inverse_across)) * nx +
-           coordinate(x, 0, inverse_along);
+    const std::size_t column =
+        column_of(dims, coordinate(y, 1, inverse_across), coordinate(z, 2, inverse_across));
+    return static_cast<std::uint32_t>(column * static_cast<std::size_t>(dims[0])) +
+           static_cast<std::uint32_t>(coordinate(x, 0, inverse_along));
   }
 };
 

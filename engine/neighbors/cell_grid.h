@@ -9,11 +9,11 @@
 
 namespace mallow {
 
-/// Points sorted into the cells of a box, x fastest, then y, then z: the cells of one y and z are a column of
-/// the grid, and its points from any x to any other are one run. Columns are two spacings wide and cells half
-/// a spacing long, so that eight consecutive points of a column, a cluster, lie in about a cube of two
-/// spacings. Points outside of the covered box are counted to the nearest cell of its border, which keeps
-/// searches right however far a point strays, and memory bounded.
+/// Points sorted into the cells of a box, x fastest: the cells of one y and z are a column of the grid, and
+/// its points from any x to any other are one run. Columns are two spacings wide and cells half a spacing
+/// long, so that eight consecutive points of a column, a cluster, lie in about a cube of two spacings. Points
+/// outside of the covered box are counted to the nearest cell of its border, which keeps searches right
+/// however far a point strays, and memory bounded.
 struct CellGrid {
   /// Typical distance of a point from the next [m], which the size of the cells follows; 0: half the radius.
   /// Sets how fast searches are, not what they find.

@@ -68,16 +68,15 @@ std::size_t find_runs(const SearchInput& in, const Bounds& box, PlaceRun* runs) 
     from_origin.high[a] = box.high[a] - in.origin[a];
   }
   const float squared_reach = in.reach * in.reach;
-  const auto nx = static_cast<std::size_t>(in.dims[0]), ny = static_cast<std::size_t>(in.dims[1]);
+  const auto nx = static_cast<std::size_t>(in.dims[0]);
   const CellRange slices = cells_within(in, 2, from_origin, in.reach);
   std::size_t count = 0;
   for (int z = slices.first; z <= slices.last; ++z) {
     const float squared_y = squared_reach - squared_distance(in, 2, from_origin, z);
     if (squared_y < 0) continue;
     const CellRange rows = cells_within(in, 1, from_origin, __builtin_sqrtf(squared_y));
-    const std::uint32_t* column =
-        in.cell_start + (static_cast<std::size_t>(z) * ny + static_cast<std::size_t>(rows.first)) * nx;
-    for (int y = rows.first; y <= rows.last; ++y, column += nx) {
+    for (int y = rows.first; y <= rows.last; ++y) {
+      const std::uint32_t* const column = in.cell_start + column_of(in.dims, y, z) * nx;
       const float squared_x = squared_y - squared_distance(in, 1, from_origin, y);
       // The last bit of a root may have let in a row beyond the reach.
       const CellRange cells =

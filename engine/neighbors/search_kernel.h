@@ -5,6 +5,18 @@
 
 namespace mallow {
 
+/// Columns of a grid lie in strips of this many, each as long as the grid in z: what a cluster's neighbours
+/// lie in stays in the cache from one column to the next where a whole slice of the grid would not.
+inline constexpr int k_strip = 8;
+
+/// Place of a column among all. Static, so that every kernel file has its own (core/isa.h).
+static inline std::size_t column_of(const int* dims, int y, int z) {
+  const int strip = y / k_strip, rest = dims[1] - strip * k_strip, width = rest < k_strip ? rest : k_strip;
+  return static_cast<std::size_t>(strip * k_strip) * static_cast<std::size_t>(dims[2]) +
+         static_cast<std::size_t>(z) * static_cast<std::size_t>(width) +
+         static_cast<std::size_t>(y % k_strip);
+}
+
 /// Sorted points, their cells and clusters, as CellGrid holds them.
 struct SearchInput {
   ConstVectors sorted;
@@ -30,10 +42,10 @@ struct PlaceRun {
 struct SearchKernels {
   /// The box of a cluster's points.
   Bounds (*box_of)(const SearchInput&, std::size_t cluster) noexcept;
-  /// Runs of points that hold all whose distance from the box is at most the radius, ascending; returns how
+  /// Runs of points that hold all whose distance from the box is at most the radius; returns how
   /// many. runs: room for one a column of the grid.
   std::size_t (*find_runs)(const SearchInput&, const Bounds& box, PlaceRun* runs) noexcept;
-  /// Of the points in these runs those within the radius of the box, ascending; returns how many. None that
+  /// Of the points in these runs those within the radius of the box, in order; returns how many. None that
   /// is within the radius of a point in the box is left out. out: room for all of the runs'
   /// points and k_cluster more.
   std::size_t (*near_cluster)(const SearchInput&, const Bounds& box, const PlaceRun* runs, std::size_t count,
