@@ -13,6 +13,7 @@ StepReport Simulation::step() {
 
   read_alphas(s);                                               // time -> alpha
   report.updated_references = update_references(s);             // |a_ext| -> x̄, regions       [TK 3.2, eq. 14]
+  sort_fluids(s);                                               // rows of fluids -> cell order
   timer.lap(Phase::reference_update);
 
   s.sph_ran = s.needs_sph();

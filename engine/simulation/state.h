@@ -53,6 +53,7 @@ struct Simulation::State {
   bool sph_ran = false;               ///< in the last step
   // Scratch.
   RegionScratch region_scratch;
+  Column<std::uint32_t> fluid_order;
   std::vector<Fastest> partial_fastest;
   std::vector<MotionSums> partial_motion;
 
@@ -71,6 +72,9 @@ void read_alphas(Simulation::State& state);
 /// mean_external -> reference shapes that give way, their rows sorted; regions that are due. Returns how many
 /// gave way. [TK 3.2, model 6]
 int update_references(Simulation::State& state);
+/// Rows of groups without a reference shape into the cell order of the last neighbour search, now and then:
+/// what is near in space is near in memory.
+void sort_fluids(Simulation::State& state);
 /// positions, velocities -> user accelerations.
 void call_force(Simulation::State& state);
 /// velocities, accelerations -> Δt, with V in the report. [TK eq. 12, model 3] Throws StepError.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -168,6 +169,41 @@ TEST(region_stride, owns_fewer_regions_in_less_memory_and_counts_the_same_neighb
   Simulation fluid(config());
   fluid.add_body(cube(3), Material{.alpha = 1});
   EXPECT_EQ(fluid.info().groups[0].regions, 0u);
+}
+
+TEST(fluids, are_sorted_in_memory_and_nobody_is_mixed_up) {
+  Body mixed = cube(8);
+  std::shuffle(mixed.positions.begin(), mixed.positions.end(), std::mt19937(1));
+  Simulation s(config());
+  s.add_body(cube(5, {20, 0, 0}), Material{.alpha = 0.5f, .pressure_coefficient = 0, .viscosity = 0});
+  const GroupId fluid =
+      s.add_body(mixed, Material{.alpha = 1, .pressure_coefficient = 0, .viscosity = 0}, "fluid");
+  s.pin(Aabb{{0, 0, 0}, {1, 8, 8}}, {0, 0, 1});
+  const std::vector<Vec3> start = s.positions_by_id();
+  const auto mean_jump = [&] {
+    double sum = 0;
+    const Simulation::Rows rows = s.rows(fluid);
+    for (std::size_t row = rows.begin + 1; row < rows.end; ++row)
+      sum += static_cast<double>((s.positions()[row] - s.positions()[row - 1]).norm());
+    return sum / static_cast<double>(rows.end - rows.begin - 1);
+  };
+  const double before = mean_jump();
+  double fallen = 0, risen = 0, speed = 0;
+  for (int k = 0; k < 65; ++k) {
+    const double step = s.step().time_step;
+    speed += step * static_cast<double>(s.config().gravity.z());
+    fallen += step * speed;
+    risen += step;
+  }
+  EXPECT_GT(before, 4);
+  EXPECT_LT(mean_jump(), 3);
+  const std::vector<Vec3> end = s.positions_by_id();
+  for (std::size_t id = 0; id < start.size(); ++id) {
+    const bool pinned = start[id].x() < 1;
+    const Vec3 moved = end[id] - start[id];
+    EXPECT_LT(moved.head<2>().norm(), 1e-5f) << id;
+    EXPECT_NEAR(static_cast<double>(moved.z()), pinned ? risen : fallen, 1e-4) << id;
+  }
 }
 
 TEST(alpha, that_changes_turns_phases_on_and_off) {
