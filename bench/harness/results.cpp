@@ -5,6 +5,7 @@
 
 #include "mallow/failure.h"
 #include "mallow/files.h"
+#include "mallow/instruction_level.h"
 #include "mallow/machine.h"
 
 namespace mallow::bench {
@@ -80,18 +81,6 @@ std::string table_cell(const Json& value, int decimals) {
 }
 
 }  // namespace
-
-const char* name(InstructionLevel level) {
-  switch (level) {
-    case InstructionLevel::v4:
-      return "x86-64-v4";
-    case InstructionLevel::v3:
-      return "x86-64-v3";
-    case InstructionLevel::baseline:
-      break;
-  }
-  return "baseline";
-}
 
 Results::Results(std::string command, const Output& output, int threads, Json settings)
     : command_(std::move(command)), folder_(output.folder), json_(output.json) {

@@ -4,14 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/isa.h"
-
 namespace mallow::bench {
 
 using Json = nlohmann::ordered_json;
-
-/// "x86-64-v3", "baseline".
-const char* name(InstructionLevel level);
 
 /// Where a command puts what it measured.
 struct Output {

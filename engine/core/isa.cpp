@@ -2,6 +2,22 @@
 
 namespace mallow {
 
+const char* name(InstructionLevel level) {
+  switch (level) {
+    case InstructionLevel::v4:
+      return "x86-64-v4";
+    case InstructionLevel::v3:
+      return "x86-64-v3";
+    case InstructionLevel::baseline:
+#ifdef MALLOW_X86_LEVELS
+      return "x86-64-v2";
+#else
+      return "baseline";
+#endif
+  }
+  return "no instruction level";
+}
+
 InstructionLevel best_instruction_level() {
 #ifdef MALLOW_X86_LEVELS
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&

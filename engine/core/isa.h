@@ -1,22 +1,10 @@
 #pragma once
 
-namespace mallow {
-
-/// Instruction levels that kernels are compiled for. All give the same bits: fixed lanes, no contraction.
-enum class InstructionLevel {
-  baseline,  ///< x86-64-v2 (SSE 4.2), or what the compiler takes for granted on other machines
-  v3,        ///< x86-64-v3: AVX2
-  v4,        ///< x86-64-v4: AVX-512
-};
-
-/// The highest level this machine has.
-InstructionLevel best_instruction_level();
-
-}  // namespace mallow
+#include "mallow/instruction_level.h"
 
 /// Kernel files are compiled once per level, each into a namespace of its own that this macro names (see
-/// mallow_add_kernels in core/kernels.cmake). They include nothing with inline functions: the linker would
-/// keep one level's copy for all.
+/// mallow_add_kernels in core/kernels.cmake). All levels give the same bits: fixed lanes, no contraction.
+/// They include nothing with inline functions: the linker would keep one level's copy for all.
 #ifndef MALLOW_LEVEL
 #define MALLOW_LEVEL level_baseline
 #endif

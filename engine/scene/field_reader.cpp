@@ -87,6 +87,17 @@ class ValueReader {
     *formulation = static_cast<Formulation>(name - k_formulation_names.begin());
   }
 
+  /// Any level there is: a scene may have been written for another machine, and is looked at on this one.
+  void operator()(InstructionLevel* level) const {
+    const std::string* given = node_.get_if<std::string>();
+    for (const InstructionLevel one : k_instruction_levels) {
+      if (!given || *given != name(one)) continue;
+      *level = one;
+      return;
+    }
+    complain();
+  }
+
   void operator()(AlphaSchedule* alpha) const {
     const Array* keyframes = node_.get_if<Array>();
     const std::size_t problems_before = problems_.count();

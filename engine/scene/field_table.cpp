@@ -51,6 +51,7 @@ struct ValueText {
   std::string operator()(const Formulation* formulation) const {
     return toml_string(k_formulation_names[static_cast<std::size_t>(*formulation)]);
   }
+  std::string operator()(const InstructionLevel* level) const { return toml_string(name(*level)); }
   std::string operator()(const AlphaSchedule* alpha) const {
     const std::vector<AlphaKey>& keys = alpha->keys();
     if (keys.size() == 1 && keys[0].time == 0) return number_text(keys[0].alpha);
@@ -83,6 +84,12 @@ struct Allowed {
   }
   std::string operator()(const Formulation*) const {
     return toml_string(k_formulation_names[0]) + " or " + toml_string(k_formulation_names[1]);
+  }
+  std::string operator()(const InstructionLevel*) const {
+    std::string text;
+    for (const InstructionLevel level : k_instruction_levels)
+      text += (text.empty() ? "one of " : ", ") + toml_string(name(level));
+    return text;
   }
   template <class T>
   std::string operator()(const std::optional<T>*) const {

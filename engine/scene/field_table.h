@@ -32,9 +32,9 @@ constexpr Range between(double lowest, double highest) {
 using Count3 = std::array<int, 3>;
 
 /// Where the value of a field lives; the type says what TOML may hold.
-using Target =
-    std::variant<bool*, int*, std::optional<int>*, float*, std::optional<float>*, Vec3*, std::optional<Vec3>*,
-                 Count3*, std::string*, std::filesystem::path*, AlphaSchedule*, Formulation*>;
+using Target = std::variant<bool*, int*, std::optional<int>*, float*, std::optional<float>*, Vec3*,
+                            std::optional<Vec3>*, Count3*, std::string*, std::filesystem::path*,
+                            AlphaSchedule*, Formulation*, std::optional<InstructionLevel>*>;
 
 /// In place of Field::left_out: a scene without the key is refused.
 inline constexpr char k_required[] = "required";

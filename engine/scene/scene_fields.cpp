@@ -52,6 +52,8 @@ FieldTable fields(SolverConfig& config) {
       {"neighbor_slack", &config.neighbor_slack, between(0, 1), "σ",
        "how much farther neighbour lists reach than needed, so that they are kept until something moved half "
        "of it"},
+      {"instruction_level", &config.instruction_level, k_any, "",
+       "instructions that kernels use; the motion is the same", "the best of the machine"},
   };
 }
 

@@ -52,6 +52,16 @@ void check(const SolverConfig& config, Checks& checks) {
                 config.neighbor_slack >= 0 && config.neighbor_slack <= 1, k_share);
   checks.number("solver.threads", config.threads, config.threads >= 0 && config.threads <= 1024,
                 "0 (what the machine has) to 1024");
+  if (config.instruction_level) check(*config.instruction_level, best_instruction_level(), checks);
+}
+
+void check(InstructionLevel level, InstructionLevel best, Checks& checks) {
+  if (level >= InstructionLevel::baseline && level <= best) return;
+  std::string has;
+  for (const InstructionLevel one : k_instruction_levels)
+    if (one <= best) has += (has.empty() ? "" : ", ") + std::string(name(one));
+  checks.problem("solver.instruction_level",
+                 std::string(name(level)) + " is not allowed: this machine has " + has);
 }
 
 void check(const AlphaSchedule& alpha, Checks& checks) {

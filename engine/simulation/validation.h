@@ -10,6 +10,8 @@ namespace mallow {
 
 /// What the library refuses at its border. Each adds the problems of one value to `checks`.
 void check(const SolverConfig& config, Checks& checks);
+/// best: the highest level the machine has.
+void check(InstructionLevel level, InstructionLevel best, Checks& checks);
 void check(const AlphaSchedule& alpha, Checks& checks);
 void check(const Material& material, Checks& checks);
 void check(const Collider& collider, Checks& checks);

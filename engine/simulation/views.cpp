@@ -105,6 +105,7 @@ SimulationInfo Simulation::info() {
   info.sph = s.needs_sph();
   info.viscosity = info.sph && s.sph.viscous;
   info.cross_group = s.groups.size() > 1;
+  info.instruction_level = s.level;
   info.bytes = s.store.bytes() + s.sph.bytes() + s.fluid_order.bytes() + s.user_acceleration.bytes() +
                s.region_scratch.bytes();
   for (const Group& group : s.groups) {

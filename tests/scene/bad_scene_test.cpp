@@ -32,7 +32,8 @@ const Case k_cases[] = {
     {{.solver = "support_radius = 2.0\nfoo = 1"},
      "scene.toml:3:1: solver: unknown key 'foo'; known are time_step, support_radius, gravity, "
      "update_interval, "
-     "formulation, acoustic_limit, contact_offset, rotation_iterations and neighbor_slack"},
+     "formulation, acoustic_limit, contact_offset, rotation_iterations, neighbor_slack and "
+     "instruction_level"},
     {{.rest = "[colider]"}, "scene.toml:8:2: unknown key 'colider'; did you mean 'collider'?"},
     {{.source = "bax = { count = [2, 2, 2], spacing = 1.0 }\nbox = { count = [2, 2, 2], spacing = 1.0 }"},
      "scene.toml:7:1: body[0]: unknown key 'bax'; did you mean 'box'?"},
@@ -96,6 +97,9 @@ const Case k_cases[] = {
      "scene.toml:3:23: solver.rotation_iterations: 9 is not allowed: a whole number in [0, 8]"},
     {{.solver = "support_radius = 2.0\nneighbor_slack = 1.5"},
      "scene.toml:3:18: solver.neighbor_slack: 1.5 is not allowed: a number in [0, 1]"},
+    {{.solver = "support_radius = 2.0\ninstruction_level = \"avx\""},
+     "scene.toml:3:21: solver.instruction_level: \"avx\" (a string) is not allowed: one of \"" +
+         std::string(name(InstructionLevel::baseline)) + "\", \"x86-64-v3\", \"x86-64-v4\""},
     {{.material = "name = \"jelly\"\nregion_stride = 0"},
      "scene.toml:5:17: material[0].region_stride: 0 is not allowed: a whole number in [1, 2147483647]"},
     {{.material = "name = \"jelly\"\ncolor = [0, 0, 1.5]"},

@@ -21,6 +21,8 @@ acoustic_limit = false
 contact_offset = 0.25
 rotation_iterations = 2
 neighbor_slack = 0.125
+instruction_level = ")" + std::string(name(InstructionLevel::baseline)) +
+                                R"("
 [[material]]
 name = "jelly \"red\""
 alpha = [[0.0, 0.1], [1.5, 1]]
@@ -129,6 +131,7 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_EQ(read.solver.contact_offset, 0.25f);
   EXPECT_EQ(read.solver.rotation_iterations, 2);
   EXPECT_EQ(read.solver.neighbor_slack, 0.125f);
+  EXPECT_EQ(read.solver.instruction_level, InstructionLevel::baseline);
 
   const SceneMaterial& material = read.materials.at(0);
   EXPECT_EQ(material.name, "jelly \"red\"");
@@ -277,10 +280,10 @@ TEST_F(scene, takes_the_short_form_of_an_implicit_shape) {
 }
 
 TEST_F(scene, can_be_overridden) {
-  const Scene read =
-      SceneFixture::read(k_small_scene, {"solver.time_step=0.1", "material[0].alpha=0.5", "run.frames = 10",
-                                         "solver.formulation=printed", "solver.gravity=[0, 0, -1]",
-                                         "body[0].box.count[2]=5", "material.jelly.viscosity=0.25"});
+  const Scene read = SceneFixture::read(
+      k_small_scene, {"solver.time_step=0.1", "material[0].alpha=0.5", "run.frames = 10",
+                      "solver.formulation=printed", "solver.gravity=[0, 0, -1]", "body[0].box.count[2]=5",
+                      "material.jelly.viscosity=0.25", "solver.instruction_level=x86-64-v3"});
   EXPECT_EQ(read.solver.time_step, 0.1f);
   EXPECT_EQ(read.materials[0].material.alpha.at(0), 0.5f);
   EXPECT_EQ(read.run.frames, 10);
@@ -288,6 +291,7 @@ TEST_F(scene, can_be_overridden) {
   EXPECT_EQ(read.solver.gravity, Vec3(0, 0, -1));
   EXPECT_EQ(std::get<Lattice>(read.bodies[0].source).count[2], 5);
   EXPECT_EQ(read.materials[0].material.viscosity, 0.25f);
+  EXPECT_EQ(read.solver.instruction_level, InstructionLevel::v3);
 }
 
 TEST_F(scene, takes_the_last_of_two_overrides) {

@@ -56,6 +56,7 @@ void info(const InfoOptions& options) {
   std::printf("group contact    %s\n", on_off(info.cross_group));
   std::printf("colliders        %zu\n", scene.colliders.size());
   std::printf("pins             %zu\n", scene.pins.size());
+  std::printf("instructions     %s\n", name(info.instruction_level));
   std::printf("memory           %.1f MiB\n", static_cast<double>(info.bytes) / (1024.0 * 1024.0));
   if (scene.run.frame_time) {
     std::printf("frames           %d of %g s\n", scene.run.frames,

@@ -83,6 +83,7 @@ nlohmann::ordered_json to_json(const RunReport& report) {
           {"sph", report.info.sph},
           {"viscosity", report.info.viscosity},
           {"cross_group", report.info.cross_group},
+          {"instruction_level", name(report.info.instruction_level)},
           {"bytes", report.info.bytes},
           {"frames", report.frames},
           {"steps", report.steps},

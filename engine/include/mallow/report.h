@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "mallow/instruction_level.h"
+
 namespace mallow {
 
 /// The phases of a step, in the order in which they run.
@@ -52,10 +54,11 @@ struct GroupInfo {
 struct SimulationInfo {
   std::size_t particles = 0;
   std::vector<GroupInfo> groups;
-  bool sph = false;          ///< SPH sums run
-  bool viscosity = false;    ///< viscous terms run
-  bool cross_group = false;  ///< contact between groups runs
-  std::size_t bytes = 0;     ///< memory of columns, lists and scratch
+  bool sph = false;                                                 ///< SPH sums run
+  bool viscosity = false;                                           ///< viscous terms run
+  bool cross_group = false;                                         ///< contact between groups runs
+  InstructionLevel instruction_level = InstructionLevel::baseline;  ///< that kernels use
+  std::size_t bytes = 0;                                            ///< memory of columns, lists and scratch
 };
 
 }  // namespace mallow

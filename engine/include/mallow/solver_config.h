@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "mallow/instruction_level.h"
 #include "mallow/vec3.h"
 
 namespace mallow {
@@ -45,6 +46,9 @@ struct SolverConfig {
   float neighbor_slack = 0.0f;
   /// Threads of every phase, >= 1; 0 takes what the machine has. Results do not depend on it.
   int threads = 0;
+  /// Instructions that kernels use, one of those this machine has; left out: its best. Results do not depend
+  /// on it; it is there to show that, and to time what older machines would do.
+  std::optional<InstructionLevel> instruction_level = {};
 };
 
 }  // namespace mallow
