@@ -60,6 +60,12 @@ class Column {
     std::memset(static_cast<void*>(data_ + size), 0, (padded(size) - size) * sizeof(T));
     size_ = size;
   }
+  /// For what gets longer as a body spreads: a quarter more memory than is asked for whenever it grows, or it
+  /// would be allocated anew in every other step.
+  void resize_with_room(std::size_t size) {
+    if (padded(size) > capacity_) grow(padded(size + size / 4));
+    resize(size);
+  }
   void release() {
     if (data_) free_column(data_, allocated(capacity_));
     data_ = nullptr;

@@ -150,7 +150,7 @@ void cut_clusters(int threads, CellGrid& grid) {
       k_column_block);
   std::uint32_t clusters = 0;
   for (std::uint32_t& sum : grid.block_sums) clusters += std::exchange(sum, clusters);
-  grid.cluster_start.resize(clusters + 1);
+  grid.cluster_start.resize_with_room(clusters + 1);
   grid.cluster_start[clusters] = grid.cell_start[columns * nx];
   parallel_for(
       threads, columns,
@@ -174,14 +174,14 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
   grid.cell_of.resize(n);
   grid.order.resize(n);
   grid.sorted.resize(n);
-  grid.cell_start.resize(cells + 1);
+  grid.cell_start.resize_with_room(cells + 1);
   const ConstVectors x{positions.x() + begin, positions.y() + begin, positions.z() + begin};
 
   // Each thread counts and scatters one chunk of the points, in order: the sort is stable whatever the chunks
   // are. More chunks than these would count more cells than points.
   const std::size_t chunks = std::clamp<std::size_t>(4 * n / cells, 1, static_cast<std::size_t>(threads));
   const std::size_t chunk = (n + chunks - 1) / chunks;
-  grid.counts.resize(chunks * cells);
+  grid.counts.resize_with_room(chunks * cells);
   const CellIndex cell_index(grid);
   parallel_for(
       threads, n,

@@ -13,6 +13,9 @@ namespace {
 
 /// Clusters are the unit of work: every point is in one, in sorted order.
 constexpr std::size_t k_clusters_per_block = 32;
+/// Entries of a block that a thread has room for from the start: several times as many as usual, as nobody
+/// knows when it will first meet a crowded one, and steps are not to allocate.
+constexpr std::size_t k_block_entries = 1024 * k_clusters_per_block;
 /// Entries that 32-bit places can name.
 constexpr std::size_t k_max_entries = std::numeric_limits<std::uint32_t>::max();
 
@@ -27,7 +30,7 @@ struct Scratch {
   /// Room for `count` more entries; what kernels write beyond the last is included.
   std::uint32_t* room(std::size_t count) {
     const std::size_t need = size + count + k_cluster;
-    if (found.size() < need) found.resize(std::max(need, 2 * found.size()));
+    if (found.size() < need) found.resize(std::max({need, 2 * found.size(), k_block_entries}));
     return found.data() + size;
   }
 };
@@ -85,7 +88,7 @@ struct Searcher {
 
  private:
   std::size_t find_runs(const Bounds& box, Scratch& scratch, std::size_t& points) const {
-    scratch.runs.resize(std::max(scratch.runs.size(), grid.columns() + 1));
+    if (scratch.runs.size() < grid.columns() + 1) scratch.runs.resize(2 * (grid.columns() + 1));
     const std::size_t runs = kernels.find_runs(input, box, scratch.runs.data());
     for (std::size_t r = 0; r < runs; ++r) points += scratch.runs[r].end - scratch.runs[r].begin;
     return runs;
@@ -149,8 +152,8 @@ void build_neighbor_lists(const CellGrid& grid, float radius, int threads, Instr
 
 void build_cluster_lists(const CellGrid& grid, float radius, int threads, InstructionLevel level,
                          NeighborLists& lists) {
-  lists.begin.resize(grid.clusters());
-  lists.count.resize(grid.clusters());
+  lists.begin.resize_with_room(grid.clusters());
+  lists.count.resize_with_room(grid.clusters());
   if (lists.indices.empty()) lists.indices.resize(128 * grid.clusters());
   const Searcher searcher(grid, radius, level);
   build_lists(

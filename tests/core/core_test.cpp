@@ -24,6 +24,19 @@ TEST(column, keeps_values_when_it_grows_and_pads_with_zeros) {
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(column.data()) % 64, 0u);
 }
 
+TEST(column, with_room_keeps_its_memory_as_it_grows_a_little) {
+  Column<float> column(5);
+  column[4] = 7;
+  column.resize_with_room(1000);
+  const float* const memory = column.data();
+  for (std::size_t size = 1001; size <= 1250; ++size) {
+    column.resize_with_room(size);
+    ASSERT_EQ(column.data(), memory);
+    ASSERT_EQ(column[size - 1], 0.0f);
+  }
+  EXPECT_EQ(column[4], 7.0f);
+}
+
 TEST(vector_column, keeps_all_three_axes_when_the_stride_changes) {
   VectorColumn column(3);
   for (std::size_t i = 0; i < 3; ++i) column.set(i, Vec3(1, 2, 3) * static_cast<float>(i + 1));
