@@ -62,12 +62,13 @@ double farthest(const Motion& mean, int threads, const CellGrid& grid, KeptLists
 bool keep_lists(const VectorColumn& positions, float radius, float slack, int threads, CellGrid& grid,
                 KeptLists& kept) {
   const double limit = static_cast<double>(radius) * (0.5 * static_cast<double>(slack) - k_rounding);
-  if (kept.searched.size() == 0 || !(limit > 0)) return false;
+  if (!kept.any || !(limit > 0)) return false;
   const Motion mean = gather(positions, threads, grid, kept);
   return farthest(mean, threads, grid, kept) <= limit * limit;
 }
 
 void remember_search(const CellGrid& grid, KeptLists& kept) {
+  kept.any = true;
   kept.searched.resize(grid.sorted.size());
   for (std::size_t a = 0; a < 3; ++a)
     std::copy_n(grid.sorted.axis(a), grid.sorted.size(), kept.searched.axis(a));

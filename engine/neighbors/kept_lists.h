@@ -14,15 +14,15 @@ namespace mallow {
 /// beyond the one to within the other have to. Motions count relative to the mean motion of all, which
 /// changes no distance, so points that fall together keep their lists.
 struct KeptLists {
-  VectorColumn
-      searched;  ///< where the points were in the search, in the grid's order [m]; empty: none to keep
+  bool any = false;       ///< there are lists to keep
+  VectorColumn searched;  ///< where the points were in the search, in the grid's order [m]
 
   // Scratch.
   std::vector<std::array<double, 3>> partial_motion;
   std::vector<double> partial_farthest;
 
-  /// To be called when points get other numbers.
-  void forget() { searched.release(); }
+  /// To be called when points get other numbers. Keeps the memory: rows are sorted now and then.
+  void forget() { any = false; }
   std::size_t bytes() const { return searched.bytes(); }
 };
 

@@ -102,7 +102,7 @@ TEST_P(steady_step, allocates_nothing) {
 
 INSTANTIATE_TEST_SUITE_P(, steady_step,
                          testing::Values(Setup{1, 0.5f, 0}, Setup{2, 0.5f, 0}, Setup{2, 0.5f, 0.2f},
-                                         Setup{2, 0, 0}, Setup{2, 1, 0}),
+                                         Setup{2, 0, 0}, Setup{2, 1, 0}, Setup{2, 1, 0.2f}),
                          [](const auto& test) {
                            const Setup& s = test.param;
                            return std::to_string(s.threads) + "_threads_alpha_" +
