@@ -29,13 +29,41 @@ MALLOW_INLINE void store(const Floats& value, float* to) {
 MALLOW_INLINE Floats all(float value) {
   return Floats{} + value;
 }
+#if defined(__SSE__) && !defined(__AVX__)
+/// What GCC 12 has no words for where registers hold half of the lanes: it would take them one by one.
+struct Halves {
+  __m128 low, high;
+};
+MALLOW_INLINE Halves halves(const Floats& value) {
+  Halves parts;
+  __builtin_memcpy(&parts, &value, sizeof parts);
+  return parts;
+}
+MALLOW_INLINE Floats joined(const Halves& parts) {
+  Floats value;
+  __builtin_memcpy(&value, &parts, sizeof value);
+  return value;
+}
+#endif
+
 /// The larger of two numbers, `b` where one is not a number.
 MALLOW_INLINE Floats larger(const Floats& a, const Floats& b) {
-  // By name where there is an instruction: GCC 12 compares and blends.
 #if defined(__AVX__)
   return reinterpret_cast<Floats>(_mm256_max_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b)));
+#elif defined(__SSE__)
+  const Halves x = halves(a), y = halves(b);
+  return joined({_mm_max_ps(x.low, y.low), _mm_max_ps(x.high, y.high)});
 #else
   return a > b ? a : b;
+#endif
+}
+/// Where a number is larger than another.
+MALLOW_INLINE Ints is_larger(const Floats& a, const Floats& b) {
+#if defined(__SSE__) && !defined(__AVX__)
+  const Halves x = halves(a), y = halves(b);
+  return reinterpret_cast<Ints>(joined({_mm_cmplt_ps(y.low, x.low), _mm_cmplt_ps(y.high, x.high)}));
+#else
+  return a > b;
 #endif
 }
 /// Zero where the mask is.
@@ -46,27 +74,26 @@ MALLOW_INLINE Floats where(const Ints& mask, const Floats& value) {
 MALLOW_INLINE bool any(const Ints& mask) {
 #if defined(__AVX__)
   return _mm256_movemask_ps(reinterpret_cast<__m256>(mask)) != 0;
+#elif defined(__SSE__)
+  const Halves parts = halves(reinterpret_cast<Floats>(mask));
+  return _mm_movemask_ps(_mm_or_ps(parts.low, parts.high)) != 0;
 #else
-  const Ints folded = mask | __builtin_shufflevector(mask, mask, 4, 5, 6, 7, 0, 1, 2, 3);
-  long long parts[2];
-  __builtin_memcpy(parts, &folded, sizeof parts);
-  return (parts[0] | parts[1]) != 0;
+  long long parts[sizeof mask / sizeof(long long)];
+  __builtin_memcpy(parts, &mask, sizeof parts);
+  return (parts[0] | parts[1] | parts[2] | parts[3]) != 0;
 #endif
 }
 MALLOW_INLINE Floats square_root(const Floats& value) {
-  Floats root;
 #if defined(__AVX__)
-  root = reinterpret_cast<Floats>(_mm256_sqrt_ps(reinterpret_cast<__m256>(value)));
+  return reinterpret_cast<Floats>(_mm256_sqrt_ps(reinterpret_cast<__m256>(value)));
 #elif defined(__SSE__)
-  __m128 half[2];
-  __builtin_memcpy(half, &value, sizeof value);
-  half[0] = _mm_sqrt_ps(half[0]);
-  half[1] = _mm_sqrt_ps(half[1]);
-  __builtin_memcpy(&root, half, sizeof root);
+  const Halves parts = halves(value);
+  return joined({_mm_sqrt_ps(parts.low), _mm_sqrt_ps(parts.high)});
 #else
+  Floats root;
   for (std::size_t l = 0; l < k_cluster; ++l) root[l] = __builtin_sqrtf(value[l]);
-#endif
   return root;
+#endif
 }
 
 }  // namespace mallow::MALLOW_LEVEL

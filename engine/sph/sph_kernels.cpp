@@ -45,7 +45,7 @@ Floats sum_density(const SphInput& in, std::size_t cluster, std::uint32_t* near,
     if (!listed) continue;
     // Always written, kept only if near: no branch to predict.
     near[found] = j;
-    found += any(t > 0.0f);
+    found += any(is_larger(t, Floats{}));
   }
   if (listed) count = found;
   return sum;
@@ -79,17 +79,26 @@ struct Pair {
   Floats t, push, drag;
 };
 
+/// x_i − x_j of eight i, and what takes long to find from it.
+struct Separation {
+  Floats3 d;
+  Floats r, inverse_square;
+};
+
 /// F = |∇W_spiky|/2 at q = 0, and ∇²W_visc is twice that over σ. Model 1, Mueller 2003.
 struct Conservative {
   static constexpr bool relative_velocity = true;
   static float factor(const SphInput& in) { return 0.5f * in.spiky_gradient; }
 
-  MALLOW_INLINE Pair pair(const SphInput& in, const Floats& r2, const Floats& own_pressure, float pressure,
-                          const Floats& viscosities) {
-    const Floats r = square_root(r2);
-    const Floats t = not_negative(1.0f - r * in.inverse_radius);
+  MALLOW_INLINE Separation separate(const Floats3& d) {
+    const Floats r2 = squared_length(d);
     // 1/r as r/r², which need not wait for the root. Coincident particles have no direction to push in.
-    return {t, where(r2 > 0.0f, (own_pressure + pressure) * t * (r * (1.0f / r2))),
+    return {d, square_root(r2), where(is_larger(r2, Floats{}), 1.0f / r2)};
+  }
+  MALLOW_INLINE Pair pair(const SphInput& in, const Separation& apart, const Floats& own_pressure,
+                          float pressure, const Floats& viscosities) {
+    const Floats t = not_negative(1.0f - apart.r * in.inverse_radius);
+    return {t, (own_pressure + pressure) * t * (apart.r * apart.inverse_square),
             viscosities * in.inverse_radius};
   }
 };
@@ -99,9 +108,10 @@ struct Printed {
   static constexpr bool relative_velocity = false;
   static float factor(const SphInput& in) { return in.poly6_gradient; }
 
-  MALLOW_INLINE Pair pair(const SphInput& in, const Floats& r2, const Floats&, float pressure,
+  MALLOW_INLINE Separation separate(const Floats3& d) { return {d, Floats{}, Floats{}}; }
+  MALLOW_INLINE Pair pair(const SphInput& in, const Separation& apart, const Floats&, float pressure,
                           const Floats& viscosities) {
-    const Floats q2 = r2 * (in.inverse_radius * in.inverse_radius);
+    const Floats q2 = squared_length(apart.d) * (in.inverse_radius * in.inverse_radius);
     const Floats t = not_negative(1.0f - q2);
     return {t, pressure * t, -0.5f * viscosities * (3.0f - 7.0f * q2)};
   }
@@ -132,12 +142,17 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
       own_viscosity[i - first] = in.groups[in.group[i]].viscosity;
     }
   }
+  // The root and the quotient of the next pair are under way while this one's are used: left in one piece,
+  // the chain of a pair is longer than what a processor looks ahead.
+  Separation next = Formula::separate(difference(x, in.position, list[0]));
   for (std::uint32_t k = 0; k < n; ++k) {
     const std::uint32_t j = list[k];
     const int group = grouped ? in.group[j] : 0;
-    const Floats3 d = difference(x, in.position, j);
-    const Pair pair = Formula::pair(in, squared_length(d), own_pressure, pressures[j],
-                                    own_viscosity + in.groups[group].viscosity);
+    const Separation apart = next;
+    next = Formula::separate(difference(x, in.position, list[k + 1 < n ? k + 1 : k]));
+    const Floats3& d = apart.d;
+    const Pair pair =
+        Formula::pair(in, apart, own_pressure, pressures[j], own_viscosity + in.groups[group].viscosity);
     const Floats weight = volumes[j] * pair.t, push = weight * pair.push;
     Floats3 a = {push * d.x, push * d.y, push * d.z};
     if (viscous) {
