@@ -1,6 +1,9 @@
 #pragma once
 
+#include <omp.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <vector>
 
@@ -13,21 +16,54 @@ inline constexpr std::size_t k_block = 256;
 /// Threads that a config value of `requested` means: itself, or what the machine has for 0.
 int thread_count(int requested);
 
+/// Blocks that threads hand out to each other: each thread starts on a range of its own, the same in every
+/// loop over as many blocks, so that what it wrote in one phase is in its cache in the next; one that is
+/// done takes from the ranges of others.
+class SharedBlocks {
+ public:
+  SharedBlocks(std::size_t threads, std::size_t blocks) : ranges_(std::min(threads, k_max_ranges)) {
+    for (std::size_t r = 0; r < ranges_; ++r) {
+      next_[r].block.store(r * blocks / ranges_, std::memory_order_relaxed);
+      next_[r].end = (r + 1) * blocks / ranges_;
+    }
+  }
+  /// Calls run(block) until no block is left.
+  template <class Run>
+  void work(std::size_t thread, const Run& run) {
+    for (std::size_t k = 0; k < ranges_; ++k) {
+      Range& range = next_[(thread + k) % ranges_];
+      for (;;) {
+        const std::size_t block = range.block.fetch_add(1, std::memory_order_relaxed);
+        if (block >= range.end) break;
+        run(block);
+      }
+    }
+  }
+
+ private:
+  /// More threads share ranges: they take no memory, and neighbours of a block stay few cores away.
+  static constexpr std::size_t k_max_ranges = 64;
+  struct alignas(64) Range {
+    std::atomic<std::size_t> block;
+    std::size_t end;
+  };
+  std::size_t ranges_;
+  Range next_[k_max_ranges];
+};
+
 /// Calls body(begin, end) for every block of `block` indices of [0, n), blocks spread over `threads` threads.
 /// The blocks are the same for any number of threads. body must not throw.
 template <class Body>
 void parallel_for(int threads, std::size_t n, const Body& body, std::size_t block = k_block) {
-  const auto blocks = static_cast<std::ptrdiff_t>((n + block - 1) / block);
-  const auto run = [&](std::ptrdiff_t b) {
-    const std::size_t begin = static_cast<std::size_t>(b) * block;
-    body(begin, std::min(n, begin + block));
-  };
+  const std::size_t blocks = (n + block - 1) / block;
+  const auto run = [&](std::size_t b) { body(b * block, std::min(n, (b + 1) * block)); };
   if (threads == 1 || blocks <= 1) {
-    for (std::ptrdiff_t b = 0; b < blocks; ++b) run(b);
+    for (std::size_t b = 0; b < blocks; ++b) run(b);
     return;
   }
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
-  for (std::ptrdiff_t b = 0; b < blocks; ++b) run(b);
+  SharedBlocks shared(static_cast<std::size_t>(threads), blocks);
+#pragma omp parallel num_threads(threads)
+  shared.work(static_cast<std::size_t>(omp_get_thread_num()), run);
 }
 
 /// combine(... combine(combine(identity, map(block 0)), map(block 1)) ...): one order for any number of
