@@ -1,39 +1,30 @@
 // Compiled once per instruction level, as the engine's kernels are (core/isa.h).
 #include "row_additions.h"
 
+#include "core/lanes.h"
+
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
 constexpr std::size_t k_floats = 16;
 
-/// The widest registers of the level, and how many of them make a row.
-#if defined(__AVX512F__)
-constexpr std::size_t k_width = 16;
-#elif defined(__AVX__)
-constexpr std::size_t k_width = 8;
-#else
-constexpr std::size_t k_width = 4;
-#endif
 constexpr std::size_t k_parts = k_floats / k_width;
-using Part = float __attribute__((vector_size(k_width * sizeof(float)), may_alias));
 
 /// Rows that are added at once, each to its own sum: enough to hide the latency of additions (four cycles,
 /// two a cycle), and sums that fit into sixteen registers with room for what is loaded.
 constexpr std::size_t k_sums = k_parts == 1 ? 8 : 8 / k_parts;
 
 void add(const float* rows, std::size_t count, float* sum) noexcept {
-  Part sums[k_sums][k_parts] = {};
+  Lanes sums[k_sums][k_parts] = {};
   std::size_t row = 0;
   for (; row + k_sums <= count; row += k_sums)
     for (std::size_t s = 0; s < k_sums; ++s)
-      for (std::size_t p = 0; p < k_parts; ++p)
-        sums[s][p] += *reinterpret_cast<const Part*>(rows + (row + s) * k_floats + p * k_width);
+      for (std::size_t p = 0; p < k_parts; ++p) sums[s][p] += load(rows + (row + s) * k_floats + p * k_width);
   for (; row < count; ++row)
-    for (std::size_t p = 0; p < k_parts; ++p)
-      sums[0][p] += *reinterpret_cast<const Part*>(rows + row * k_floats + p * k_width);
+    for (std::size_t p = 0; p < k_parts; ++p) sums[0][p] += load(rows + row * k_floats + p * k_width);
   for (std::size_t p = 0; p < k_parts; ++p) {
     for (std::size_t s = 1; s < k_sums; ++s) sums[0][p] += sums[s][p];
-    *reinterpret_cast<Part*>(sum + p * k_width) = sums[0][p];
+    store(sums[0][p], sum + p * k_width);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/bounds.h"
 #include "core/parallel.h"
 #include "neighbors/search_kernel.h"
 
@@ -17,30 +18,6 @@ constexpr double k_along = 0.5;
 /// Cells, and columns, that one thread handles at a time.
 constexpr std::size_t k_cell_block = 8192;
 constexpr std::size_t k_column_block = 512;
-
-Aabb bounds_of(const VectorColumn& x, std::size_t begin, std::size_t end, int threads,
-               std::vector<Aabb>& partial) {
-  const Aabb none{Vec3::Constant(HUGE_VALF), Vec3::Constant(-HUGE_VALF)};
-  return parallel_reduce(
-      threads, end - begin, partial, none,
-      [&](std::size_t first, std::size_t last) {
-        Aabb box = none;
-        for (std::size_t a = 0; a < 3; ++a) {
-          const float* values = x.axis(a) + begin;
-          float low = HUGE_VALF, high = -HUGE_VALF;
-          for (std::size_t i = first; i < last; ++i) {
-            low = std::min(low, values[i]);
-            high = std::max(high, values[i]);
-          }
-          box.min[static_cast<int>(a)] = low;
-          box.max[static_cast<int>(a)] = high;
-        }
-        return box;
-      },
-      [](const Aabb& a, const Aabb& b) {
-        return Aabb{a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)};
-      });
-}
 
 /// Chooses the cells and the covered box. Where points lie too thinly for cells of their spacing, cells are
 /// made longer, then larger, up to the radius; where a few strays make the box too large even so, it shrinks

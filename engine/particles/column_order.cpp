@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/bounds.h"
 #include "core/parallel.h"
 
 namespace mallow {
@@ -15,26 +16,6 @@ constexpr double k_columns_per_point = 8.0;
 constexpr double k_min_columns = 32768.0;
 /// Columns that a thread sorts at once.
 constexpr std::size_t k_column_block = 32;
-
-Aabb bounds_of(const VectorColumn& x, std::size_t begin, std::size_t end, int threads,
-               std::vector<Aabb>& partial) {
-  const Aabb none{Vec3::Constant(HUGE_VALF), Vec3::Constant(-HUGE_VALF)};
-  return parallel_reduce(
-      threads, end - begin, partial, none,
-      [&](std::size_t first, std::size_t last) {
-        Aabb box = none;
-        for (std::size_t a = 0; a < 3; ++a) {
-          const float* const values = x.axis(a) + begin;
-          const auto [low, high] = std::minmax_element(values + first, values + last);
-          box.min[static_cast<int>(a)] = *low;
-          box.max[static_cast<int>(a)] = *high;
-        }
-        return box;
-      },
-      [](const Aabb& a, const Aabb& b) {
-        return Aabb{a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)};
-      });
-}
 
 void choose_columns(const VectorColumn& x, std::size_t begin, std::size_t end, float width, int threads,
                     ColumnOrder& columns) {

@@ -2,6 +2,8 @@
 // 2007, which keep momentum exactly. Departs from [TK]: region centres c̄_j stand where the print has x̄_j.
 #include "shape_matching/shape_kernels.h"
 
+#include "core/lanes.h"
+
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
@@ -30,29 +32,22 @@ void write_rows(const ShapeInput& in, std::size_t begin, std::size_t end, float*
   }
 }
 
-/// The widest registers of the level. Rows are added in them by name: left to itself GCC 12 keeps half of the
+/// Rows are added in the widest registers of the level by name: left to itself GCC 12 keeps half of the
 /// accumulators below in single floats at AVX2 and AVX-512, four times as slow.
-#if defined(__AVX512F__)
-constexpr std::size_t k_width = 16;
-#elif defined(__AVX__)
-constexpr std::size_t k_width = 8;
-#else
-constexpr std::size_t k_width = 4;
-#endif
 constexpr std::size_t k_parts = k_row / k_width;
-using Part = float __attribute__((vector_size(k_width * sizeof(float)), may_alias));
 
-void add_row(const float* rows, std::uint32_t i, Part* sum) {
-  const Part* const row = reinterpret_cast<const Part*>(rows + static_cast<std::size_t>(i) * k_row);
-  for (std::size_t p = 0; p < k_parts; ++p) sum[p] += row[p];
+void add_row(const float* row, Lanes* sum) {
+  for (std::size_t p = 0; p < k_parts; ++p) sum[p] += load(row + p * k_width);
+}
+void add_row(const float* rows, std::uint32_t i, Lanes* sum) {
+  add_row(rows + static_cast<std::size_t>(i) * k_row, sum);
 }
 
-/// Adds the rows of a list. Four accumulators in a fixed order hide the latency of the addition. sum: on a
-/// 64-byte boundary, as rows are.
+/// Adds the rows of a list. Four accumulators in a fixed order hide the latency of the addition.
 void sum_rows(const float* rows, const RegionLists& lists, std::size_t which, float* sum) {
   const std::uint32_t* const list = lists.entries + lists.begin[which];
   const std::uint32_t n = lists.count[which];
-  Part a[k_parts] = {}, b[k_parts] = {}, c[k_parts] = {}, d[k_parts] = {};
+  Lanes a[k_parts] = {}, b[k_parts] = {}, c[k_parts] = {}, d[k_parts] = {};
   std::uint32_t k = 0;
   for (; k + 4 <= n; k += 4) {
     if (lists.prefetch)
@@ -64,20 +59,19 @@ void sum_rows(const float* rows, const RegionLists& lists, std::size_t which, fl
     add_row(rows, list[k + 3], d);
   }
   for (; k < n; ++k) add_row(rows, list[k], a);
-  for (std::size_t p = 0; p < k_parts; ++p) reinterpret_cast<Part*>(sum)[p] = (a[p] + b[p]) + (c[p] + d[p]);
+  for (std::size_t p = 0; p < k_parts; ++p) store((a[p] + b[p]) + (c[p] + d[p]), sum + p * k_width);
 }
 
 void sum_runs(const float* rows, std::size_t count, const RunLengths& lengths, std::size_t all,
               float* table) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
-    Part sum[k_parts] = {};
-    const Part* row = reinterpret_cast<const Part*>(rows + i * k_row);
-    Part* entry = reinterpret_cast<Part*>(table + i * k_row);
+    Lanes sum[k_parts] = {};
+    const float* row = rows + i * k_row;
+    float* entry = table + i * k_row;
     std::uint32_t length = 0;
-    for (std::uint32_t level = 0; level < lengths.levels; ++level, entry += all * k_parts) {
-      for (; length < lengths.length[level]; ++length, row += k_parts)
-        for (std::size_t p = 0; p < k_parts; ++p) sum[p] += row[p];
-      for (std::size_t p = 0; p < k_parts; ++p) entry[p] = sum[p];
+    for (std::uint32_t level = 0; level < lengths.levels; ++level, entry += all * k_row) {
+      for (; length < lengths.length[level]; ++length, row += k_row) add_row(row, sum);
+      for (std::size_t p = 0; p < k_parts; ++p) store(sum[p], entry + p * k_width);
     }
   }
 }
