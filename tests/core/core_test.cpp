@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include <Eigen/SVD>
 #include <numeric>
 #include <random>
 
+#include "core/bounds.h"
 #include "core/checks.h"
 #include "core/column.h"
 #include "core/parallel.h"
@@ -43,6 +46,31 @@ TEST(vector_column, keeps_all_three_axes_when_the_stride_changes) {
   column.resize(100);
   EXPECT_EQ(column.get(2), Vec3(3, 6, 9));
   EXPECT_EQ(column.get(99), Vec3(0, 0, 0));
+}
+
+TEST(parallel_for, calls_for_every_index_once_also_with_more_threads_than_blocks_or_ranges) {
+  for (const int threads : {1, 2, 3, 7, 70})
+    for (const std::size_t n : {0u, 1u, 255u, 256u, 5000u, 40000u}) {
+      std::vector<std::atomic<int>> calls(n);
+      parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+        EXPECT_EQ(begin % k_block, 0u);
+        EXPECT_LE(end - begin, k_block);
+        for (std::size_t i = begin; i < end; ++i) ++calls[i];
+      });
+      for (const auto& count : calls) ASSERT_EQ(count, 1) << threads << " threads, " << n;
+    }
+}
+
+TEST(bounds, hold_every_point_and_touch_some_on_each_side) {
+  VectorColumn x(1000);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x.set(i, {static_cast<float>(i % 7), -static_cast<float>(i % 11), static_cast<float>(i)});
+  std::vector<Aabb> partial;
+  for (const int threads : {1, 3}) {
+    const Aabb box = bounds_of(x, 20, 990, threads, partial);
+    EXPECT_EQ(box.min, Vec3(0, -10, 20));
+    EXPECT_EQ(box.max, Vec3(6, 0, 989));
+  }
 }
 
 TEST(parallel_reduce, gives_the_same_bits_for_any_number_of_threads) {
