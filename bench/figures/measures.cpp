@@ -71,10 +71,15 @@ double highest(std::span<const double> curve) {
   return *std::max_element(curve.begin(), curve.end());
 }
 
-double mean_of_last(std::span<const double> curve, double share) {
+std::span<const double> last_of(std::span<const double> curve, double share) {
   const auto count =
       std::clamp<long>(std::lround(share * static_cast<double>(curve.size())), 1, std::ssize(curve));
-  return std::accumulate(curve.end() - count, curve.end(), 0.0) / static_cast<double>(count);
+  return curve.last(static_cast<std::size_t>(count));
+}
+
+double mean_of_last(std::span<const double> curve, double share) {
+  const std::span<const double> last = last_of(curve, share);
+  return std::accumulate(last.begin(), last.end(), 0.0) / static_cast<double>(last.size());
 }
 
 }  // namespace mallow::bench

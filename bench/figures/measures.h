@@ -30,7 +30,8 @@ double unevenness(std::span<const Vec3> positions, double cell);
 
 double lowest(std::span<const double> curve);
 double highest(std::span<const double> curve);
-/// Mean of the last `share` of a curve, in (0, 1].
+/// The last `share` of a curve, in (0, 1], and its mean.
+std::span<const double> last_of(std::span<const double> curve, double share);
 double mean_of_last(std::span<const double> curve, double share);
 
 }  // namespace mallow::bench

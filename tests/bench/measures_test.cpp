@@ -75,6 +75,7 @@ TEST(measures, of_curves) {
   const std::vector<double> curve = {4, -1, 2, 3};
   EXPECT_EQ(lowest(curve), -1);
   EXPECT_EQ(highest(curve), 4);
+  EXPECT_EQ(highest(last_of(curve, 0.5)), 3);
   EXPECT_EQ(mean_of_last(curve, 0.5), 2.5);
   EXPECT_EQ(mean_of_last(curve, 1), 2);
   EXPECT_EQ(mean_of_last(curve, 0.01), 3) << "never of none";
