@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -14,6 +15,8 @@ namespace {
 constexpr std::size_t k_max_runs = std::numeric_limits<std::uint32_t>::max();
 /// Relative, of squared distances: far above their rounding.
 constexpr float k_slack = 1e-5f;
+/// Points of a column that are tested at a time, a bit each.
+constexpr std::uint32_t k_bits = 64;
 /// One of so many blocks is searched to learn how many runs there will be.
 constexpr std::size_t k_sampled = 64;
 
@@ -141,13 +144,18 @@ struct Search {
     };
     for (Near& n : near) {
       if (!narrow(x, a, b, n)) continue;
-      std::uint32_t count = 0;
-      for (std::uint32_t k = n.low; k < n.high; ++k) count += inside(k);
-      if (count == n.high - n.low) {
-        if (count > 0) add(n.low, count);
-      } else if (count > 0) {
-        for (std::uint32_t k = n.low; k < n.high; ++k)
-          if (inside(k)) add(k, 1);
+      // Bits first, then their runs: whether a point is inside is not to be predicted.
+      for (std::uint32_t first = n.low; first < n.high; first += k_bits) {
+        const std::uint32_t count = std::min(k_bits, n.high - first);
+        std::uint64_t bits = 0;
+        for (std::uint32_t k = 0; k < count; ++k) bits |= static_cast<std::uint64_t>(inside(first + k)) << k;
+        for (std::uint32_t k = 0; bits >> k != 0;) {
+          k += static_cast<std::uint32_t>(std::countr_zero(bits >> k));
+          const auto length = static_cast<std::uint32_t>(std::countr_one(bits >> k));
+          add(first + k, length);
+          k += length;
+          if (k == k_bits) break;
+        }
       }
     }
     if (run.count > 0) runs.push_back(run);
