@@ -23,9 +23,6 @@ MALLOW_INLINE Floats load(const float* from) {
   __builtin_memcpy(&value, from, sizeof value);
   return value;
 }
-MALLOW_INLINE void store(const Floats& value, float* to) {
-  __builtin_memcpy(to, &value, sizeof value);
-}
 MALLOW_INLINE Floats all(float value) {
   return Floats{} + value;
 }

@@ -137,11 +137,11 @@ void build_lists(std::size_t clusters, int threads, NeighborLists& lists, const 
 }  // namespace
 
 void build_neighbor_lists(const CellGrid& grid, float radius, int threads, InstructionLevel level,
-                          NeighborLists& lists, std::size_t capacity) {
+                          NeighborLists& lists) {
   const std::size_t n = grid.order.size();
   lists.begin.resize(n);
   lists.count.resize(n);
-  if (lists.indices.empty()) lists.indices.resize(capacity > 0 ? capacity : 40 * n);
+  if (lists.indices.empty()) lists.indices.resize(40 * n);
   const Searcher searcher(grid, radius, level);
   build_lists(
       grid.clusters(), threads, lists, [&](std::size_t cluster) { return grid.cluster_start[cluster]; },

@@ -27,10 +27,10 @@ struct NeighborLists {
 };
 
 /// Per sorted point all points within the radius, itself included.
-/// grid: built with at least `radius`. Grows `indices` as needed; `capacity` is where it starts when it is
-/// empty (0: a guess). Throws ConfigError where the lists would need 2^32 entries.
+/// grid: built with at least `radius`. Grows `indices` as needed. Throws ConfigError where the lists would
+/// need 2^32 entries.
 void build_neighbor_lists(const CellGrid& grid, float radius, int threads, InstructionLevel level,
-                          NeighborLists& lists, std::size_t capacity = 0);
+                          NeighborLists& lists);
 
 /// Per cluster all points within the radius of its box, and so all that are within the radius of one of its
 /// points: about twice as many as a point has, searched once for eight [Pall & Hess 2013]. Otherwise as

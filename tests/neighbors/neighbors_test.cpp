@@ -35,7 +35,8 @@ std::vector<std::vector<std::uint32_t>> lists_of(const Points& points, float rad
   CellGrid grid;
   NeighborLists lists;
   build_cell_grid(column(points), 0, points.size(), radius, threads, grid);
-  build_neighbor_lists(grid, radius, threads, level, lists, capacity);
+  if (capacity > 0) lists.indices.resize(capacity);
+  build_neighbor_lists(grid, radius, threads, level, lists);
   std::vector<std::vector<std::uint32_t>> result(points.size());
   std::size_t total = 0;
   for (std::size_t s = 0; s < points.size(); ++s) {

@@ -107,18 +107,24 @@ TEST(run_lists, equal_brute_force_in_any_order_of_rows) {
   }
 }
 
+/// Lists of points whose rows are in the order of columns, as the engine keeps them.
+RunLists lists_in_column_order(const Points& points, int threads) {
+  ColumnOrder columns;
+  order_by_columns(points.x, 0, points.x.size(), points.spacing, threads, columns);
+  const VectorColumn x = std::move(columns.sorted);
+  order_by_columns(x, 0, x.size(), points.spacing, threads, columns);
+  RunLists lists;
+  find_runs(columns, points.radius, threads, lists);
+  return lists;
+}
+
 TEST(run_tables, hold_the_rows_of_the_lists_whatever_their_lengths) {
   for (const Points& points : bodies()) {
-    ColumnOrder columns;
-    order_by_columns(points.x, 0, points.x.size(), points.spacing, 2, columns);
-    const VectorColumn x = std::move(columns.sorted);
-    order_by_columns(x, 0, x.size(), points.spacing, 2, columns);
-    RunLists lists;
-    find_runs(columns, points.radius, 2, lists);
+    const RunLists lists = lists_in_column_order(points, 2);
     TableLists coded;
-    encode(lists, {}, x.size(), 2, coded);
+    encode(lists, {}, points.x.size(), 2, coded);
     std::size_t members = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
+    for (std::size_t i = 0; i < points.x.size(); ++i) {
       ASSERT_EQ(decode(coded, i), rows_of(lists.of(i)));
       members += lists.members[i];
     }
@@ -128,14 +134,9 @@ TEST(run_tables, hold_the_rows_of_the_lists_whatever_their_lengths) {
 
 TEST(run_tables, cost_nothing_where_they_do_not_pay_and_little_where_they_do) {
   const auto entries = [](const Points& points, std::uint32_t& levels) {
-    ColumnOrder columns;
-    order_by_columns(points.x, 0, points.x.size(), points.spacing, 1, columns);
-    const VectorColumn x = std::move(columns.sorted);
-    order_by_columns(x, 0, x.size(), points.spacing, 1, columns);
-    RunLists lists;
-    find_runs(columns, points.radius, 1, lists);
+    const RunLists lists = lists_in_column_order(points, 1);
     TableLists coded;
-    encode(lists, {}, x.size(), 1, coded);
+    encode(lists, {}, points.x.size(), 1, coded);
     levels = coded.lengths.levels;
     return static_cast<double>(coded.total) / static_cast<double>(coded.members);
   };

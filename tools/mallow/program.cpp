@@ -19,14 +19,12 @@ namespace {
 /// those from running that they wait for: two threads took 50 times as long as one.
 constexpr const char* k_spin_count = "20000";
 
-/// OpenMP reads this when it is loaded, before any line of a program, so it takes another start.
-void limit_spinning(char** argv) {
+/// OpenMP reads this when it is loaded, before any line of a program, so it takes another start. Where there
+/// is none, threads wait as they are used to.
+void limit_spinning([[maybe_unused]] char** argv) {
 #ifdef __linux__
   if (std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY")) return;
   if (setenv("GOMP_SPINCOUNT", k_spin_count, 0) == 0) execv("/proc/self/exe", argv);
-    // Where that did not work, threads wait as they are used to.
-#else
-  (void)argv;
 #endif
 }
 
