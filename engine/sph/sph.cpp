@@ -21,12 +21,11 @@ SphInput input(const Sph& sph) {
       .groups = sph.groups.data(),
       .position = raw(sph.grid.sorted),
       .velocity = sph.viscous ? raw(sph.velocity) : ConstVectors{},
+      .radius = sph.support_radius,
       .inverse_radius = 1.0f / sph.support_radius,
       .density_factor = sph.factors.density,
       .spiky_gradient = sph.factors.spiky_gradient,
-      .viscosity = sph.factors.viscosity,
       .poly6_gradient = sph.factors.poly6_gradient,
-      .poly6_laplacian = sph.factors.poly6_laplacian,
   };
 }
 

@@ -79,27 +79,33 @@ struct Pair {
   Floats t, push, drag;
 };
 
+/// What squared distances are at least when something is divided by them: far below those of particles that
+/// are not in one point [m²].
+constexpr float k_least = 1e-30f;
+
 /// x_i − x_j of eight i, and what takes long to find from it.
 struct Separation {
   Floats3 d;
   Floats r, inverse_square;
 };
 
-/// F = |∇W_spiky|/2 at q = 0, and ∇²W_visc is twice that over σ. Model 1, Mueller 2003.
+/// t = σ − r, so F = |∇W_spiky|/(2 σ²) at q = 0, and ∇²W_visc is twice that times t σ. Model 1, Mueller 2003.
 struct Conservative {
   static constexpr bool relative_velocity = true;
-  static float factor(const SphInput& in) { return 0.5f * in.spiky_gradient; }
+  static float factor(const SphInput& in) {
+    return 0.5f * in.spiky_gradient * in.inverse_radius * in.inverse_radius;
+  }
 
   MALLOW_INLINE Separation separate(const Floats3& d) {
     const Floats r2 = squared_length(d);
-    // 1/r as r/r², which need not wait for the root. Coincident particles have no direction to push in.
-    return {d, square_root(r2), where(is_larger(r2, Floats{}), 1.0f / r2)};
+    // 1/r as r/r², which need not wait for the root; 0 for coincident particles, which have no direction to
+    // push in.
+    return {d, square_root(r2), 1.0f / larger(r2, all(k_least))};
   }
   MALLOW_INLINE Pair pair(const SphInput& in, const Separation& apart, const Floats& own_pressure,
                           float pressure, const Floats& viscosities) {
-    const Floats t = not_negative(1.0f - apart.r * in.inverse_radius);
-    return {t, (own_pressure + pressure) * t * (apart.r * apart.inverse_square),
-            viscosities * in.inverse_radius};
+    const Floats t = not_negative(in.radius - apart.r);
+    return {t, (own_pressure + pressure) * t * (apart.r * apart.inverse_square), viscosities};
   }
 };
 

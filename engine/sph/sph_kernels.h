@@ -35,12 +35,11 @@ struct SphInput {
   const SphGroup* groups;
   ConstVectors position;
   ConstVectors velocity;  ///< accelerations only; null without viscosity
+  float radius;           ///< σ [m]
   float inverse_radius;   ///< 1/σ
   float density_factor;   ///< KernelFactors
   float spiky_gradient;
-  float viscosity;
   float poly6_gradient;
-  float poly6_laplacian;
 };
 
 /// Where the first sum over the lists leaves who of them is near, for the sums that follow: the lists
