@@ -16,9 +16,9 @@ struct Floats3 {
 MALLOW_INLINE Floats3 load_vectors(const ConstVectors& from, std::size_t first) {
   return {load(from.x + first), load(from.y + first), load(from.z + first)};
 }
-/// x_i − x_j of eight i.
-MALLOW_INLINE Floats3 difference(const Floats3& i, const ConstVectors& of, std::size_t j) {
-  return {i.x - of.x[j], i.y - of.y[j], i.z - of.z[j]};
+/// x_j − x_i of eight i: this way round, what a register has no room for is subtracted from memory.
+MALLOW_INLINE Floats3 difference(const ConstVectors& of, std::size_t j, const Floats3& i) {
+  return {of.x[j] - i.x, of.y[j] - i.y, of.z[j] - i.z};
 }
 MALLOW_INLINE Floats squared_length(const Floats3& d) {
   return d.x * d.x + d.y * d.y + d.z * d.z;
@@ -39,7 +39,7 @@ Floats sum_density(const SphInput& in, std::size_t cluster, std::uint32_t* near,
   std::uint32_t found = 0;
   for (std::uint32_t k = 0; k < n; ++k) {
     const std::uint32_t j = list[k];
-    const Floats t = not_negative(1.0f - squared_length(difference(x, in.position, j)) * inverse_square);
+    const Floats t = not_negative(1.0f - squared_length(difference(in.position, j, x)) * inverse_square);
     const Floats w = t * t * t;
     sum += grouped ? in.groups[in.group[j]].rest_volume * w : w;
     if (!listed) continue;
@@ -83,7 +83,7 @@ struct Pair {
 /// are not in one point [m²].
 constexpr float k_least = 1e-30f;
 
-/// x_i − x_j of eight i, and what takes long to find from it.
+/// x_j − x_i of eight i, and what takes long to find from it.
 struct Separation {
   Floats3 d;
   Floats r, inverse_square;
@@ -148,23 +148,17 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
       own_viscosity[i - first] = in.groups[in.group[i]].viscosity;
     }
   }
-  // The root and the quotient of the next pair are under way while this one's are used: left in one piece,
-  // the chain of a pair is longer than what a processor looks ahead.
-  Separation next = Formula::separate(difference(x, in.position, list[0]));
-  for (std::uint32_t k = 0; k < n; ++k) {
-    const std::uint32_t j = list[k];
+  const auto add_pairs = [&](std::uint32_t j, const Separation& apart) {
     const int group = grouped ? in.group[j] : 0;
-    const Separation apart = next;
-    next = Formula::separate(difference(x, in.position, list[k + 1 < n ? k + 1 : k]));
     const Floats3& d = apart.d;
     const Pair pair =
         Formula::pair(in, apart, own_pressure, pressures[j], own_viscosity + in.groups[group].viscosity);
     const Floats weight = volumes[j] * pair.t, push = weight * pair.push;
-    Floats3 a = {push * d.x, push * d.y, push * d.z};
+    Floats3 a = {-(push * d.x), -(push * d.y), -(push * d.z)};
     if (viscous) {
       const Floats drag = weight * pair.drag;
-      const Floats3 minus_velocity = difference(v, in.velocity, j);
-      a = {a.x - drag * minus_velocity.x, a.y - drag * minus_velocity.y, a.z - drag * minus_velocity.z};
+      const Floats3 velocity = difference(in.velocity, j, v);
+      a = {drag * velocity.x - push * d.x, drag * velocity.y - push * d.y, drag * velocity.z - push * d.z};
     }
     if (grouped) {
       add(own == group, a, same);
@@ -172,7 +166,18 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
     } else {
       same = {same.x + a.x, same.y + a.y, same.z + a.z};
     }
+  };
+  // The root and the quotient of the next pair are under way while this one's are used: left in one piece,
+  // the chain of a pair is longer than what a processor looks ahead.
+  const auto separate = [&](std::uint32_t j) { return Formula::separate(difference(in.position, j, x)); };
+  Separation apart = separate(list[0]);
+#pragma GCC unroll 2
+  for (std::uint32_t k = 0; k + 1 < n; ++k) {
+    const Separation next = separate(list[k + 1]);
+    add_pairs(list[k], apart);
+    apart = next;
   }
+  add_pairs(list[n - 1], apart);
 }
 
 void write_by_row(const SphInput& in, std::size_t cluster, const Floats& scale, const Floats3& sum,
