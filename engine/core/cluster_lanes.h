@@ -63,6 +63,19 @@ MALLOW_INLINE Ints is_larger(const Floats& a, const Floats& b) {
   return a > b;
 #endif
 }
+/// Where a number is another one.
+MALLOW_INLINE Ints is_equal(const Ints& a, int b) {
+#if defined(__SSE__) && !defined(__AVX__)
+  __m128i parts[2];
+  __builtin_memcpy(parts, &a, sizeof parts);
+  for (__m128i& part : parts) part = _mm_cmpeq_epi32(part, _mm_set1_epi32(b));
+  Ints mask;
+  __builtin_memcpy(&mask, parts, sizeof mask);
+  return mask;
+#else
+  return a == b;
+#endif
+}
 /// Zero where the mask is.
 MALLOW_INLINE Floats where(const Ints& mask, const Floats& value) {
   return reinterpret_cast<Floats>(reinterpret_cast<Ints>(value) & mask);

@@ -161,9 +161,10 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
       a = {drag * velocity.x - push * d.x, drag * velocity.y - push * d.y, drag * velocity.z - push * d.z};
     }
     // Where groups do not touch, which is nearly everywhere, the branch is foreseen.
-    if (grouped && any(own != group)) {
-      add(own == group, a, same);
-      add(own != group, a, cross);
+    const Ints alike = is_equal(own, group);
+    if (grouped && any(~alike)) {
+      add(alike, a, same);
+      add(~alike, a, cross);
     } else {
       same = {same.x + a.x, same.y + a.y, same.z + a.z};
     }
