@@ -20,6 +20,7 @@ void require_per_vertex(const char* field, const std::vector<T>& values, const M
 
 void require_valid(const Mesh& mesh) {
   require_per_vertex("mesh.normals", mesh.normals, mesh);
+  require_per_vertex("mesh.velocities", mesh.velocities, mesh);
   require_per_vertex("mesh.material_ids", mesh.material_ids, mesh);
 }
 
@@ -28,6 +29,7 @@ std::string ply_header(const Mesh& mesh) {
                        std::to_string(mesh.vertices.size()) +
                        "\nproperty float x\nproperty float y\nproperty float z\n";
   if (!mesh.normals.empty()) header += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (!mesh.velocities.empty()) header += "property float vx\nproperty float vy\nproperty float vz\n";
   if (!mesh.material_ids.empty()) header += "property uchar material_id\n";
   return header + "element face " + std::to_string(mesh.triangles.size()) +
          "\nproperty list uchar uint vertex_indices\nend_header\n";
@@ -47,7 +49,8 @@ Mesh read_mesh(const std::filesystem::path& file) {
 void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh) {
   require_valid(mesh);
   std::string bytes = ply_header(mesh);
-  const std::size_t vertex_bytes = 12 + (mesh.normals.empty() ? 0 : 12) + (mesh.material_ids.empty() ? 0 : 1);
+  const std::size_t vertex_bytes = 12 + (mesh.normals.empty() ? 0 : 12) +
+                                   (mesh.velocities.empty() ? 0 : 12) + (mesh.material_ids.empty() ? 0 : 1);
   constexpr std::size_t k_triangle_bytes = 13;
   const std::size_t total =
       bytes.size() + mesh.vertices.size() * vertex_bytes + mesh.triangles.size() * k_triangle_bytes;
@@ -56,6 +59,7 @@ void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     append_little_endian(bytes, mesh.vertices[v]);
     if (!mesh.normals.empty()) append_little_endian(bytes, mesh.normals[v]);
+    if (!mesh.velocities.empty()) append_little_endian(bytes, mesh.velocities[v]);
     if (!mesh.material_ids.empty()) append_little_endian(bytes, mesh.material_ids[v]);
   }
   for (const auto& triangle : mesh.triangles) {

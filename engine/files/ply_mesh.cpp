@@ -12,11 +12,13 @@ constexpr float k_unit_tolerance = 1e-3f;
 void read_vertices(PlyReader& ply, const PlyElement& element, Mesh& mesh) {
   const auto position = ply.find_vector(element, {"x", "y", "z"}, true);
   const auto normal = ply.find_vector(element, {"nx", "ny", "nz"}, false);
+  const auto velocity = ply.find_vector(element, {"vx", "vy", "vz"}, false);
   const auto material = ply.find_scalar(element, "material_id");
   mesh.vertices.reserve(element.count);
   while (ply.next_row()) {
     mesh.vertices.push_back(ply.finite_vector(*position));
     if (normal) mesh.normals.push_back(ply.finite_vector(*normal));
+    if (velocity) mesh.velocities.push_back(ply.finite_vector(*velocity));
     if (material) {
       mesh.material_ids.push_back(
           static_cast<std::uint8_t>(ply.index(ply.value(*material), 256, "material_id")));

@@ -26,22 +26,25 @@ TEST(mesh_file, obj_gives_the_same_mesh_back) {
   EXPECT_NE(content_of(folder / "a.obj").find("f 1//1 3//3 2//2\n"), std::string::npos);
 }
 
-TEST(mesh_file, ply_gives_the_same_mesh_back_with_normals_and_materials) {
+TEST(mesh_file, ply_gives_the_same_mesh_back_with_normals_velocities_and_materials) {
   const TemporaryFolder folder;
   Mesh mesh = tetrahedron();
   write_mesh_ply(folder / "a.ply", mesh);
   Mesh read = read_mesh(folder / "a.ply");
   expect_same_shape(read, mesh);
   EXPECT_TRUE(read.normals.empty());
+  EXPECT_TRUE(read.velocities.empty());
   EXPECT_TRUE(read.material_ids.empty());
 
   constexpr float s = std::numbers::inv_sqrt3_v<float>;
   mesh.normals = {{0, 0, 1}, {1, 0, 0}, {s, s, s}, {0.6f, 0, -0.8f}};
+  mesh.velocities = {{0, 0, -9.8f}, {1e-3f, 0, 0}, {2, 3, 4}, {0, -1, 0}};
   mesh.material_ids = {0, 1, 254, 255};
   write_mesh_ply(folder / "a.ply", mesh);
   read = read_mesh(folder / "a.ply");
   expect_same_shape(read, mesh);
   EXPECT_EQ(read.normals, mesh.normals);
+  EXPECT_EQ(read.velocities, mesh.velocities);
   EXPECT_EQ(read.material_ids, mesh.material_ids);
 
   write_mesh_ply(folder / "none.ply", Mesh{});

@@ -45,7 +45,7 @@ ParticleFrame read_particles(const std::filesystem::path& file);
 /// `id,x,y,z,vx,vy,vz` with nine significant digits, which give back the same floats.
 void write_state_csv(const std::filesystem::path& file, const ParticleFrame& frame);
 
-/// Binary PLY with normals and material ids where the mesh has them.
+/// Binary PLY with normals, velocities and material ids where the mesh has them.
 void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh);
 /// Wavefront OBJ.
 void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh);

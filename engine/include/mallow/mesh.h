@@ -13,6 +13,7 @@ struct Mesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<Vec3> normals;               ///< per vertex, unit length; empty or as long as `vertices`
+  std::vector<Vec3> velocities;            ///< per vertex [m/s]; empty or as long as `vertices`
   std::vector<std::uint8_t> material_ids;  ///< per vertex, group the surface belongs to; empty: all 0
 };
 
