@@ -5,7 +5,6 @@
 
 #include "mallow/external_program.h"
 #include "mallow/failure.h"
-#include "mallow/frame_surface.h"
 
 namespace mallow::bench {
 
@@ -16,12 +15,15 @@ void ContactSheet::begin_take(const Scene& scene, const ParticleFrame& first,
   scene_.render.height = 280;
   scene_.surface.kernel_radius = 2.5f;  // the gallery's: particles of a thin sheet do not show one by one
   spacings_.assign(spacings.begin(), spacings.end());
+  surfacer_.emplace(scene_.surface, threads_);
   stills_.emplace(scene_, first, spacings_, threads_);
   ++takes_;
 }
 
 void ContactSheet::add(const ParticleFrame& frame) {
-  stills_->take(frame, cli::frame_surface(frame, spacings_, scene_.surface, threads_), picture(pictures_));
+  const Mesh& mesh =
+      surfacer_->draw({.positions = frame.positions, .groups = frame.groups, .spacings = spacings_});
+  stills_->take(frame, mesh, picture(pictures_));
   ++pictures_;
 }
 

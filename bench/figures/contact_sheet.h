@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mallow/files.h"
+#include "mallow/level_set.h"
 #include "mallow/scene.h"
 #include "mallow/stills.h"
 
@@ -29,6 +30,7 @@ class ContactSheet {
   std::filesystem::path file_;
   int threads_;
   Scene scene_;  ///< of the take at hand, with the sheet's size of pictures
+  std::optional<Surfacer> surfacer_;
   std::optional<cli::Stills> stills_;
   std::vector<float> spacings_;
   std::size_t takes_ = 0, pictures_ = 0;

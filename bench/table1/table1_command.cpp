@@ -66,6 +66,10 @@ void run(const Table1Options& options) {
                                              {"fps2_rendered", "with picture", 2},
                                              {"paper_fps2", "paper", 2},
                                              {"fps2_ratio", "ratio", 1},
+                                             {"surface_ms", "surface ms", 1},
+                                             {"plain_surface_ratio", "times OpenVDB's", 1},
+                                             {"surface_distance", "off [h]", 3},
+                                             {"plain_surface_distance", "OpenVDB's", 3},
                                              {"textbook_ms", "textbook ms", 1},
                                              {"textbook_ratio", "ratio", 1}})
                  .c_str(),

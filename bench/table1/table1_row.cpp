@@ -6,10 +6,13 @@
 #include "harness/statistics.h"
 #include "mallow/failure.h"
 #include "mallow/files.h"
-#include "mallow/frame_surface.h"
+#include "mallow/level_set.h"
+
 #include "mallow/run_report.h"
 #include "mallow/scene.h"
 #include "mallow/stills.h"
+#include "table1/plain_surface.h"
+#include "table1/rest_shape.h"
 #include "textbook/from_scene.h"
 
 namespace mallow::bench {
@@ -43,27 +46,53 @@ Run run_steps(const Scene& scene, int count, int threads) {
 
 /// Surface extraction and rendering of frames along a run [ms each].
 struct Frames {
-  std::vector<double> surface, picture;
+  std::vector<double> surface, plain_surface, picture;
   double triangles = 0;  ///< mean of the surfaces
+  /// Mean distance of the surface at rest from what was sampled, in spacings.
+  double distance = 0, plain_distance = 0;
 };
+
+/// Side of the voxels that a surfacer with so many of them along a frame takes [m].
+double voxel_size(const ParticleFrame& frame, float spacing, const SurfaceConfig& config) {
+  Aabb box{frame.positions[0], frame.positions[0]};
+  for (const Vec3& x : frame.positions) {
+    box.min = box.min.cwiseMin(x);
+    box.max = box.max.cwiseMax(x);
+  }
+  return static_cast<double>((box.max - box.min).maxCoeff() + 2 * config.particle_radius * spacing) /
+         config.voxels;
+}
 
 Frames draw_frames(const Scene& scene, const Table1Settings& settings, int threads) {
   Simulation simulation = build(scene, threads);
   simulation.prepare();
   std::vector<float> spacings;
   for (const GroupInfo& group : simulation.info().groups) spacings.push_back(group.spacing);
+  Surfacer surfacer(scene.surface, threads);
   cli::Stills stills(scene, snapshot(simulation), spacings, threads);
   const std::filesystem::path picture = std::filesystem::temp_directory_path() / "mallow-bench-table1.png";
   Frames frames;
+  const float spacing = *std::max_element(spacings.begin(), spacings.end());
+  const auto draw = [&](const ParticleFrame& frame) -> const Mesh& {
+    return surfacer.draw({.positions = frame.positions, .groups = frame.groups, .spacings = spacings});
+  };
+  const auto draw_plain = [&](const ParticleFrame& frame) {
+    return plain_surface(frame.positions, spacing, scene.surface.particle_radius,
+                         voxel_size(frame, spacing, scene.surface), threads);
+  };
+  const RestShape shape(scene, threads);
+  const ParticleFrame rest = snapshot(simulation);
+  frames.distance = shape.mean_distance(draw(rest)) / static_cast<double>(spacing);
+  frames.plain_distance = shape.mean_distance(draw_plain(rest)) / static_cast<double>(spacing);
   for (int step = 1; step <= settings.steps; ++step) {
     simulation.step();
     if (step % settings.surface_every != 0) continue;
     const ParticleFrame frame = snapshot(simulation);
-    Mesh mesh;
-    frames.surface.push_back(
-        milliseconds([&] { mesh = cli::frame_surface(frame, spacings, scene.surface, threads); }));
-    frames.triangles += static_cast<double>(mesh.triangles.size());
-    frames.picture.push_back(milliseconds([&] { stills.take(frame, mesh, picture); }));
+    const Mesh* mesh = nullptr;
+    frames.surface.push_back(milliseconds([&] { mesh = &draw(frame); }));
+    frames.plain_surface.push_back(milliseconds([&] { draw_plain(frame); }));
+    frames.triangles += static_cast<double>(mesh->triangles.size());
+    frames.picture.push_back(milliseconds([&] { stills.take(frame, *mesh, picture); }));
   }
   std::filesystem::remove(picture);
   frames.triangles /= static_cast<double>(std::max<std::size_t>(1, frames.surface.size()));
@@ -151,6 +180,10 @@ Json measure_row(const PaperRow& paper, const Table1Settings& settings, int thre
       {"fps1_ratio", 1000 / ms / paper.fps1},
       {"surface_ms", surface_ms},
       {"triangles", frames.triangles},
+      {"surface_distance", frames.distance},
+      {"plain_surface_ms", median(frames.plain_surface)},
+      {"plain_surface_ratio", median(frames.plain_surface) / surface_ms},
+      {"plain_surface_distance", frames.plain_distance},
       {"fps2", 1000 / (ms + surface_ms)},
       {"picture_ms", picture_ms},
       {"fps2_rendered", 1000 / (ms + surface_ms + picture_ms)},

@@ -54,6 +54,17 @@ MALLOW_INLINE Floats larger(const Floats& a, const Floats& b) {
   return a > b ? a : b;
 #endif
 }
+/// The smaller of two numbers, `b` where one is not a number.
+MALLOW_INLINE Floats smaller(const Floats& a, const Floats& b) {
+#if defined(__AVX__)
+  return reinterpret_cast<Floats>(_mm256_min_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b)));
+#elif defined(__SSE__)
+  const Halves x = halves(a), y = halves(b);
+  return joined({_mm_min_ps(x.low, y.low), _mm_min_ps(x.high, y.high)});
+#else
+  return a < b ? a : b;
+#endif
+}
 /// Where a number is larger than another.
 MALLOW_INLINE Ints is_larger(const Floats& a, const Floats& b) {
 #if defined(__SSE__) && !defined(__AVX__)

@@ -1,7 +1,7 @@
 // The surface around particles of Zhu & Bridson 2005, "Animating sand as a fluid", section 5:
 //   φ(x) = |x − x̄| − r,   x̄ = Σ w_i x_i / Σ w_i,   w_i = max(0, 1 − |x − x_i|²/R²)³
 // symbol | here           | unit
-// x_i    | x, y, z        | offsets from the leaf's first voxel, here divided by R
+// x_i    | particles      | offsets from the block's first voxel, divided by R
 // R      | 1              | kernel radius
 // r      | offset + ...   | grows with the weight, see SurfaceShape::extra_offset
 // Departs: |x − x̄|² grows by half of what the variance Σ w_i |x_i − x̄|² / Σ w_i is above that of one part of
@@ -11,135 +11,152 @@
 // crumbs in gaps of two spacings.
 #include "level_set/surface_kernel.h"
 
+#include "core/cluster_lanes.h"
+
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
-/// A row of voxels along z: the compiler maps it to what the level's registers are.
-using Row = float __attribute__((vector_size(k_leaf_side * sizeof(float))));
+static_assert(k_cluster == k_block_side, "a row of voxels is a row of lanes");
 
-struct RowSums {
-  Row weight{}, x{}, y{}, z{}, distance2{};
+/// Weights below this are no part of a body: a particle's is so far out at 0.85 of its radius. Interpolated
+/// sums are wrong by a fifth of it at the most.
+constexpr float k_least_weight = 0.02f;
+
+struct Sums {
+  Floats weight, x, y, z, square;
 };
 
-/// Particles within the kernel radius of a plane of rows.
-struct PlaneParticles {
-  float *x, *y, *z;
-  std::size_t count;
-};
-
-RowSums sum_row(const PlaneParticles& near, float row_x, float row_y, const Row& row_z) noexcept {
-  RowSums sums;
-  for (std::size_t p = 0; p < near.count; ++p) {
-    const float dx = near.x[p] - row_x, dy = near.y[p] - row_y;
-    const Row dz = near.z[p] - row_z;
-    const Row distance2 = dz * dz + (dx * dx + dy * dy);
-    const Row t = distance2 < 1.0f ? 1.0f - distance2 : Row{};
-    const Row w = t * t * t;
-    sums.weight += w;
-    sums.x += w * dx;
-    sums.y += w * dy;
-    sums.z += w * dz;
-    sums.distance2 += w * distance2;
-  }
-  return sums;
+MALLOW_INLINE void store(const Floats& value, float* to) {
+  __builtin_memcpy(to, &value, sizeof value);
 }
 
-float distance_at(const SurfaceShape& shape, float weight, float x, float y, float z,
-                  float distance2) noexcept {
-  if (!(weight > 0)) return shape.background;
-  const float double_fullness = 2.0f * weight / shape.full_weight;
-  const float full = double_fullness < 1.0f ? double_fullness : 1.0f;
-  const float mx = x / weight, my = y / weight, mz = z / weight;
-  const float from_mean2 = mx * mx + my * my + mz * mz;
-  const float excess = distance2 / weight - from_mean2 - (shape.spread + shape.extra_spread * full);
-  const float r = shape.offset + shape.extra_offset * full;
-  const float distance =
-      (__builtin_sqrtf(from_mean2 + (excess > 0 ? k_excess_share * excess : 0)) - r) / shape.voxel_size;
-  if (distance > shape.background) return shape.background;
-  return distance < -shape.background ? -shape.background : distance;
+/// 1 − |x_i − x|², at least 0, of eight points and one particle.
+MALLOW_INLINE Floats nearness(const Floats& square) {
+  return larger(1.0f - square, Floats{});
 }
 
-/// A leaf's particles, and those of them that reach the plane of rows at hand.
-class LeafRows {
- public:
-  LeafRows(const SurfaceShape& shape, const float* x, const float* y, const float* z, std::size_t count,
-           float* scratch) noexcept
-      : shape_(shape),
-        x_(x),
-        y_(y),
-        z_(z),
-        count_(count),
-        near_{scratch, scratch + count, scratch + 2 * count, 0} {
-    for (int k = 0; k < k_leaf_side; ++k) row_z_[k] = static_cast<float>(k) * shape.voxel_size;
-  }
-
-  void select_plane(int i) noexcept {
-    row_x_ = static_cast<float>(i) * shape_.voxel_size;
-    near_.count = 0;
-    for (std::size_t p = 0; p < count_; ++p) {
-      // Always written, kept only if near: no branch to predict.
-      const float px = x_[p] * shape_.voxel_size;
-      near_.x[near_.count] = px;
-      near_.y[near_.count] = y_[p] * shape_.voxel_size;
-      near_.z[near_.count] = z_[p] * shape_.voxel_size;
-      near_.count += (px - row_x_) * (px - row_x_) < 1.0f;
+void sum_at_points(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
+                   float* sums) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    Sums s = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
+      const Floats square = dx * dx + dy * dy + dz * dz;
+      const Floats t = nearness(square);
+      const Floats w = t * t * t;
+      s.weight += w;
+      s.x += w * dx;
+      s.y += w * dy;
+      s.z += w * dz;
+      s.square += w * square;
     }
+    store(s.weight, sums + k);
+    store(s.x, sums + n + k);
+    store(s.y, sums + 2 * n + k);
+    store(s.z, sums + 3 * n + k);
+    store(s.square, sums + 4 * n + k);
   }
+}
 
-  void fill_row(int j, float* distances) const noexcept {
-    const RowSums sums = sum_row(near_, row_x_, static_cast<float>(j) * shape_.voxel_size, row_z_);
-    for (int k = 0; k < k_leaf_side; ++k)
-      distances[k] = distance_at(shape_, sums.weight[k], sums.x[k], sums.y[k], sums.z[k], sums.distance2[k]);
-  }
+MALLOW_INLINE Floats cut(const SurfaceShape& shape, const Floats& distance) {
+  return smaller(larger(distance, all(-shape.background)), all(shape.background));
+}
 
- private:
-  const SurfaceShape& shape_;
-  const float *x_, *y_, *z_;
-  std::size_t count_;
-  PlaneParticles near_;
-  float row_x_ = 0;
-  Row row_z_;
-};
+MALLOW_INLINE Floats distance_of(const SurfaceShape& shape, const Sums& s) {
+  const Floats full = smaller(2.0f / shape.full_weight * s.weight, all(1.0f));
+  const Floats per_weight = 1.0f / larger(s.weight, all(k_least_weight));
+  const Floats mx = s.x * per_weight, my = s.y * per_weight, mz = s.z * per_weight;
+  const Floats from_mean = mx * mx + my * my + mz * mz;
+  const Floats excess = s.square * per_weight - from_mean - (shape.spread + shape.extra_spread * full);
+  const Floats r = shape.offset + shape.extra_offset * full;
+  const Floats distance = square_root(from_mean + k_excess_share * larger(excess, Floats{})) - r;
+  const Ints body = is_larger(s.weight, all(k_least_weight));
+  const Floats outside = where(~body, all(shape.background));
+  return where(body, cut(shape, distance * (1.0f / shape.voxel_size))) + outside;
+}
 
-constexpr int k_probed_rows[] = {0, k_leaf_side / 2, k_leaf_side - 1};
+void distances(const SurfaceShape& shape, const float* sums, std::size_t n, float* to) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster)
+    store(distance_of(shape, {load(sums + k), load(sums + n + k), load(sums + 2 * n + k),
+                              load(sums + 3 * n + k), load(sums + 4 * n + k)}),
+          to + k);
+}
 
-/// Looks at nine of the 64 rows. A face cannot cut the leaf and miss its corners, and the rows are closer
-/// than the spheres of lone particles are wide.
-LeafContent probe_leaf(const SurfaceShape& shape, LeafRows& rows) noexcept {
-  const float deep = -0.5f * shape.offset / shape.voxel_size;
-  bool outside = true, inside = true;
-  for (const int i : k_probed_rows) {
-    rows.select_plane(i);
-    for (const int j : k_probed_rows) {
-      float distances[k_leaf_side];
-      rows.fill_row(j, distances);
-      for (const float distance : distances) {
-        outside = outside && distance >= shape.background;
-        inside = inside && distance <= deep;
+/// A row of voxels from a row of nodes: Σ_n w[·][n] node_n, `step` rows of lanes apart.
+MALLOW_INLINE Floats blend(const float* weights, const Floats* nodes, std::size_t step) {
+  Floats sum = weights[0] * nodes[0];
+  for (std::size_t n = 1; n < k_nodes; ++n) sum += weights[n] * nodes[n * step];
+  return sum;
+}
+
+void fill_block(const SurfaceShape& shape, const NodeWeights& weights, const float* nodes,
+                float* to) noexcept {
+  constexpr std::size_t k_side = k_block_side, k_plane = k_nodes * k_nodes, k_all = k_nodes * k_plane;
+  // Weights along z, a lane a voxel.
+  Floats along_z[k_nodes];
+  for (std::size_t n = 0; n < k_nodes; ++n)
+    for (std::size_t v = 0; v < k_side; ++v) along_z[n][v] = weights.w[v][n];
+  // sums[sum][node x][voxel y], each a row along z.
+  Floats by_plane[k_sums][k_nodes][k_side];
+  for (std::size_t s = 0; s < k_sums; ++s) {
+    for (std::size_t x = 0; x < k_nodes; ++x) {
+      Floats rows[k_nodes];
+      for (std::size_t y = 0; y < k_nodes; ++y) {
+        const float* const from = nodes + s * k_all + x * k_plane + y * k_nodes;
+        rows[y] = from[0] * along_z[0];
+        for (std::size_t n = 1; n < k_nodes; ++n) rows[y] += from[n] * along_z[n];
       }
-      if (!outside && !inside) return LeafContent::surface;
+      for (std::size_t y = 0; y < k_side; ++y) by_plane[s][x][y] = blend(weights.w[y], rows, 1);
     }
   }
-  return outside ? LeafContent::outside : LeafContent::inside;
+  for (std::size_t x = 0; x < k_side; ++x) {
+    for (std::size_t y = 0; y < k_side; ++y) {
+      const auto at = [&](std::size_t s) { return blend(weights.w[x], &by_plane[s][0][y], k_side); };
+      store(distance_of(shape, {at(0), at(1), at(2), at(3), at(4)}), to + (x * k_side + y) * k_side);
+    }
+  }
 }
 
-LeafContent fill_leaf(const SurfaceShape& shape, const float* x, const float* y, const float* z,
-                      std::size_t count, float* scratch, float* distances) noexcept {
-  LeafRows rows(shape, x, y, z, count, scratch);
-  if (shape.probe) {
-    const LeafContent content = probe_leaf(shape, rows);
-    if (content != LeafContent::surface) return content;
+void sphere_distances(const SurfaceShape& shape, ConstVectors points, std::size_t n, ConstVectors particles,
+                      std::size_t count, float* to) noexcept {
+  const float farthest = shape.offset + shape.background * shape.voxel_size;
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    Floats least = all(farthest * farthest);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
+      least = smaller(least, dx * dx + dy * dy + dz * dz);
+    }
+    store(cut(shape, (square_root(least) - shape.offset) * (1.0f / shape.voxel_size)), to + k);
   }
-  for (int i = 0; i < k_leaf_side; ++i) {
-    rows.select_plane(i);
-    for (int j = 0; j < k_leaf_side; ++j) rows.fill_row(j, distances + (i * k_leaf_side + j) * k_leaf_side);
+}
+
+void mean_at_points(ConstVectors points, std::size_t n, ConstVectors particles, ConstVectors values,
+                    std::size_t count, Vectors means) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    Floats weight = {}, x = {}, y = {}, z = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
+      const Floats t = nearness(dx * dx + dy * dy + dz * dz);
+      const Floats w = t * t * t;
+      weight += w;
+      x += w * values.x[i];
+      y += w * values.y[i];
+      z += w * values.z[i];
+    }
+    const Floats per_weight = where(is_larger(weight, Floats{}), 1.0f / weight);
+    store(x * per_weight, means.x + k);
+    store(y * per_weight, means.y + k);
+    store(z * per_weight, means.z + k);
   }
-  return LeafContent::surface;
 }
 
 }  // namespace
 
 extern const SurfaceKernels surface_kernels;
-const SurfaceKernels surface_kernels = {fill_leaf};
+const SurfaceKernels surface_kernels = {sum_at_points, distances, fill_block, sphere_distances,
+                                        mean_at_points};
 
 }  // namespace mallow::MALLOW_LEVEL

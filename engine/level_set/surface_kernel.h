@@ -3,12 +3,10 @@
 #include <cstddef>
 
 #include "core/isa.h"
+#include "core/raw_columns.h"
+#include "level_set/voxel_frame.h"
 
 namespace mallow {
-
-/// Voxels along a side of the blocks that are filled at once: the leaves of the level set.
-inline constexpr int k_leaf_side = 8;
-inline constexpr int k_leaf_voxels = k_leaf_side * k_leaf_side * k_leaf_side;
 
 /// Share of the variance that is too much for one part of a body, see SurfaceShape::spread, in the squared
 /// distance.
@@ -24,19 +22,36 @@ struct SurfaceShape {
   float extra_spread;  ///< added to it at fullness 1/2
   float full_weight;   ///< Σ w in the middle of a body
   float background;    ///< distances are cut here [voxels]
-  bool probe;          ///< the voxels are so fine against the particles that nine rows tell what is in a leaf
 };
 
-enum class LeafContent { outside, inside, surface };
+/// Sums over the particles about a point: Σ w, Σ w (x_i − x) and Σ w |x_i − x|².
+inline constexpr std::size_t k_sums = 5;
+/// Nodes along a side of what a block's sums are interpolated from.
+inline constexpr std::size_t k_nodes = 5;
 
+/// w[v][n]: share of node n in voxel v, along one axis.
+struct NodeWeights {
+  float w[k_block_side][k_nodes];
+};
+
+/// Points come in eights, as three arrays [kernel radii]; particles are those within reach of them, and may
+/// be read to the next whole eight. Sums of n points are five arrays of n.
 struct SurfaceKernels {
-  /// Fills `distances`, z fastest, with the signed distances of a leaf's voxels [voxels], unless the leaf
-  /// lies deep inside or outside. `x, y, z`: offsets of `count` particles from the leaf's first voxel
-  /// [voxels]; `scratch`: 3 · count floats.
-  LeafContent (*fill_leaf)(const SurfaceShape&, const float* x, const float* y, const float* z,
-                           std::size_t count, float* scratch, float* distances) noexcept;
+  void (*sum_at_points)(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
+                        float* sums) noexcept;
+  /// Signed distances [voxels] from sums.
+  void (*distances)(const SurfaceShape&, const float* sums, std::size_t n, float* distances) noexcept;
+  /// Distances of a block's voxels, z fastest, from the sums at its 5 × 5 × 5 nodes (five arrays of 125, z
+  /// fastest): sums are interpolated, as they are smooth where distances have creases.
+  void (*fill_block)(const SurfaceShape&, const NodeWeights&, const float* nodes, float* distances) noexcept;
+  /// Distances to the nearest of the spheres of radius `offset` around the particles [voxels], cut at the
+  /// background.
+  void (*sphere_distances)(const SurfaceShape&, ConstVectors points, std::size_t n, ConstVectors particles,
+                           std::size_t count, float* distances) noexcept;
+  /// Σ w value / Σ w at points, for three values a particle; zero where there is no particle.
+  void (*mean_at_points)(ConstVectors points, std::size_t n, ConstVectors particles, ConstVectors values,
+                         std::size_t count, Vectors means) noexcept;
 };
 MALLOW_DECLARE_LEVELS(SurfaceKernels, surface_kernels)
-const SurfaceKernels& select_surface_kernels(InstructionLevel level);
 
 }  // namespace mallow

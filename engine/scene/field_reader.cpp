@@ -79,12 +79,13 @@ class ValueReader {
     if (!text.empty()) *path = text;
   }
 
-  void operator()(Formulation* formulation) const {
+  template <Choice T>
+  void operator()(T* choice) const {
     const std::string* given = node_.get_if<std::string>();
-    const auto name = given ? std::find(k_formulation_names.begin(), k_formulation_names.end(), *given)
-                            : k_formulation_names.end();
-    if (name == k_formulation_names.end()) return complain();
-    *formulation = static_cast<Formulation>(name - k_formulation_names.begin());
+    constexpr auto k_names = choices(T{});
+    const auto name = given ? std::find(k_names.begin(), k_names.end(), *given) : k_names.end();
+    if (name == k_names.end()) return complain();
+    *choice = static_cast<T>(name - k_names.begin());
   }
 
   /// Any level there is: a scene may have been written for another machine, and is looked at on this one.

@@ -48,8 +48,9 @@ struct ValueText {
   std::string operator()(const Count3* count) const { return list_text(*count); }
   std::string operator()(const std::string* text) const { return text->empty() ? "" : toml_string(*text); }
   std::string operator()(const std::filesystem::path* path) const { return (*this)(&path->native()); }
-  std::string operator()(const Formulation* formulation) const {
-    return toml_string(k_formulation_names[static_cast<std::size_t>(*formulation)]);
+  template <Choice T>
+  std::string operator()(const T* choice) const {
+    return toml_string(choices(T{})[static_cast<std::size_t>(*choice)]);
   }
   std::string operator()(const InstructionLevel* level) const { return toml_string(name(*level)); }
   std::string operator()(const AlphaSchedule* alpha) const {
@@ -82,8 +83,9 @@ struct Allowed {
   std::string operator()(const AlphaSchedule*) const {
     return "a number" + range + ", or [[time, alpha], ...] with times that increase and alphas" + range;
   }
-  std::string operator()(const Formulation*) const {
-    return toml_string(k_formulation_names[0]) + " or " + toml_string(k_formulation_names[1]);
+  template <Choice T>
+  std::string operator()(const T*) const {
+    return toml_string(choices(T{})[0]) + " or " + toml_string(choices(T{})[1]);
   }
   std::string operator()(const InstructionLevel*) const {
     std::string text;

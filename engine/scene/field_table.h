@@ -10,6 +10,7 @@
 
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
+#include "mallow/surface_config.h"
 #include "mallow/vec3.h"
 
 namespace mallow::scene_file {
@@ -34,7 +35,7 @@ using Count3 = std::array<int, 3>;
 /// Where the value of a field lives; the type says what TOML may hold.
 using Target = std::variant<bool*, int*, std::optional<int>*, float*, std::optional<float>*, Vec3*,
                             std::optional<Vec3>*, Count3*, std::string*, std::filesystem::path*,
-                            AlphaSchedule*, Formulation*, std::optional<InstructionLevel>*>;
+                            AlphaSchedule*, Formulation*, SurfaceKind*, std::optional<InstructionLevel>*>;
 
 /// In place of Field::left_out: a scene without the key is refused.
 inline constexpr char k_required[] = "required";
@@ -57,7 +58,14 @@ using FieldTable = std::vector<Field>;
 std::string allowed(const Field& field);
 /// The value as TOML, or an empty string where it is left out.
 std::string value_text(const Field& field);
-/// Names of a Formulation, by its number.
-inline constexpr std::array<const char*, 2> k_formulation_names{"conservative", "printed"};
+/// Names of the values of a choice, by their numbers.
+constexpr std::array<const char*, 2> choices(Formulation) {
+  return {"conservative", "printed"};
+}
+constexpr std::array<const char*, 2> choices(SurfaceKind) {
+  return {"blended", "spheres"};
+}
+template <class T>
+concept Choice = requires { choices(T{}); };
 
 }  // namespace mallow::scene_file

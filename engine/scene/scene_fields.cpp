@@ -177,6 +177,10 @@ FieldTable fields(SurfaceConfig& config) {
       {"kernel_radius", &config.kernel_radius, between(1, 4), "h", "radius in which particles are blended"},
       {"particle_radius", &config.particle_radius, between(0.1, 1), "h",
        "distance of the surface from the outermost particles"},
+      {"kind", &config.kind, k_any, "", "what the surface is the zero of"},
+      {"joined", &config.joined, k_any, "", "one surface around all groups"},
+      {"smoothing", &config.smoothing, between(0, 100), "", "rounds that smooth the mesh and keep its volume"},
+      {"memory_limit", &config.memory_limit, k_positive, "GiB", "a surface that would need more is refused"},
   };
 }
 

@@ -198,7 +198,7 @@ TEST(surface, same_bits_for_any_thread_count) {
 TEST(surface, refuses_grids_that_are_too_large) {
   const std::vector<Vec3> cube = cube_points(4, 1);
   expect_words(config_error([&] { surface(cube, 1, {.voxel_size = 1e-4f}); }),
-               {"surface.voxel_size", "0.0001", "2^31 voxels"});
+               {"surface.voxel_size", "0.0001", "GiB", "surface.memory_limit allows 4 GiB"});
   expect_words(config_error([&] { surface(cube, 1, {.voxel_size = 1e-30f}); }),
                {"surface.voxel_size", "1e-30"});
   expect_words(config_error([&] { surface(cube, 1e30f, {.voxel_size = 1}); }), {"surface.voxel_size"});
@@ -209,10 +209,22 @@ TEST(surface, refuses_grids_that_are_too_large) {
 TEST(surface, refuses_bad_values_and_says_which) {
   std::vector<Vec3> points = cube_points(3, 1);
   points[11].z() = std::numeric_limits<float>::infinity();
-  expect_words(
-      config_error([&] { surface(points, -1, {.voxels = 4, .kernel_radius = 9, .particle_radius = 0}, -2); }),
-      {"positions[11]", "inf", "spacing: -1", "surface.voxels: 4", "surface.kernel_radius: 9",
-       "surface.particle_radius: 0", "threads: -2"});
+  expect_words(config_error([&] {
+                 surface(points, 1, {.voxels = 4, .kernel_radius = 9, .particle_radius = 0, .smoothing = 101},
+                         -2);
+               }),
+               {"surface.voxels: 4", "surface.kernel_radius: 9", "surface.particle_radius: 0",
+                "surface.smoothing: 101", "threads: -2"});
+  expect_words(config_error([&] { surface(points, -1, {}); }), {"positions[11]", "inf", "spacings[0]: -1"});
+  points[11].z() = 0;
+  const std::vector<Vec3> few(3, Vec3(0, 0, 0));
+  const std::vector<std::uint8_t> groups(points.size(), 2);
+  const std::vector<float> spacings{1, 1};
+  expect_words(config_error([&] {
+                 Surfacer({}).draw({points, few, groups, spacings});
+               }),
+               {"velocities: 3 are not allowed", "27", "groups[0]: 2 is not allowed"});
+  expect_words(config_error([&] { Surfacer({}).draw({points, {}, {}, {}}); }), {"spacings"});
   expect_words(config_error([&] { surface({}, 1, {.voxel_size = 0.0f}); }), {"surface.voxel_size: 0"});
 }
 

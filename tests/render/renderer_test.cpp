@@ -138,6 +138,7 @@ TEST(renderer, a_flat_lit_wall_has_no_acne) {
   Mesh quad{.vertices = {{-4, -4, 0.5f}, {4, -4, 0.5f}, {4, 4, 0.5f}, {-4, 4, 0.5f}},
             .triangles = {{0, 1, 2}, {0, 2, 3}},
             .normals = {},
+            .velocities = {},
             .material_ids = {}};
   const Image image = Renderer(small(), 1).render(quad, k_palette, {}, camera);
   int lowest = 255, highest = 0;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "mallow/failure.h"
-#include "mallow/frame_surface.h"
 #include "mallow/interrupt.h"
+#include "mallow/level_set.h"
 #include "mallow/progress.h"
 #include "mallow/stills.h"
 
@@ -19,9 +19,12 @@ class FrameWriter {
  public:
   FrameWriter(const Scene& scene, const RunPlan& plan, const Cache& cache, const ParticleFrame& first,
               RunReport& report)
-      : scene_(scene), plan_(plan), cache_(cache), report_(report) {
+      : cache_(cache), report_(report) {
     for (const GroupInfo& group : report.info.groups) spacings_.push_back(group.spacing);
-    if (plan.surface) std::filesystem::create_directories(cache.surface_file(0).parent_path());
+    if (plan.surface) {
+      std::filesystem::create_directories(cache.surface_file(0).parent_path());
+      surfacer_.emplace(scene.surface, plan.threads);
+    }
     if (plan.images) {
       std::filesystem::create_directories(cache.images_folder());
       stills_.emplace(scene, first, spacings_, plan.threads);
@@ -33,24 +36,23 @@ class FrameWriter {
       const StageTimer timer(report_.stage_seconds, Stage::particles);
       write_particles(cache_.particles_file(number), frame);
     }
-    Mesh mesh;
-    if (plan_.surface) {
+    const Mesh* mesh = nullptr;
+    if (surfacer_) {
       const StageTimer timer(report_.stage_seconds, Stage::surface);
-      mesh = frame_surface(frame, spacings_, scene_.surface, plan_.threads);
-      write_mesh_ply(cache_.surface_file(number), mesh);
+      mesh = &surfacer_->draw({frame.positions, frame.velocities, frame.groups, spacings_});
+      write_mesh_ply(cache_.surface_file(number), *mesh);
     }
     if (stills_) {
       const StageTimer timer(report_.stage_seconds, Stage::pictures);
-      stills_->take(frame, mesh, cache_.image_file(number));
+      stills_->take(frame, mesh ? *mesh : Mesh{}, cache_.image_file(number));
     }
   }
 
  private:
-  const Scene& scene_;
-  const RunPlan& plan_;
   const Cache& cache_;
   RunReport& report_;
   std::vector<float> spacings_;
+  std::optional<Surfacer> surfacer_;
   std::optional<Stills> stills_;
 };
 

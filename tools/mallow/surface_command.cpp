@@ -8,7 +8,7 @@
 #include "mallow/cached_run.h"
 #include "mallow/failure.h"
 #include "mallow/files.h"
-#include "mallow/frame_surface.h"
+#include "mallow/level_set.h"
 
 namespace mallow::cli {
 namespace {
@@ -19,11 +19,12 @@ void draw_surfaces(const CachedRunOptions& options) {
   std::size_t count = 0;
   try {
     std::filesystem::create_directories(run.cache.surface_file(0).parent_path());
+    Surfacer surfacer(run.scene.surface, run.threads);
     count = for_each_frame(run, "surfacing", [&](int number) {
       const StageTimer timer(seconds, Stage::surface);
       const ParticleFrame frame = read_particles(run.cache.particles_file(number));
       write_mesh_ply(run.cache.surface_file(number),
-                     frame_surface(frame, run.spacings, run.scene.surface, run.threads));
+                     surfacer.draw({frame.positions, frame.velocities, frame.groups, run.spacings}));
     });
     close_cached_run(run, seconds, std::array{Stage::surface});
   } catch (const std::exception& error) {

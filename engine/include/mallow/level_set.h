@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <span>
 
 #include "mallow/body.h"
@@ -17,9 +21,41 @@ inline constexpr int k_mesh_voxels = 192;
 /// Throws ConfigError where the mesh is empty, open (why_not_closed) or has a vertex that is not finite.
 ImplicitShape mesh_shape(const Mesh& mesh, int voxels = k_mesh_voxels, int threads = 0);
 
-/// A closed surface around particles: Zhu & Bridson 2005 on a narrow-band level set, then dual contouring.
-/// positions: [m], finite. spacing: h of the sampled body [m], > 0. An empty span gives an empty mesh.
-/// Throws ConfigError where a value is out of range or the grid would need more than 2^31 voxels in its band.
+/// Particles that surfaces are drawn around.
+struct SurfaceParticles {
+  std::span<const Vec3> positions;        ///< [m], finite
+  std::span<const Vec3> velocities = {};  ///< [m/s]; empty, or one each: then vertices have velocities too
+  std::span<const std::uint8_t> groups = {};  ///< group of each; empty: all in group 0
+  std::span<const float> spacings;            ///< h of each group [m], > 0
+};
+
+/// Draws the surfaces of one frame after another, and keeps its memory from frame to frame. A mesh is closed,
+/// manifold and oriented; its vertices have normals and, where particles have them, velocities and material
+/// ids, which are groups. Same particles, same bits, for any number of threads.
+class Surfacer {
+ public:
+  /// threads: 0 takes all there are. Throws ConfigError where a value is out of range.
+  explicit Surfacer(const SurfaceConfig& config, int threads = 0);
+  ~Surfacer();
+  Surfacer(Surfacer&&) noexcept;
+  Surfacer& operator=(Surfacer&&) noexcept;
+
+  /// The surfaces of all groups as one mesh, which holds until the next call; no particles, no mesh. Throws
+  /// ConfigError where particles are not as said, or the surface would take more than
+  /// SurfaceConfig::memory_limit.
+  const Mesh& draw(const SurfaceParticles& particles);
+  /// The level sets of the frame drawn last as OpenVDB grids "surface" (with several groups "surface_0" and
+  /// on): signed distances [m], negative inside. Throws IoError where the file cannot be written.
+  void write_level_set(const std::filesystem::path& file) const;
+  /// Memory it holds [bytes].
+  std::size_t bytes() const;
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+/// The surface around the particles of one body, h = spacing [m]: a Surfacer that draws once.
 Mesh surface(std::span<const Vec3> positions, float spacing, const SurfaceConfig& config, int threads = 0);
 
 }  // namespace mallow

@@ -4,6 +4,13 @@
 
 namespace mallow {
 
+/// What the surface is the zero of.
+enum class SurfaceKind {
+  blended,  ///< the distance from the kernel-weighted mean of the particles near by: smooth [Zhu & Bridson
+            ///< 2005]
+  spheres,  ///< the distance from the nearest particle: a sphere around each, fast and rough
+};
+
 /// How a surface is drawn around particles.
 struct SurfaceConfig {
   /// Voxels along the longest side of the particles' bounding box, in [8, 1024]; used where voxel_size is
@@ -15,6 +22,15 @@ struct SurfaceConfig {
   float kernel_radius = 2.0f;
   /// Distance of the surface from the outermost particles, in spacings, in [0.1, 1].
   float particle_radius = 0.55f;
+  SurfaceKind kind = SurfaceKind::blended;
+  /// One surface around all groups, which melts where they touch, in place of one around each. The widest
+  /// spacing counts for all.
+  bool joined = false;
+  /// Rounds that smooth the mesh, in [0, 100]; each evens out bumps of about a voxel and keeps the volume
+  /// [Taubin 1995].
+  int smoothing = 0;
+  /// Memory that a surface may take [GiB], > 0; one that would need more is refused before it is allocated.
+  float memory_limit = 4.0f;
 };
 
 }  // namespace mallow

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mallow/vec3.h"
+
+namespace mallow {
+
+/// Number of a block that is not there.
+inline constexpr std::uint32_t k_no_block = UINT32_MAX;
+
+/// A set of blocks of a grid, kept as bits of cubes of 4³ blocks, which costs memory for the cubes there are
+/// and not for the box they lie in. Blocks are numbered cube by cube, by coordinates (x slowest), whatever
+/// the order they came in. Coordinates: −2^20 to 2^20 − 1.
+class BlockMap {
+ public:
+  using Coord = Eigen::Vector3i;
+
+  void clear();
+  /// All blocks of a box, its corners included. Numbers hold until the next insert.
+  void insert(const Coord& first, const Coord& last);
+  void insert(const Coord& block) { insert(block, block); }
+  /// Numbers the blocks and lists them.
+  void number();
+  std::uint32_t find(const Coord& block) const;
+  /// Blocks there are, numbered or not.
+  std::size_t size() const { return size_; }
+  std::span<const Coord> blocks() const { return blocks_; }
+  std::size_t bytes() const;
+
+ private:
+  static constexpr int k_cube_side = 4;
+  static constexpr std::uint64_t k_free = UINT64_MAX;
+  struct Cube {
+    std::uint64_t key = k_free;
+    std::uint64_t blocks = 0;  ///< a bit each, z fastest
+    std::uint32_t first = 0;   ///< number of the first of them
+  };
+
+  std::size_t slot_of(std::uint64_t key) const;
+  Cube& cube(std::uint64_t key);
+
+  std::vector<Cube> cubes_;  ///< open addressing; a power of two, at most half full
+  std::size_t used_ = 0, size_ = 0;
+  std::vector<std::uint64_t> keys_;
+  std::vector<Coord> blocks_;
+};
+
+}  // namespace mallow

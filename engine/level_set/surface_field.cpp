@@ -1,0 +1,517 @@
+#include "level_set/surface_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "core/parallel.h"
+#include "mallow/errors.h"
+#include "mallow/instruction_level.h"
+
+namespace mallow {
+namespace {
+
+/// Blocks that a thread takes at once.
+constexpr std::size_t k_blocks_at_once = 8;
+
+// Variance of particles about their mean that is taken for one part of a body, in squared kernel radii. A
+// face of a full body has 0.19 at a fullness of 0.46, its inside 0.27; a cubic lattice of 1.3 spacings 0.32
+// at 0.5. The middle of a gap of 2.2 spacings has 0.44 at 0.29, that of a pair 2.2 apart 0.30 at 0.13. With
+// the default radius two faces, and a pair, part at a distance of about two spacings.
+constexpr float k_spread = 0.0375f, k_extra_spread = 0.2625f;
+/// The least of it, in squared spacings: a small kernel sees but few particles of a full body.
+constexpr float k_least_spread = 0.15f;
+
+/// Nodes are at most this share of the kernel radius apart. Cubic interpolation is off by 0.6% of a
+/// particle's weight at a quarter.
+constexpr double k_node_distance = 0.2;
+/// Probes are at most this far apart, in spacings: less than a sphere is wide at the default particle radius
+/// and at most what three voxels of background bridge.
+constexpr double k_probe_distance = 0.75;
+/// Where a cell holds more particles than this (two are usual), of those in one place, an eighth of a spacing
+/// wide, so many count: more would say nothing new, and a crowd in one point would take for ever.
+constexpr std::uint32_t k_crowd = 64, k_crowd_keeps = 4;
+/// Bytes of a block that the surface passes through: distances, sums, neighbours, mesh.
+constexpr double k_block_bytes = 8192, k_gibibyte = 1 << 30;
+
+/// How much deeper than `z` spacings x̄ lies under a flat face, `z` above the outermost layer of a full
+/// lattice with a kernel of `radius` spacings. Layers are taken as sheets: (1 − d²/R²)⁴ is the kernel's
+/// integral over a sheet.
+double depth_of_mean(double z, double radius) {
+  double weight = 0, moment = 0;
+  for (int layer = 0; z + layer < radius; ++layer) {
+    const double w = std::pow(1 - (z + layer) * (z + layer) / (radius * radius), 4);
+    weight += w;
+    moment += w * layer;
+  }
+  return weight > 0 ? moment / weight : 0;
+}
+
+SurfaceShape make_shape(const SurfaceConfig& config, double spacing, double voxel_size) {
+  const double radius = config.kernel_radius;
+  const float per_radius = 1 / config.kernel_radius;
+  return {.voxel_size = static_cast<float>(voxel_size / (radius * spacing)),
+          .offset = config.particle_radius * per_radius,
+          .extra_offset = static_cast<float>(depth_of_mean(config.particle_radius, radius) / radius),
+          .spread = std::max(k_spread, k_least_spread * per_radius * per_radius),
+          .extra_spread = k_extra_spread,
+          // ∫ (1 − r²)³ dV = 64π/315 for one particle per cubic spacing.
+          .full_weight = static_cast<float>(64 * std::numbers::pi / 315 * radius * radius * radius),
+          .background = SurfaceField::k_background};
+}
+
+/// The farthest from all particles that a point inside can be, in kernel radii: their mean square distance,
+/// which is |x − x̄|² and the variance, is what bounds it.
+double farthest_inside(const SurfaceShape& shape) {
+  const float r = shape.offset + shape.extra_offset;
+  return std::sqrt(r * r / k_excess_share + shape.spread + shape.extra_spread);
+}
+
+/// The largest of 4, 2, 1 voxels that is at most `distance`.
+int step_within(double distance) {
+  return distance >= 4 ? 4 : distance >= 2 ? 2 : 1;
+}
+
+/// Cubic interpolation (Lagrange) between nodes `step` voxels apart, of which the first lies `before` steps
+/// before the first voxel: through the two nodes on each side of a voxel, or the four that are nearest.
+NodeWeights cubic_weights(int step, int before) {
+  NodeWeights weights{};
+  constexpr int k_last = static_cast<int>(k_nodes) - 1;
+  for (int v = 0; v < k_block_side; ++v) {
+    const double t = static_cast<double>(v) / step + before;
+    const int first = std::clamp(static_cast<int>(std::floor(t)) - 1, 0, k_last - 3);
+    for (int n = first; n < first + 4; ++n) {
+      double w = 1;
+      for (int m = first; m < first + 4; ++m)
+        if (m != n) w *= (t - m) / (n - m);
+      weights.w[v][n] = static_cast<float>(w);
+    }
+  }
+  return weights;
+}
+
+/// Points of a block's lattice, z fastest.
+struct LatticePoints {
+  std::vector<float> x, y, z;
+};
+LatticePoints lattice_points(int step) {
+  LatticePoints points;
+  for (int i = 0; i < k_block_side; i += step)
+    for (int j = 0; j < k_block_side; j += step)
+      for (int k = 0; k < k_block_side; k += step) {
+        points.x.push_back(static_cast<float>(i));
+        points.y.push_back(static_cast<float>(j));
+        points.z.push_back(static_cast<float>(k));
+      }
+  return points;
+}
+std::size_t lattice_count(int step) {
+  const auto side = static_cast<std::size_t>(k_block_side / step);
+  return side * side * side;
+}
+
+/// Points in kernel radii.
+LatticePoints scaled(LatticePoints points, float voxel) {
+  for (std::vector<float>* axis : {&points.x, &points.y, &points.z})
+    for (float& value : *axis) value *= voxel;
+  return points;
+}
+ConstVectors raw(const LatticePoints& points) {
+  return {points.x.data(), points.y.data(), points.z.data()};
+}
+
+const SurfaceKernels& kernels() {
+  static const InstructionLevel level = best_instruction_level();
+  return MALLOW_SELECT(level, surface_kernels);
+}
+const SearchKernels& search() {
+  static const InstructionLevel level = best_instruction_level();
+  return MALLOW_SELECT(level, search_kernels);
+}
+
+void find_neighbors(const BlockMap& blocks, int threads,
+                    std::vector<std::array<std::uint32_t, 27>>& neighbors) {
+  neighbors.resize(blocks.size());
+  parallel_for(threads, blocks.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b)
+      for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+          for (int z = -1; z <= 1; ++z)
+            neighbors[b][neighbor_slot(x, y, z)] = blocks.find(blocks.blocks()[b] + BlockMap::Coord(x, y, z));
+  });
+}
+
+[[noreturn]] void refuse_memory(double blocks, const VoxelFrame& frame, const SurfaceConfig& config) {
+  std::ostringstream text;
+  text << "voxels of " << frame.voxel_size
+       << " m are too small for these particles: the surface would take at least "
+       << blocks * k_block_bytes / k_gibibyte << " GiB, and surface.memory_limit allows "
+       << config.memory_limit << " GiB";
+  throw ConfigError("surface.voxel_size", text.str());
+}
+
+}  // namespace
+
+void SurfaceField::clear() {
+  blocks_.clear();
+  kind_.clear();
+}
+
+void SurfaceField::build(std::span<const Vec3> positions, float spacing, const SurfaceConfig& config,
+                         const VoxelFrame& frame, int threads) {
+  frame_ = frame;
+  shape_ = make_shape(config, static_cast<double>(spacing), frame.voxel_size);
+  spheres_ = config.kind == SurfaceKind::spheres;
+  const double voxels = static_cast<double>(spacing) / frame.voxel_size;  // of a spacing
+  // The cells around an edge that leaves the body are less than two voxels away.
+  double reach = farthest_inside(shape_) * static_cast<double>(config.kernel_radius) * voxels + 2;
+  radius_ = static_cast<double>(config.kernel_radius * spacing);
+  deep_ = -0.5f * shape_.offset / shape_.voxel_size;
+  probe_step_ = step_within(k_probe_distance * voxels);
+  node_step_ = step_within(k_node_distance * static_cast<double>(config.kernel_radius) * voxels);
+  if (spheres_) {
+    // Spheres meet in creases, which nothing can be interpolated across.
+    node_step_ = 1;
+    reach = static_cast<double>(config.particle_radius) * voxels + static_cast<double>(k_background);
+    radius_ = reach * frame.voxel_size;
+    shape_.voxel_size = static_cast<float>(frame.voxel_size / radius_);
+    shape_.offset = config.particle_radius * spacing / static_cast<float>(radius_);
+    deep_ = -0.5f * shape_.offset / shape_.voxel_size;
+  }
+  probe_step_ = std::max(probe_step_, node_step_);
+  weights_ = cubic_weights(node_step_, node_step_ == 4 ? 1 : 0);
+  // Sums are interpolated from nodes in all blocks that any particle reaches.
+  if (node_step_ > 1) reach = std::max(reach, radius_ / frame.voxel_size);
+
+  clear();
+  if (positions.empty()) return;
+  grid_.spacing = spacing;
+  sort_particles(positions, threads);
+  find_blocks(reach, config);
+  find_neighbors(blocks_, threads, neighbors_);
+  probe(threads);
+  classify(threads);
+  if (node_step_ > 1) sum_at_nodes(threads);
+  fill(threads);
+}
+
+void SurfaceField::sort_particles(std::span<const Vec3> positions, int threads) {
+  positions_.resize_unset(positions.size());
+  parallel_for(threads, positions.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) positions_.set(i, positions[i]);
+  });
+  const auto radius = static_cast<float>(radius_);
+  build_cell_grid(positions_, 0, positions.size(), radius, threads, grid_);
+  particle_.clear();
+  if (!thin_crowds()) return;
+  build_cell_grid(positions_, 0, positions_.size(), radius, threads, grid_);
+}
+
+/// Leaves a few particles of those that share a place in crowded cells; tells whether there are any such.
+bool SurfaceField::thin_crowds() {
+  bool crowded = false;
+  const std::size_t cells = grid_.cell_start.size() - 1;
+  for (std::size_t c = 0; c < cells; ++c)
+    crowded = crowded || grid_.cell_start[c + 1] - grid_.cell_start[c] > k_crowd;
+  if (!crowded) return false;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> places;  // place in a cell, particle in sorted order
+  std::vector<std::uint32_t> kept;
+  const float per_place = 8 / grid_.spacing;
+  for (std::size_t c = 0; c < cells; ++c) {
+    places.clear();
+    for (std::uint32_t i = grid_.cell_start[c]; i < grid_.cell_start[c + 1]; ++i) {
+      std::uint64_t place = 0;
+      // Numbers that repeat after a million are as good: cells are not that large.
+      for (const float x : grid_.sorted.get(i))
+        place = place << 20 | (static_cast<std::uint64_t>(std::llround(std::floor(x * per_place))) & 0xFFFFF);
+      places.emplace_back(place, i);
+    }
+    const bool crowd = places.size() > k_crowd;
+    if (crowd) std::sort(places.begin(), places.end());
+    for (std::size_t k = 0; k < places.size(); ++k)
+      if (!crowd || k < k_crowd_keeps || places[k].first != places[k - k_crowd_keeps].first)
+        kept.push_back(places[k].second);
+  }
+  VectorColumn positions;
+  positions.resize(kept.size());
+  particle_.resize(kept.size());
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    positions.set(k, grid_.sorted.get(kept[k]));
+    particle_[k] = grid_.order[kept[k]];
+  }
+  positions_.swap(positions);
+  return true;
+}
+
+/// Every block with a voxel within `reach` voxels of a particle, and some more; all else is outside.
+void SurfaceField::find_blocks(double reach, const SurfaceConfig& config) {
+  const double most = static_cast<double>(config.memory_limit) * k_gibibyte / k_block_bytes;
+  // Particles come sorted, so that those of a block follow each other, in a few runs: a box for each run.
+  blocks_.clear();
+  const auto insert_around = [&](const Eigen::Array3d& low, const Eigen::Array3d& high) {
+    const Eigen::Array3d from = ((low - reach - (k_block_side - 1)) / k_block_side).ceil(),
+                         to = ((high + reach) / k_block_side).floor();
+    if (const double count = (to - from + 1).prod(); count > most) refuse_memory(count, frame_, config);
+    blocks_.insert(from.cast<int>(), to.cast<int>());
+    if (static_cast<double>(blocks_.size()) > most)
+      refuse_memory(static_cast<double>(blocks_.size()), frame_, config);
+  };
+  const auto in_voxels = [&](std::size_t place) -> Eigen::Vector3d {
+    return (grid_.sorted.get(place).cast<double>() - frame_.origin) / frame_.voxel_size;
+  };
+  const auto block_of = [](const Eigen::Vector3d& voxel) -> BlockMap::Coord {
+    return (voxel / k_block_side).array().floor().cast<int>();
+  };
+  Eigen::Vector3d low = in_voxels(0), high = low;
+  BlockMap::Coord block = block_of(low);
+  for (std::size_t i = 1; i < grid_.order.size(); ++i) {
+    const Eigen::Vector3d x = in_voxels(i);
+    if (const BlockMap::Coord here = block_of(x); here != block) {
+      insert_around(low, high);
+      block = here;
+      low = high = x;
+    }
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  insert_around(low, high);
+  blocks_.number();
+}
+
+void SurfaceField::find_near(std::uint32_t block, Near& near) const {
+  const Eigen::Vector3d corner =
+      frame_.origin + frame_.voxel_size * k_block_side * blocks_.blocks()[block].cast<double>();
+  const double side = frame_.voxel_size * (k_block_side - 1);
+  Bounds box;
+  for (int a = 0; a < 3; ++a) {
+    box.low[a] = static_cast<float>(corner[a]);
+    box.high[a] = static_cast<float>(corner[a] + side);
+  }
+  const auto radius = static_cast<float>(radius_);
+  const SearchInput input{
+      .sorted = raw(grid_.sorted),
+      .cell_start = grid_.cell_start.data(),
+      .cluster_start = grid_.cluster_start.data(),
+      .origin = {grid_.origin.x(), grid_.origin.y(), grid_.origin.z()},
+      .edge = {grid_.along, grid_.across, grid_.across},
+      .inverse_edge = {1.0f / grid_.along, 1.0f / grid_.across, 1.0f / grid_.across},
+      .dims = {grid_.dims[0], grid_.dims[1], grid_.dims[2]},
+      .squared_radius = radius * radius,
+      .reach = radius + grid_.rounding,
+  };
+  near.runs.resize(std::max(near.runs.size(), grid_.columns() + 1));
+  const std::size_t runs = search().find_runs(input, box, near.runs.data());
+  std::size_t most = 0;
+  for (std::size_t r = 0; r < runs; ++r) most += near.runs[r].end - near.runs[r].begin;
+  near.places.resize(std::max(near.places.size(), most + k_cluster));
+  near.count = search().near_cluster(input, box, near.runs.data(), runs, near.places.data());
+  for (std::vector<float>* axis : {&near.x, &near.y, &near.z})
+    axis->resize(std::max(axis->size(), near.count));
+  const double per_radius = 1 / radius_;
+  const float* const from[3] = {grid_.sorted.x(), grid_.sorted.y(), grid_.sorted.z()};
+  float* const to[3] = {near.x.data(), near.y.data(), near.z.data()};
+  for (int a = 0; a < 3; ++a)
+    for (std::size_t k = 0; k < near.count; ++k)
+      to[a][k] = static_cast<float>((static_cast<double>(from[a][near.places[k]]) - corner[a]) * per_radius);
+}
+
+/// Distances at the nodes of the probes' lattice in every block.
+void SurfaceField::probe(int threads) {
+  const std::size_t n = lattice_count(probe_step_);
+  const LatticePoints points = scaled(lattice_points(probe_step_), shape_.voxel_size);
+  probes_.resize(n * blocks_.size());
+  const bool keep = node_step_ == probe_step_ && node_step_ > 1;
+  if (keep) node_sums_.resize(k_sums * n * blocks_.size());
+  parallel_for(
+      threads, blocks_.size(),
+      [&](std::size_t begin, std::size_t end) {
+        thread_local Near near;
+        thread_local std::vector<float> scratch;
+        scratch.resize(k_sums * n);
+        for (std::size_t b = begin; b < end; ++b) {
+          find_near(static_cast<std::uint32_t>(b), near);
+          const ConstVectors particles{near.x.data(), near.y.data(), near.z.data()};
+          float* const distances = probes_.data() + n * b;
+          if (spheres_) {
+            kernels().sphere_distances(shape_, raw(points), n, particles, near.count, distances);
+            continue;
+          }
+          float* const sums = keep ? node_sums_.data() + k_sums * n * b : scratch.data();
+          kernels().sum_at_points(raw(points), n, particles, near.count, sums);
+          kernels().distances(shape_, sums, n, distances);
+        }
+      },
+      k_blocks_at_once);
+}
+
+/// Whether the probes in and around a block leave open that the surface is in it; `kind` says where it is
+/// otherwise.
+bool SurfaceField::cuts(std::uint32_t block, BlockKind& kind) const {
+  const int side = k_block_side / probe_step_;
+  const std::size_t n = lattice_count(probe_step_);
+  bool outside = true, inside = true;
+  for (int x = 0; x <= side; ++x) {
+    for (int y = 0; y <= side; ++y) {
+      for (int z = 0; z <= side; ++z) {
+        const std::uint32_t at = neighbors_[block][neighbor_slot(x / side, y / side, z / side)];
+        const auto node = static_cast<std::size_t>((x % side * side + y % side) * side + z % side);
+        const float distance = at == k_no_block ? k_background : probes_[n * at + node];
+        outside = outside && distance >= k_background;
+        inside = inside && distance <= deep_;
+        if (!outside && !inside) return true;
+      }
+    }
+  }
+  kind = outside ? BlockKind::outside : BlockKind::inside;
+  return false;
+}
+
+void SurfaceField::classify(int threads) {
+  const std::size_t n = blocks_.size();
+  kind_.assign(n, BlockKind::surface);
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) cuts(static_cast<std::uint32_t>(b), kind_[b]);
+  });
+  // No block inside may touch one outside: then every sign that changes does so at a surface block.
+  needs_nodes_.assign(n, 0);
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      if (kind_[b] != BlockKind::inside) continue;
+      for (const std::uint32_t other : neighbors_[b])
+        if (other == k_no_block || kind_[other] == BlockKind::outside) needs_nodes_[b] = 1;
+    }
+  });
+  std::size_t stored = 0;
+  place_.resize(n);
+  for (std::size_t b = 0; b < n; ++b) {
+    if (needs_nodes_[b]) kind_[b] = BlockKind::surface;
+    place_[b] = stored;
+    if (kind_[b] == BlockKind::surface) stored += k_block_voxels;
+  }
+  distances_.resize_unset(stored);
+}
+
+/// Sums at the nodes of all blocks that interpolation reads.
+void SurfaceField::sum_at_nodes(int threads) {
+  const std::size_t n = lattice_count(node_step_);
+  node_place_.resize(blocks_.size());
+  if (node_step_ == probe_step_) {
+    for (std::size_t b = 0; b < blocks_.size(); ++b) node_place_[b] = k_sums * n * b;
+    return;
+  }
+  std::fill(needs_nodes_.begin(), needs_nodes_.end(), std::uint8_t{0});
+  std::size_t stored = 0;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (kind_[b] != BlockKind::surface) continue;
+    for (int x = 0; x <= 1; ++x)
+      for (int y = 0; y <= 1; ++y)
+        for (int z = 0; z <= 1; ++z)
+          if (const std::uint32_t at = neighbors_[b][neighbor_slot(x, y, z)]; at != k_no_block)
+            needs_nodes_[at] = 1;
+  }
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    node_place_[b] = stored;
+    if (needs_nodes_[b]) stored += k_sums * n;
+  }
+  node_sums_.resize(stored);
+  const LatticePoints points = scaled(lattice_points(node_step_), shape_.voxel_size);
+  parallel_for(
+      threads, blocks_.size(),
+      [&](std::size_t begin, std::size_t end) {
+        thread_local Near near;
+        for (std::size_t b = begin; b < end; ++b) {
+          if (!needs_nodes_[b]) continue;
+          find_near(static_cast<std::uint32_t>(b), near);
+          kernels().sum_at_points(raw(points), n, {near.x.data(), near.y.data(), near.z.data()}, near.count,
+                                  node_sums_.data() + node_place_[b]);
+        }
+      },
+      k_blocks_at_once);
+}
+
+/// The sums at the 5 × 5 × 5 nodes in and around a block, as fill_block takes them.
+void SurfaceField::collect_nodes(std::uint32_t block, float* nodes) const {
+  const int side = k_block_side / node_step_, before = node_step_ == 4 ? 1 : 0;
+  const std::size_t n = lattice_count(node_step_);
+  constexpr int k_side = static_cast<int>(k_nodes);
+  constexpr std::size_t k_all = k_nodes * k_nodes * k_nodes;
+  std::size_t to = 0;
+  for (int x = -before; x < k_side - before; ++x) {
+    for (int y = -before; y < k_side - before; ++y) {
+      for (int z = -before; z < k_side - before; ++z, ++to) {
+        // The block that a node is in, and which of its nodes it is.
+        const auto block_at = [side](int node) { return node < 0 ? -1 : node / side; };
+        const int bx = block_at(x), by = block_at(y), bz = block_at(z);
+        const std::uint32_t at = neighbors_[block][neighbor_slot(bx, by, bz)];
+        const auto node =
+            static_cast<std::size_t>(((x - bx * side) * side + y - by * side) * side + z - bz * side);
+        for (std::size_t s = 0; s < k_sums; ++s)
+          nodes[s * k_all + to] = at == k_no_block ? 0.0f : node_sums_[node_place_[at] + s * n + node];
+      }
+    }
+  }
+}
+
+void SurfaceField::fill(int threads) {
+  const LatticePoints points = scaled(lattice_points(1), shape_.voxel_size);
+  parallel_for(
+      threads, blocks_.size(),
+      [&](std::size_t begin, std::size_t end) {
+        thread_local Near near;
+        float sums[k_sums * k_block_voxels];
+        for (std::size_t b = begin; b < end; ++b) {
+          if (kind_[b] != BlockKind::surface) continue;
+          float* const to = distances_.data() + place_[b];
+          if (node_step_ > 1) {
+            collect_nodes(static_cast<std::uint32_t>(b), sums);
+            kernels().fill_block(shape_, weights_, sums, to);
+            continue;
+          }
+          find_near(static_cast<std::uint32_t>(b), near);
+          const ConstVectors particles{near.x.data(), near.y.data(), near.z.data()};
+          if (spheres_) {
+            kernels().sphere_distances(shape_, raw(points), k_block_voxels, particles, near.count, to);
+            continue;
+          }
+          kernels().sum_at_points(raw(points), k_block_voxels, particles, near.count, sums);
+          kernels().distances(shape_, sums, k_block_voxels, to);
+        }
+      },
+      k_blocks_at_once);
+}
+
+void SurfaceField::mean_at(std::uint32_t block, ConstVectors points, std::size_t n,
+                           std::span<const Vec3> values, Vectors means) const {
+  thread_local Near near;
+  thread_local LatticePoints scaled_points, near_values;
+  find_near(block, near);
+  const float* const from[3] = {points.x, points.y, points.z};
+  std::vector<float>* const to[3] = {&scaled_points.x, &scaled_points.y, &scaled_points.z};
+  for (int a = 0; a < 3; ++a) {
+    to[a]->resize(n);
+    for (std::size_t k = 0; k < n; ++k) (*to[a])[k] = from[a][k] * shape_.voxel_size;
+  }
+  near_values.x.resize(near.count);
+  near_values.y.resize(near.count);
+  near_values.z.resize(near.count);
+  for (std::size_t k = 0; k < near.count; ++k) {
+    const std::uint32_t sorted = grid_.order[near.places[k]];
+    const Vec3& value = values[particle_.empty() ? sorted : particle_[sorted]];
+    near_values.x[k] = value.x();
+    near_values.y[k] = value.y();
+    near_values.z[k] = value.z();
+  }
+  kernels().mean_at_points(raw(scaled_points), n, {near.x.data(), near.y.data(), near.z.data()},
+                           raw(near_values), near.count, means);
+}
+
+std::size_t SurfaceField::bytes() const {
+  return positions_.bytes() + grid_.bytes() + blocks_.bytes() + distances_.bytes() +
+         particle_.capacity() * sizeof(std::uint32_t) + neighbors_.capacity() * sizeof neighbors_[0] +
+         (probes_.capacity() + node_sums_.capacity()) * sizeof(float) +
+         (place_.capacity() + node_place_.capacity()) * sizeof(std::size_t) + kind_.capacity() +
+         needs_nodes_.capacity();
+}
+
+}  // namespace mallow

@@ -1,0 +1,212 @@
+#include <cstring>
+#include <map>
+#include <random>
+
+#include "level_set/meshes.h"
+#include "mallow/body.h"
+#include "mallow/level_set.h"
+
+namespace mallow {
+namespace {
+
+/// What keeps a mesh from being a closed, oriented 2-manifold of triangles with an area; empty if nothing
+/// does.
+std::string why_not_manifold(const Mesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> fans(mesh.vertices.size());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 &x = mesh.vertices[a], &y = mesh.vertices[b], &z = mesh.vertices[c];
+    if (!((y - x).cross(z - x).norm() > 0)) return "a triangle without area";
+    for (const auto& edge : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+      if (++edges[edge] > 1) return "an edge twice in one direction";
+    fans[a].emplace_back(b, c);
+    fans[b].emplace_back(c, a);
+    fans[c].emplace_back(a, b);
+  }
+  for (const auto& [edge, count] : edges)
+    if (!edges.contains({edge.second, edge.first})) return "an edge with one side";
+  for (const auto& fan : fans) {
+    if (fan.empty()) return "a vertex without triangles";
+    std::map<std::uint32_t, std::uint32_t> next(fan.begin(), fan.end());
+    std::size_t steps = 0;
+    for (std::uint32_t at = fan[0].first; steps == 0 || at != fan[0].first; at = next.at(at)) ++steps;
+    if (steps != fan.size()) return "a vertex where two sheets meet";
+  }
+  return "";
+}
+
+std::vector<Vec3> scattered(std::size_t n, float side, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> inside(0, side);
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < n; ++i) points.emplace_back(inside(random), inside(random), inside(random));
+  return points;
+}
+
+std::vector<Vec3> ball(float radius, float jitter = 0, const Vec3& center = {0, 0, 0}) {
+  return sample(sphere_shape(center, radius), {.spacing = 1.0f, .jitter = jitter}).positions;
+}
+
+TEST(surfacer, meshes_are_manifold_also_where_voxels_are_too_coarse_to_tell_parts_from_each_other) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    for (const SurfaceKind kind : {SurfaceKind::blended, SurfaceKind::spheres}) {
+      for (const float voxel : {0.2f, 0.45f, 0.9f}) {
+        const Mesh mesh = surface(scattered(300, 9, seed), 1, {.voxel_size = voxel, .kind = kind});
+        ASSERT_EQ(why_not_manifold(mesh), "") << seed << ' ' << voxel;
+      }
+    }
+  }
+}
+
+TEST(surfacer, error_of_a_sphere_falls_with_the_square_of_the_voxel_size) {
+  double last = 0;
+  for (const float voxel : {0.2f, 0.1f, 0.05f, 0.025f}) {
+    const Mesh mesh = surface(std::vector<Vec3>{{0.01f, 0.02f, 0.03f}}, 1,
+                              {.voxel_size = voxel, .kind = SurfaceKind::spheres});
+    double worst = 0;
+    for (const Vec3& x : mesh.vertices)
+      worst = std::max(worst, std::abs(static_cast<double>((x - Vec3(0.01f, 0.02f, 0.03f)).norm()) - 0.55));
+    if (last > 0) {
+      EXPECT_NEAR(std::log2(last / worst), 2, 0.4) << voxel;
+    }
+    last = worst;
+  }
+}
+
+TEST(surfacer, surface_of_a_sampled_shape_at_rest_coincides_with_it) {
+  const ImplicitShape moai = moai_shape();
+  const Body body = sample(moai, {.count = 3764});
+  const Mesh mesh = surface(body.positions, body.spacing, {.voxels = 192});
+  EXPECT_EQ(why_not_manifold(mesh), "");
+  double sum = 0;
+  for (const Vec3& x : mesh.vertices) sum += std::abs(static_cast<double>(moai.distance(x)));
+  EXPECT_LT(sum / static_cast<double>(mesh.vertices.size()), 0.25 * static_cast<double>(body.spacing));
+}
+
+TEST(surfacer, a_crowd_in_one_point_is_drawn_like_a_few) {
+  std::vector<Vec3> crowd(100000, Vec3(1, 2, 3));
+  const SurfaceConfig config{.voxel_size = 0.1f};
+  const Mesh mesh = surface(crowd, 1, config);
+  EXPECT_EQ(why_not_manifold(mesh), "");
+  for (const Vec3& x : mesh.vertices) ASSERT_NEAR((x - Vec3(1, 2, 3)).norm(), 0.56f, 0.04f);
+}
+
+TEST(surfacer, million_metres_from_the_origin_meshes_stay_sound) {
+  std::vector<Vec3> points;
+  for (const Vec3& x : ball(4)) points.push_back(x + Vec3(1e6f, -1e6f, 1e6f));
+  const Mesh mesh = surface(points, 1, {.voxel_size = 0.5f});
+  EXPECT_EQ(why_not_closed(mesh), "");
+  EXPECT_EQ(component_count(mesh), 1u);
+}
+
+TEST(surfacer, refuses_what_would_take_more_memory_than_allowed_and_says_how_much) {
+  const std::string error =
+      config_error([&] { surface(ball(8), 1, {.voxel_size = 0.01f, .memory_limit = 0.5f}); });
+  expect_words(error,
+               {"surface.voxel_size", "0.01 m", "at least", "GiB", "surface.memory_limit allows 0.5 GiB"});
+}
+
+TEST(surfacer, vertices_move_with_the_particles) {
+  const std::vector<Vec3> points = ball(5);
+  const std::vector<float> spacings{1};
+  Surfacer surfacer({.voxels = 64});
+  std::vector<Vec3> velocities(points.size(), Vec3(1, -2, 3));
+  const Mesh& still = surfacer.draw({points, velocities, {}, spacings});
+  ASSERT_EQ(still.velocities.size(), still.vertices.size());
+  for (const Vec3& v : still.velocities) ASSERT_LT((v - Vec3(1, -2, 3)).norm(), 1e-5f);
+
+  const Vec3 spin(0, 0, 1);
+  for (std::size_t i = 0; i < points.size(); ++i) velocities[i] = spin.cross(points[i]);
+  const Mesh& turning = surfacer.draw({points, velocities, {}, spacings});
+  for (std::size_t v = 0; v < turning.vertices.size(); ++v) {
+    // The mean of the particles near a vertex lies about a spacing deeper than it.
+    ASSERT_LT((turning.velocities[v] - spin.cross(turning.vertices[v])).norm(), 1.3f);
+    ASSERT_NEAR(turning.velocities[v].z(), 0, 1e-5f);
+  }
+  EXPECT_TRUE(surfacer.draw({points, {}, {}, spacings}).velocities.empty());
+}
+
+TEST(surfacer, groups_have_surfaces_of_their_own_or_one_that_they_share) {
+  std::vector<Vec3> points = ball(4);
+  std::vector<std::uint8_t> groups(points.size(), 0);
+  for (const Vec3& x : ball(4, 0, {8, 0, 0})) points.push_back(x);
+  groups.resize(points.size(), 1);
+  const std::vector<float> spacings{1, 1};
+  Surfacer apart({.voxel_size = 0.25f}), joined({.voxel_size = 0.25f, .joined = true});
+  const Mesh two = apart.draw({points, {}, groups, spacings});
+  EXPECT_EQ(why_not_manifold(two), "");
+  EXPECT_EQ(component_count(two), 2u);
+  const Mesh one = joined.draw({points, {}, groups, spacings});
+  EXPECT_EQ(why_not_manifold(one), "");
+  EXPECT_EQ(component_count(one), 1u);
+  for (const Mesh* mesh : {&two, &one}) {
+    ASSERT_EQ(mesh->material_ids.size(), mesh->vertices.size());
+    for (std::size_t v = 0; v < mesh->vertices.size(); ++v) {
+      const float x = mesh->vertices[v].x();
+      if (std::abs(x - 4) < 0.7f) continue;
+      ASSERT_EQ(mesh->material_ids[v], x > 4) << x;
+    }
+  }
+}
+
+TEST(surfacer, voxels_are_counted_along_all_groups_together) {
+  std::vector<Vec3> points = ball(3);
+  std::vector<std::uint8_t> groups(points.size(), 0);
+  const Mesh alone = surface(points, 1, {.voxels = 64});
+  points.emplace_back(100.0f, 0.0f, 0.0f);
+  groups.push_back(1);
+  const std::vector<float> spacings{1, 1};
+  const Mesh& both = Surfacer({.voxels = 64}).draw({points, {}, groups, spacings});
+  EXPECT_LT(both.vertices.size(), alone.vertices.size() / 50);
+}
+
+TEST(surfacer, same_bits_from_used_and_new_memory_and_for_any_thread_count) {
+  const auto same = [](const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
+  };
+  const std::vector<Vec3> first = ball(6, 0.3f), second = ball(5, 0.3f);
+  const std::vector<Vec3> velocities(second.begin(), second.end());
+  const std::vector<float> spacings{1};
+  const SurfaceConfig config{.voxels = 64, .smoothing = 2};
+  Surfacer fresh(config, 1);
+  const Mesh expected = fresh.draw({second, velocities, {}, spacings});
+  for (const int threads : {1, 2, 3}) {
+    Surfacer used(config, threads);
+    used.draw({first, {}, {}, spacings});
+    const Mesh& mesh = used.draw({second, velocities, {}, spacings});
+    EXPECT_TRUE(same(mesh.vertices, expected.vertices)) << threads;
+    EXPECT_TRUE(same(mesh.normals, expected.normals)) << threads;
+    EXPECT_TRUE(same(mesh.velocities, expected.velocities)) << threads;
+    EXPECT_EQ(mesh.triangles, expected.triangles) << threads;
+  }
+}
+
+TEST(surfacer, memory_stays_from_frame_to_frame) {
+  Surfacer surfacer({.voxels = 64});
+  const std::vector<Vec3> points = ball(6, 0.3f);
+  const std::vector<float> spacings{1};
+  surfacer.draw({points, {}, {}, spacings});
+  const std::size_t bytes = surfacer.bytes();
+  EXPECT_GT(bytes, 1u << 20);
+  for (int frame = 0; frame < 3; ++frame) surfacer.draw({points, {}, {}, spacings});
+  EXPECT_EQ(surfacer.bytes(), bytes);
+}
+
+TEST(surfacer, smoothing_evens_out_bumps_and_keeps_the_volume) {
+  const std::vector<Vec3> points = ball(6, 0.5f);
+  const auto roughness = [](const Mesh& mesh) {
+    double sum = 0;
+    for (const auto& [a, b, c] : mesh.triangles)
+      sum += 2 -
+             static_cast<double>(mesh.normals[a].dot(mesh.normals[b]) + mesh.normals[b].dot(mesh.normals[c]));
+    return sum / static_cast<double>(mesh.triangles.size());
+  };
+  const Mesh rough = surface(points, 1, {.voxel_size = 0.4f}),
+             even = surface(points, 1, {.voxel_size = 0.4f, .smoothing = 40});
+  EXPECT_EQ(why_not_closed(even), "");
+  EXPECT_LT(roughness(even), 0.7 * roughness(rough));
+  EXPECT_NEAR(signed_volume(even) / signed_volume(rough), 1, 0.005);
+}
+
+}  // namespace
+}  // namespace mallow
