@@ -1,11 +1,15 @@
 #include <gtest/gtest.h>
-#include <openvdb/io/Stream.h>
+#include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <limits>
-#include <sstream>
+#include <string>
 #include <vector>
 
 #include "mallow/errors.h"
@@ -35,11 +39,19 @@ std::string to_vdb(const Points& points, float voxel_size = 2.0f, int threads = 
   return points_vdb(points.positions, points.velocities, points.groups, voxel_size, threads);
 }
 
-/// The one grid of a file.
+/// The one grid of a file, read as other programs do.
 openvdb::points::PointDataGrid::Ptr read_vdb(const std::string& bytes) {
+  std::string name = (std::filesystem::temp_directory_path() / "mallow_points_XXXXXX").string();
+  const int descriptor = ::mkstemp(name.data());
+  EXPECT_GE(descriptor, 0);
+  ::close(descriptor);
+  std::ofstream(name, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   openvdb::initialize();
-  std::istringstream stream(bytes, std::ios::binary);
-  const openvdb::GridPtrVecPtr grids = openvdb::io::Stream(stream).getGrids();
+  openvdb::io::File file(name);
+  file.open();
+  const openvdb::GridPtrVecPtr grids = file.getGrids();
+  file.close();
+  std::filesystem::remove(name);
   EXPECT_EQ(grids->size(), 1u);
   return openvdb::gridPtrCast<openvdb::points::PointDataGrid>(grids->at(0));
 }
