@@ -35,8 +35,8 @@ Mesh read_mesh(const std::filesystem::path& file) {
 void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh) {
   require_valid(mesh);
   std::string bytes = ply_header(mesh);
-  const std::size_t vertex_bytes = 12 + (mesh.normals.empty() ? 0 : 12) +
-                                   (mesh.velocities.empty() ? 0 : 12) + (mesh.material_ids.empty() ? 0 : 1);
+  const std::size_t vertex_bytes = 12 + (mesh.normals.empty() ? 0 : 12) + (mesh.velocities.empty() ? 0 : 12) +
+                                   (mesh.material_ids.empty() ? 0 : 1);
   constexpr std::size_t k_triangle_bytes = 13;
   const std::size_t total =
       bytes.size() + mesh.vertices.size() * vertex_bytes + mesh.triangles.size() * k_triangle_bytes;
