@@ -4,25 +4,11 @@
 #include "files/byte_writer.h"
 #include "files/mesh_readers.h"
 #include "files/text_reader.h"
-#include "mallow/errors.h"
+#include "files/valid_columns.h"
 #include "mallow/files.h"
 
 namespace mallow {
 namespace {
-
-template <class T>
-void require_per_vertex(const char* field, const std::vector<T>& values, const Mesh& mesh) {
-  if (values.empty() || values.size() == mesh.vertices.size()) return;
-  throw ConfigError(field, std::to_string(values.size()) +
-                               " are not allowed: none, or as many as vertices (" +
-                               std::to_string(mesh.vertices.size()) + ')');
-}
-
-void require_valid(const Mesh& mesh) {
-  require_per_vertex("mesh.normals", mesh.normals, mesh);
-  require_per_vertex("mesh.velocities", mesh.velocities, mesh);
-  require_per_vertex("mesh.material_ids", mesh.material_ids, mesh);
-}
 
 std::string ply_header(const Mesh& mesh) {
   std::string header = "ply\nformat binary_little_endian 1.0\ncomment mallow mesh\nelement vertex " +
@@ -49,8 +35,8 @@ Mesh read_mesh(const std::filesystem::path& file) {
 void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh) {
   require_valid(mesh);
   std::string bytes = ply_header(mesh);
-  const std::size_t vertex_bytes = 12 + (mesh.normals.empty() ? 0 : 12) +
-                                   (mesh.velocities.empty() ? 0 : 12) + (mesh.material_ids.empty() ? 0 : 1);
+  const std::size_t vertex_bytes = 12 + (mesh.normals.empty() ? 0 : 12) + (mesh.velocities.empty() ? 0 : 12) +
+                                   (mesh.material_ids.empty() ? 0 : 1);
   constexpr std::size_t k_triangle_bytes = 13;
   const std::size_t total =
       bytes.size() + mesh.vertices.size() * vertex_bytes + mesh.triangles.size() * k_triangle_bytes;

@@ -7,7 +7,7 @@
 #include "files/byte_writer.h"
 #include "files/ply.h"
 #include "files/text_reader.h"
-#include "mallow/errors.h"
+#include "files/valid_columns.h"
 #include "mallow/files.h"
 #include "mallow/simulation.h"
 
@@ -16,16 +16,6 @@ namespace {
 
 constexpr std::string_view k_time_comment = "mallow time ";
 constexpr std::string_view k_step_comment = "mallow step ";
-
-void require_valid(const ParticleFrame& frame) {
-  const auto require = [&](const char* field, std::size_t count) {
-    if (count == frame.positions.size()) return;
-    throw ConfigError(field, std::to_string(count) + " are not allowed: as many as positions (" +
-                                 std::to_string(frame.positions.size()) + ')');
-  };
-  require("frame.velocities", frame.velocities.size());
-  require("frame.groups", frame.groups.size());
-}
 
 std::string particle_header(const ParticleFrame& frame) {
   std::string header = "ply\nformat binary_little_endian 1.0\ncomment ";

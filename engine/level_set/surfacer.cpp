@@ -7,7 +7,7 @@
 #include "core/checks.h"
 #include "core/parallel.h"
 #include "level_set/dual_mesher.h"
-#include "level_set/level_set_file.h"
+#include "level_set/level_set_vdb.h"
 #include "level_set/mesh_smoothing.h"
 #include "level_set/surface_field.h"
 #include "mallow/level_set.h"
@@ -212,8 +212,8 @@ const Mesh& Surfacer::draw(const SurfaceParticles& particles) {
   return work_->mesh;
 }
 
-void Surfacer::write_level_set(const std::filesystem::path& file) const {
-  mallow::write_level_set(file, work_->fields, work_->threads);
+std::string Surfacer::level_set_vdb() const {
+  return mallow::level_set_vdb(work_->fields, work_->threads);
 }
 
 std::size_t Surfacer::bytes() const {

@@ -16,7 +16,7 @@ void expect_refused(const Outcome& outcome, const std::vector<std::string>& word
 }
 
 TEST_F(cli_bad_input, command_line_that_makes_no_sense) {
-  expect_refused(run_mallow({}), {"run", "info", "sample", "surface", "render", "keys"});
+  expect_refused(run_mallow({}), {"run", "info", "sample", "surface", "render", "export", "keys"});
   expect_refused(run_mallow({"walk"}), {"walk"});
   expect_refused(run_mallow({"run"}), {"SCENE"});
   expect_refused(run({"--frames", "-1"}), {"--frames"});

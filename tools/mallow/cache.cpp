@@ -23,12 +23,6 @@ constexpr std::size_t k_digits = 6;
   throw IoError({folder.string(), 0, 0, "--out", message});
 }
 
-fs::path frame_name(int frame, const char* ending) {
-  char name[32];
-  std::snprintf(name, sizeof name, "frame_%06d.%s", frame, ending);
-  return name;
-}
-
 /// The number in "frame_000012.ply", or -1 where a file is not ours.
 int frame_number(const fs::path& file, const char* ending) {
   const std::string name = file.filename().string();
@@ -57,6 +51,12 @@ void remove_frames(const fs::path& folder, const char* ending) {
 }
 
 }  // namespace
+
+fs::path frame_name(int frame, const std::string& ending) {
+  char name[32];
+  std::snprintf(name, sizeof name, "frame_%06d.", frame);
+  return name + ending;
+}
 
 fs::path Cache::particles_file(int frame) const {
   return folder_ / "particles" / frame_name(frame, "ply");
@@ -87,6 +87,16 @@ void Cache::remove_images() const {
   fs::remove(film_file());
 }
 
+void Cache::remove_exports() const {
+  for (const char* what : {"surface", "particles"}) {
+    for (const char* ending : {"obj", "glb", "vtp", "vdb", "csv"})
+      remove_frames(export_folder() / what, ending);
+    fs::remove(export_folder() / what += ".pvd");
+  }
+  std::error_code ignored;  // a folder with somebody's own files in it stays
+  fs::remove(export_folder(), ignored);
+}
+
 void Cache::check(const fs::path& folder, bool overwrite) try {
   if (!fs::exists(folder)) return;
   if (!fs::is_directory(folder)) refuse(folder, "is a file, not a folder");
@@ -110,6 +120,7 @@ Cache Cache::create(const fs::path& folder, bool overwrite) {
     remove_frames(folder / "particles", "ply");
     cache.remove_surfaces();
     cache.remove_images();
+    cache.remove_exports();
     // scene.toml is what marks a run, so it goes last: an interrupted removal can be done again.
     for (const auto& file : {cache.report_file(), cache.summary_file(), cache.scene_file()}) fs::remove(file);
     fs::create_directories(folder / "particles");

@@ -1,15 +1,20 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "mallow/scene.h"
 
 namespace mallow::cli {
 
+/// "frame_000012.ply"
+std::filesystem::path frame_name(int frame, const std::string& ending);
+
 /// A folder that holds a run, so that its parts can be made again apart from each other:
 ///   scene.toml  report.json  summary.html  film.mp4
 ///   particles/frame_000000.ply  surface/frame_000000.ply  images/frame_000000.png
+///   export/                     what `mallow export` made of these for other programs
 /// Frame 0 is the initial state.
 class Cache {
  public:
@@ -31,6 +36,7 @@ class Cache {
   std::filesystem::path particles_file(int frame) const;
   std::filesystem::path surface_file(int frame) const;
   std::filesystem::path image_file(int frame) const;
+  std::filesystem::path export_folder() const { return folder_ / "export"; }
 
   /// Frames there are, ascending.
   std::vector<int> particle_frames() const;
@@ -40,6 +46,9 @@ class Cache {
   void remove_surfaces() const;
   /// The pictures and the film of them.
   void remove_images() const;
+
+  /// Exports of every format, which an earlier run's frames would be among.
+  void remove_exports() const;
 
   /// scene.toml, with the paths in it made right for where it stands now.
   void write_scene(Scene scene) const;

@@ -33,7 +33,7 @@ CachedRun open_cached_run(const CachedRunOptions& options, const std::string& se
   if (spacings.size() != group_materials(scene).size()) {
     throw IoError({cache.report_file().string(), 0, 0, "groups", "does not have the groups of scene.toml"});
   }
-  check_writable(cache.scene_file());
+  if (!section.empty()) check_writable(cache.scene_file());
   return {std::move(cache), std::move(scene), std::move(report), std::move(spacings),
           resolve_threads(options.threads)};
 }

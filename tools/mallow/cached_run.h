@@ -29,7 +29,7 @@ struct CachedRun {
 };
 
 /// Throws IoError and ConfigError. `section`: the one whose keys may be changed, as the motion is there
-/// already.
+/// already; empty: none, and the run stays as it is.
 CachedRun open_cached_run(const CachedRunOptions& options, const std::string& section);
 
 /// Calls `work` for every frame, with progress and an end at Ctrl-C. Returns how many frames that were.

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "mallow/export_command.h"
 #include "mallow/info_command.h"
 #include "mallow/program.h"
 #include "mallow/render_command.h"
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
   add_sample_command(app);
   add_surface_command(app);
   add_render_command(app);
+  add_export_command(app);
   app.add_subcommand("keys", "Print every key that a scene file may hold")->callback([] {
     std::fputs(mallow::describe_scene_keys().c_str(), stdout);
   });

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "mallow/background_writer.h"
 #include "mallow/failure.h"
 #include "mallow/interrupt.h"
 #include "mallow/level_set.h"
@@ -14,7 +16,8 @@
 namespace mallow::cli {
 namespace {
 
-/// Writes particles, surface and picture of a frame, and keeps the time of each.
+/// Writes particles, surface and picture of a frame, and keeps the time of each: what the run waits for, as
+/// files are written by another thread while it goes on.
 class FrameWriter {
  public:
   FrameWriter(const Scene& scene, const RunPlan& plan, const Cache& cache, const ParticleFrame& first,
@@ -31,21 +34,46 @@ class FrameWriter {
     }
   }
 
-  void write(int number, const ParticleFrame& frame) {
+  /// Nothing is on its way any more, and the report speaks of no frame that did not get there.
+  ~FrameWriter() {
+    try {
+      files_.finish();
+    } catch (...) {
+      // The run ended with this already, or with what came before it.
+    }
+    report_.frames = std::min(report_.frames, whole_frames_);
+  }
+  FrameWriter(const FrameWriter&) = delete;
+  FrameWriter& operator=(const FrameWriter&) = delete;
+
+  void write(int number, const std::shared_ptr<const ParticleFrame>& frame) {
     {
       const StageTimer timer(report_.stage_seconds, Stage::particles);
-      write_particles(cache_.particles_file(number), frame);
+      files_.add([this, number, frame] {
+        write_particles(cache_.particles_file(number), *frame);
+        if (!surfacer_) whole_frames_ = number;
+      });
     }
-    const Mesh* mesh = nullptr;
+    auto mesh = std::make_shared<const Mesh>();
     if (surfacer_) {
       const StageTimer timer(report_.stage_seconds, Stage::surface);
-      mesh = &surfacer_->draw({frame.positions, frame.velocities, frame.groups, spacings_});
-      write_mesh_ply(cache_.surface_file(number), *mesh);
+      mesh = std::make_shared<const Mesh>(
+          surfacer_->draw({frame->positions, frame->velocities, frame->groups, spacings_}));
+      files_.add([this, number, mesh] {
+        write_mesh_ply(cache_.surface_file(number), *mesh);
+        whole_frames_ = number;
+      });
     }
     if (stills_) {
       const StageTimer timer(report_.stage_seconds, Stage::pictures);
-      stills_->take(frame, mesh ? *mesh : Mesh{}, cache_.image_file(number));
+      stills_->take(*frame, *mesh, cache_.image_file(number));
     }
+  }
+
+  /// Waits until all files are there.
+  void finish() {
+    const StageTimer timer(report_.stage_seconds, surfacer_ ? Stage::surface : Stage::particles);
+    files_.finish();
   }
 
  private:
@@ -54,6 +82,8 @@ class FrameWriter {
   std::vector<float> spacings_;
   std::optional<Surfacer> surfacer_;
   std::optional<Stills> stills_;
+  int whole_frames_ = 0;    ///< the last frame of which all files are there; read when none is being written
+  BackgroundWriter files_;  // last: its thread uses the others
 };
 
 /// Whether the simulation has come to frame `number`; without a frame time every step is a frame.
@@ -70,8 +100,8 @@ void run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan,
                 RunReport& report) {
   std::optional<FrameWriter> writer;
   if (cache) {
-    const ParticleFrame first = snapshot(simulation);
-    writer.emplace(scene, plan, *cache, first, report);
+    const auto first = std::make_shared<const ParticleFrame>(snapshot(simulation));
+    writer.emplace(scene, plan, *cache, *first, report);
     writer->write(0, first);
   }
 
@@ -87,10 +117,11 @@ void run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan,
       if (plan.steps) progress.show(report.steps);
     }
     if (!at_frame(simulation, scene, number)) break;
-    if (writer) writer->write(number, snapshot(simulation));
+    if (writer) writer->write(number, std::make_shared<const ParticleFrame>(snapshot(simulation)));
     report.frames = number;
     if (!plan.steps) progress.show(number);
   }
+  if (writer) writer->finish();
 }
 
 }  // namespace mallow::cli

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "mallow/background_writer.h"
 #include "mallow/cached_run.h"
 #include "mallow/failure.h"
 #include "mallow/files.h"
@@ -20,12 +21,18 @@ void draw_surfaces(const CachedRunOptions& options) {
   try {
     std::filesystem::create_directories(run.cache.surface_file(0).parent_path());
     Surfacer surfacer(run.scene.surface, run.threads);
+    BackgroundWriter files;
     count = for_each_frame(run, "surfacing", [&](int number) {
       const StageTimer timer(seconds, Stage::surface);
       const ParticleFrame frame = read_particles(run.cache.particles_file(number));
-      write_mesh_ply(run.cache.surface_file(number),
-                     surfacer.draw({frame.positions, frame.velocities, frame.groups, run.spacings}));
+      const auto mesh = std::make_shared<const Mesh>(
+          surfacer.draw({frame.positions, frame.velocities, frame.groups, run.spacings}));
+      files.add([file = run.cache.surface_file(number), mesh] { write_mesh_ply(file, *mesh); });
     });
+    {
+      const StageTimer timer(seconds, Stage::surface);
+      files.finish();
+    }
     close_cached_run(run, seconds, std::array{Stage::surface});
   } catch (const std::exception& error) {
     throw RunFailure(error.what());

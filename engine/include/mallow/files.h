@@ -49,6 +49,29 @@ void write_state_csv(const std::filesystem::path& file, const ParticleFrame& fra
 void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh);
 /// Wavefront OBJ.
 void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh);
+/// glTF 2.0 binary: a primitive and a material for every material id, velocities as attribute _VELOCITY.
+/// Vertices stay as they are; a node turns their z, which is up, to glTF's y. A mesh without triangles gives
+/// a scene without a mesh, as glTF knows no empty one. colors: linear RGB of each material id, in [0, 1];
+/// throws ConfigError where one is missing, or a number is not finite, as JSON could not say it.
+void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const Vec3> colors);
+/// VTK's XML PolyData, triangles with the point arrays Normals, Velocity and Material where the mesh has
+/// them.
+void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh);
+
+/// VTK's XML PolyData, vertices with the point arrays Velocity, Group and Id.
+void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame& frame);
+/// OpenVDB points, see points_vdb() in mallow/level_set.h for the attributes and for what is thrown.
+/// voxel_size: [m], > 0; twice the spacing gives about 8 points a voxel.
+void write_particles_vdb(const std::filesystem::path& file, const ParticleFrame& frame, float voxel_size,
+                         int threads = 0);
+
+/// A file of a series and the time that it shows [s].
+struct TimedFile {
+  std::filesystem::path file;  ///< relative to the collection
+  double time = 0;
+};
+/// ParaView's collection (PVD): what plays VTP files at their times.
+void write_pvd(const std::filesystem::path& file, std::span<const TimedFile> frames);
 
 /// Writes a file whole or not at all: `write` gets a name beside it, which is synced and renamed when it
 /// returns and removed when it throws.

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "mallow/body.h"
 #include "mallow/mesh.h"
@@ -44,9 +44,9 @@ class Surfacer {
   /// ConfigError where particles are not as said, or the surface would take more than
   /// SurfaceConfig::memory_limit.
   const Mesh& draw(const SurfaceParticles& particles);
-  /// The level sets of the frame drawn last as OpenVDB grids "surface" (with several groups "surface_0" and
-  /// on): signed distances [m], negative inside. Throws IoError where the file cannot be written.
-  void write_level_set(const std::filesystem::path& file) const;
+  /// The level sets of the frame drawn last as the content of a VDB file: grids "surface", or "surface_0" and on
+  /// where groups have surfaces of their own; signed distances [m], negative inside.
+  std::string level_set_vdb() const;
   /// Memory it holds [bytes].
   std::size_t bytes() const;
 
@@ -57,5 +57,12 @@ class Surfacer {
 
 /// The surface around the particles of one body, h = spacing [m]: a Surfacer that draws once.
 Mesh surface(std::span<const Vec3> positions, float spacing, const SurfaceConfig& config, int threads = 0);
+
+/// Points as the content of a VDB file: a PointDataGrid "particles" with the attributes v [m/s] (the name
+/// that Houdini knows velocity by), group and id. positions: [m]; ids are their indices. voxel_size: [m], >
+/// 0. Throws ConfigError where columns differ in length, or a position is not finite or further than 2^30
+/// voxels from the origin.
+std::string points_vdb(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                       std::span<const std::uint8_t> groups, float voxel_size, int threads = 0);
 
 }  // namespace mallow

@@ -1,14 +1,14 @@
-#include "level_set/level_set_file.h"
+#include "level_set/level_set_vdb.h"
 
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
 #include <cmath>
-#include <exception>
+#include <sstream>
 #include <string>
 
 #include "level_set/arena.h"
-#include "mallow/errors.h"
 
 namespace mallow {
 namespace {
@@ -46,21 +46,16 @@ openvdb::FloatGrid::Ptr to_grid(const SurfaceField& field, const std::string& na
 
 }  // namespace
 
-void write_level_set(const std::filesystem::path& file, std::span<const SurfaceField> fields, int threads) {
-  openvdb::initialize();
-  try {
-    run_with_threads(threads, [&] {
-      openvdb::GridPtrVec grids;
-      for (std::size_t f = 0; f < fields.size(); ++f)
-        grids.push_back(to_grid(fields[f], fields.size() == 1 ? "surface" : "surface_" + std::to_string(f)));
-      openvdb::io::File out(file.string());
-      out.write(grids);
-      out.close();
-      return 0;
-    });
-  } catch (const std::exception& error) {
-    throw IoError({file.string(), 0, 0, "", std::string("cannot be written: ") + error.what()});
-  }
+std::string level_set_vdb(std::span<const SurfaceField> fields, int threads) {
+  return run_with_threads(threads, [&] {
+    openvdb::initialize();
+    openvdb::GridPtrVec grids;
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      grids.push_back(to_grid(fields[f], fields.size() == 1 ? "surface" : "surface_" + std::to_string(f)));
+    std::ostringstream bytes(std::ios::binary);
+    openvdb::io::Stream(bytes).write(grids);
+    return std::move(bytes).str();
+  });
 }
 
 }  // namespace mallow

@@ -1,0 +1,3 @@
+// The one place where tinygltf is compiled.
+#define TINYGLTF_IMPLEMENTATION
+#include "files/tiny_gltf.h"

@@ -1,0 +1,44 @@
+#include "files/valid_columns.h"
+
+#include <string>
+
+#include "mallow/errors.h"
+
+namespace mallow {
+namespace {
+
+template <class T>
+void require_per_vertex(const char* field, const std::vector<T>& values, const Mesh& mesh) {
+  if (values.empty() || values.size() == mesh.vertices.size()) return;
+  throw ConfigError(field, std::to_string(values.size()) +
+                               " are not allowed: none, or as many as vertices (" +
+                               std::to_string(mesh.vertices.size()) + ')');
+}
+
+}  // namespace
+
+void require_valid(const Mesh& mesh) {
+  require_per_vertex("mesh.normals", mesh.normals, mesh);
+  require_per_vertex("mesh.velocities", mesh.velocities, mesh);
+  require_per_vertex("mesh.material_ids", mesh.material_ids, mesh);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t vertex : mesh.triangles[t]) {
+      if (vertex < mesh.vertices.size()) continue;
+      throw ConfigError("mesh.triangles[" + std::to_string(t) + ']',
+                        "vertex " + std::to_string(vertex) + " is not allowed: there are " +
+                            std::to_string(mesh.vertices.size()));
+    }
+  }
+}
+
+void require_valid(const ParticleFrame& frame) {
+  const auto require = [&](const char* field, std::size_t count) {
+    if (count == frame.positions.size()) return;
+    throw ConfigError(field, std::to_string(count) + " are not allowed: as many as positions (" +
+                                 std::to_string(frame.positions.size()) + ')');
+  };
+  require("frame.velocities", frame.velocities.size());
+  require("frame.groups", frame.groups.size());
+}
+
+}  // namespace mallow

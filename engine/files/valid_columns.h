@@ -1,0 +1,12 @@
+#pragma once
+
+#include "mallow/files.h"
+
+namespace mallow {
+
+/// Throw ConfigError that names the field, before a file of it is begun: columns of a wrong length, corners
+/// beyond the vertices.
+void require_valid(const Mesh& mesh);
+void require_valid(const ParticleFrame& frame);
+
+}  // namespace mallow

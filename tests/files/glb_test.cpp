@@ -1,0 +1,132 @@
+#include <cstring>
+#include <limits>
+
+#include "files/file_fixture.h"
+#include "files/tiny_gltf.h"
+
+namespace mallow {
+namespace {
+
+namespace gltf = mallow_tinygltf;
+
+const std::vector<Vec3> k_colors = {{0.8f, 0.24f, 0.09f}, {0, 1, 0.5f}, {0.1f, 0.2f, 0.3f}};
+
+gltf::Model read_glb(const std::filesystem::path& file) {
+  gltf::Model model;
+  std::string errors;
+  std::string warnings;
+  gltf::TinyGLTF reader;
+  EXPECT_TRUE(reader.LoadBinaryFromFile(&model, &errors, &warnings, file.string()));
+  EXPECT_EQ(errors, "");
+  EXPECT_EQ(warnings, "");
+  return model;
+}
+
+const gltf::Accessor& accessor_of(const gltf::Model& model, int index) {
+  return model.accessors.at(static_cast<std::size_t>(index));
+}
+
+/// The numbers of an accessor, which lie without gaps.
+template <class T>
+std::vector<T> numbers(const gltf::Model& model, int index) {
+  const gltf::Accessor& accessor = accessor_of(model, index);
+  const gltf::BufferView& view = model.bufferViews.at(static_cast<std::size_t>(accessor.bufferView));
+  std::vector<T> values(accessor.count);
+  EXPECT_EQ(view.byteLength, values.size() * sizeof(T));
+  EXPECT_LE(view.byteOffset + view.byteLength, model.buffers.at(0).data.size());
+  std::memcpy(static_cast<void*>(values.data()), model.buffers.at(0).data.data() + view.byteOffset,
+              view.byteLength);
+  return values;
+}
+
+Mesh two_tetrahedra() {
+  Mesh mesh = tetrahedron();
+  for (std::size_t v = 0; v < 4; ++v) mesh.vertices.push_back(mesh.vertices[v] + Vec3(0, 0, 5));
+  for (std::size_t t = 0; t < 4; ++t) {
+    const auto [a, b, c] = mesh.triangles[t];
+    mesh.triangles.push_back({a + 4, b + 4, c + 4});
+  }
+  mesh.normals.assign(8, Vec3(0.6f, 0, -0.8f));
+  mesh.velocities.assign(8, Vec3(0, 1e-20f, -9.8f));
+  mesh.material_ids = {0, 0, 0, 0, 2, 2, 2, 2};
+  return mesh;
+}
+
+TEST(glb, gives_back_vertices_normals_velocities_and_a_primitive_per_material) {
+  const TemporaryFolder folder;
+  const Mesh mesh = two_tetrahedra();
+  write_mesh_glb(folder / "a.glb", mesh, k_colors);
+  const gltf::Model model = read_glb(folder / "a.glb");
+  ASSERT_EQ(model.meshes.size(), 1u);
+  ASSERT_EQ(model.meshes[0].primitives.size(), 2u);
+  for (std::size_t part = 0; part < 2; ++part) {
+    const gltf::Primitive& primitive = model.meshes[0].primitives[part];
+    EXPECT_EQ(primitive.mode, TINYGLTF_MODE_TRIANGLES);
+    EXPECT_EQ(numbers<Vec3>(model, primitive.attributes.at("POSITION")), mesh.vertices);
+    EXPECT_EQ(numbers<Vec3>(model, primitive.attributes.at("NORMAL")), mesh.normals);
+    EXPECT_EQ(numbers<Vec3>(model, primitive.attributes.at("_VELOCITY")), mesh.velocities);
+    const auto triangles = numbers<std::uint32_t>(model, primitive.indices);
+    ASSERT_EQ(triangles.size(), 12u);
+    for (std::size_t k = 0; k < 12; ++k) EXPECT_EQ(triangles[k], mesh.triangles[4 * part + k / 3][k % 3]);
+    const auto& color =
+        model.materials.at(static_cast<std::size_t>(primitive.material)).pbrMetallicRoughness.baseColorFactor;
+    for (int k = 0; k < 3; ++k)
+      EXPECT_EQ(static_cast<float>(color.at(static_cast<std::size_t>(k))), k_colors[2 * part][k]);
+  }
+  const gltf::Accessor& positions =
+      accessor_of(model, model.meshes[0].primitives[0].attributes.at("POSITION"));
+  const Aabb box = bounds(mesh);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(static_cast<float>(positions.minValues.at(static_cast<std::size_t>(k))), box.min[k]);
+    EXPECT_EQ(static_cast<float>(positions.maxValues.at(static_cast<std::size_t>(k))), box.max[k]);
+  }
+}
+
+TEST(glb, a_bare_mesh_has_positions_only) {
+  const TemporaryFolder folder;
+  write_mesh_glb(folder / "a.glb", tetrahedron(), k_colors);
+  const gltf::Model model = read_glb(folder / "a.glb");
+  ASSERT_EQ(model.meshes.at(0).primitives.size(), 1u);
+  EXPECT_EQ(model.meshes[0].primitives[0].attributes.size(), 1u);
+}
+
+TEST(glb, a_mesh_without_triangles_is_a_scene_without_a_mesh) {
+  const TemporaryFolder folder;
+  Mesh points = tetrahedron();
+  points.triangles.clear();
+  for (const Mesh& mesh : {Mesh{}, points}) {
+    write_mesh_glb(folder / "a.glb", mesh, {});
+    const gltf::Model model = read_glb(folder / "a.glb");
+    EXPECT_TRUE(model.meshes.empty());
+    EXPECT_TRUE(model.buffers.empty());
+    EXPECT_EQ(model.scenes.size(), 1u);
+  }
+}
+
+TEST(glb, what_gltf_cannot_say_is_refused_by_name) {
+  const TemporaryFolder folder;
+  const auto field = [&](const Mesh& mesh, std::span<const Vec3> colors) {
+    try {
+      write_mesh_glb(folder / "a.glb", mesh, colors);
+    } catch (const ConfigError& error) {
+      return error.problems().at(0).field;
+    }
+    return std::string("nothing");
+  };
+  const Mesh mesh = two_tetrahedra();
+  EXPECT_EQ(field(mesh, std::span(k_colors).first(2)), "colors");
+  EXPECT_EQ(field(mesh, std::array{Vec3(0, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, 0)}), "colors[1]");
+  Mesh wrong = mesh;
+  wrong.velocities.pop_back();
+  EXPECT_EQ(field(wrong, k_colors), "mesh.velocities");
+  wrong = mesh;
+  wrong.vertices[3].y() = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(field(wrong, k_colors), "mesh.vertices[3]");
+  wrong = mesh;
+  wrong.triangles[5][2] = 8;
+  EXPECT_EQ(field(wrong, k_colors), "mesh.triangles[5]");
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+}  // namespace
+}  // namespace mallow

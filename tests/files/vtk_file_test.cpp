@@ -1,0 +1,149 @@
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+
+#include "files/file_fixture.h"
+
+namespace mallow {
+namespace {
+
+using Rows = std::vector<std::vector<double>>;
+
+Rows rows(const std::vector<Vec3>& vectors) {
+  Rows rows;
+  for (const Vec3& v : vectors) rows.push_back({v.x(), v.y(), v.z()});
+  return rows;
+}
+
+template <class T>
+Rows column(const std::vector<T>& values) {
+  Rows rows;
+  for (const T value : values) rows.push_back({static_cast<double>(value)});
+  return rows;
+}
+
+/// What VTK finds in a file, or nothing where there is no VTK.
+std::optional<nlohmann::json> read_with_vtk(const std::filesystem::path& file) {
+  const std::string command = "'" MALLOW_PYTHON "' '" MALLOW_READ_WITH_VTK "' '" + file.string() + "'";
+  std::FILE* const pipe = ::popen(command.c_str(), "r");
+  std::string text;
+  std::array<char, 4096> part{};
+  while (const std::size_t got = std::fread(part.data(), 1, part.size(), pipe)) text.append(part.data(), got);
+  const int status = ::pclose(pipe);
+  if (WEXITSTATUS(status) == 77 || WEXITSTATUS(status) == 127) return std::nullopt;
+  EXPECT_EQ(status, 0) << command;
+  return nlohmann::json::parse(text);
+}
+
+#define READ_WITH_VTK(name, file)                                                                          \
+  const auto name##_or_none = read_with_vtk(file);                                                         \
+  if (!name##_or_none) GTEST_SKIP() << "SKIPPED: there is no python3-vtk9; tools/setup --vtk installs it"; \
+  const nlohmann::json& name = *name##_or_none;                                                            \
+  EXPECT_EQ(name.at("messages"), "")
+
+Mesh full_tetrahedron() {
+  constexpr float s = std::numbers::inv_sqrt3_v<float>;
+  Mesh mesh = tetrahedron();
+  mesh.normals = {{0, 0, 1}, {1, 0, 0}, {s, s, s}, {0.6f, 0, -0.8f}};
+  mesh.velocities = {{0, 0, -9.8f}, {1e-3f, 0, 0}, {2, 3, 4}, {0, -1, 0}};
+  mesh.material_ids = {0, 1, 254, 255};
+  return mesh;
+}
+
+TEST(vtk_file, vtk_reads_the_mesh_that_was_written_as_vtp) {
+  const TemporaryFolder folder;
+  const Mesh mesh = full_tetrahedron();
+  write_mesh_vtp(folder / "a.vtp", mesh);
+  READ_WITH_VTK(read, folder / "a.vtp");
+  EXPECT_EQ(read.at("points"), rows(mesh.vertices));
+  EXPECT_EQ(read.at("cells"), nlohmann::json(mesh.triangles));
+  EXPECT_EQ(read.at("arrays").at("Normals"), rows(mesh.normals));
+  EXPECT_EQ(read.at("arrays").at("Velocity"), rows(mesh.velocities));
+  EXPECT_EQ(read.at("arrays").at("Material"), column(mesh.material_ids));
+}
+
+TEST(vtk_file, vtk_reads_the_particles_that_were_written_as_vtp) {
+  const TemporaryFolder folder;
+  const ParticleFrame frame = three_particles();
+  write_particles_vtp(folder / "a.vtp", frame);
+  READ_WITH_VTK(read, folder / "a.vtp");
+  EXPECT_EQ(read.at("points"), rows(frame.positions));
+  EXPECT_EQ(read.at("cells"), (nlohmann::json{{0}, {1}, {2}}));
+  EXPECT_EQ(read.at("arrays").at("Velocity"), rows(frame.velocities));
+  EXPECT_EQ(read.at("arrays").at("Group"), column(frame.groups));
+  EXPECT_EQ(read.at("arrays").at("Id"), (Rows{{0}, {1}, {2}}));
+}
+
+TEST(vtk_file, vtk_reads_vtp_files_of_nothing_and_of_bare_triangles) {
+  const TemporaryFolder folder;
+  write_mesh_vtp(folder / "bare.vtp", tetrahedron());
+  READ_WITH_VTK(bare, folder / "bare.vtp");
+  EXPECT_EQ(bare.at("cells").size(), 4u);
+  EXPECT_TRUE(bare.at("arrays").empty());
+  write_mesh_vtp(folder / "no_mesh.vtp", Mesh{});
+  READ_WITH_VTK(no_mesh, folder / "no_mesh.vtp");
+  EXPECT_TRUE(no_mesh.at("points").empty());
+  EXPECT_TRUE(no_mesh.at("cells").empty());
+  write_particles_vtp(folder / "no_particles.vtp", ParticleFrame{});
+  READ_WITH_VTK(no_particles, folder / "no_particles.vtp");
+  EXPECT_TRUE(no_particles.at("points").empty());
+}
+
+TEST(vtk_file, vtk_reads_an_obj_with_its_normals) {
+  const TemporaryFolder folder;
+  const Mesh mesh = full_tetrahedron();
+  write_mesh_obj(folder / "a.obj", mesh);
+  READ_WITH_VTK(read, folder / "a.obj");
+  EXPECT_EQ(read.at("points"), rows(mesh.vertices));
+  EXPECT_EQ(read.at("cells"), nlohmann::json(mesh.triangles));
+  EXPECT_EQ(read.at("arrays").at("Normals"), rows(mesh.normals));
+}
+
+TEST(vtk_file, vtk_reads_a_glb_and_turns_its_z_up) {
+  const TemporaryFolder folder;
+  Mesh mesh = full_tetrahedron();
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.material_ids.clear();
+  write_mesh_glb(folder / "a.glb", mesh, std::array{Vec3(1, 0.5f, 0)});
+  READ_WITH_VTK(read, folder / "a.glb");
+  EXPECT_EQ(read.at("cells"), nlohmann::json(mesh.triangles));
+  ASSERT_EQ(read.at("points").size(), 4u);
+  for (std::size_t v = 0; v < 4; ++v) {
+    const Vec3& x = mesh.vertices[v];
+    const Vec3 turned(x.x(), x.z(), -x.y());
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(read.at("points").at(v).at(static_cast<std::size_t>(k)).get<double>(), double{turned[k]},
+                  1e-6);
+  }
+}
+
+TEST(vtk_file, columns_of_the_wrong_length_are_not_written) {
+  const TemporaryFolder folder;
+  Mesh mesh = tetrahedron();
+  mesh.velocities.resize(3);
+  EXPECT_THROW(write_mesh_vtp(folder / "a.vtp", mesh), ConfigError);
+  mesh = tetrahedron();
+  mesh.triangles[2][1] = 4;
+  EXPECT_THROW(write_mesh_vtp(folder / "a.vtp", mesh), ConfigError);
+  ParticleFrame frame = three_particles();
+  frame.groups.clear();
+  EXPECT_THROW(write_particles_vtp(folder / "a.vtp", frame), ConfigError);
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST(vtk_file, pvd_names_every_file_with_its_time) {
+  const TemporaryFolder folder;
+  write_pvd(folder / "a.pvd", std::vector<TimedFile>{{"s/frame_000000.vtp", 0}, {"a&\"b<.vtp", 0.1 + 0.2}});
+  EXPECT_EQ(content_of(folder / "a.pvd"),
+            "<?xml version=\"1.0\"?>\n"
+            "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n"
+            "<DataSet timestep=\"0\" part=\"0\" file=\"s/frame_000000.vtp\"/>\n"
+            "<DataSet timestep=\"0.30000000000000004\" part=\"0\" file=\"a&amp;&quot;b&lt;.vtp\"/>\n"
+            "</Collection>\n</VTKFile>\n");
+}
+
+}  // namespace
+}  // namespace mallow
