@@ -48,10 +48,8 @@ struct Drawing {
   }
   void fill() { field.build(scene.positions, scene.spacing, scene.config, frame, threads); }
   void draw() {
-    mesh.vertices.clear();
-    mesh.normals.clear();
-    mesh.triangles.clear();
-    mesher.append(field, threads, mesh);
+    MeshCounts counts;
+    mesher.append(field, threads, counts, mesh);
   }
   Json about() const {
     return {{"particles", scene.positions.size()},

@@ -1,7 +1,7 @@
 #include "table1/plain_surface.h"
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/LevelSetFilter.h>
+#include <openvdb/tools/Filter.h>
 #include <openvdb/tools/ParticlesToLevelSet.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
@@ -36,23 +36,19 @@ class Spheres {
 
 }  // namespace
 
-Mesh plain_surface(std::span<const Vec3> positions, float spacing, float particle_radius, double voxel_size,
-                   int threads) {
+Mesh plain_surface(std::span<const Vec3> positions, float spacing, double voxel_size, int threads) {
   openvdb::initialize();
   return run_with_threads(threads, [&] {
     const auto h = static_cast<double>(spacing);
-    const double inwards = (k_sphere_radius - static_cast<double>(particle_radius)) * h;
-    // The band must hold the surface that is taken.
-    const double half_band = std::max(3.0, std::ceil(inwards / voxel_size) + 2);
-    auto grid = openvdb::createLevelSet<openvdb::FloatGrid>(voxel_size, half_band);
+    auto grid = openvdb::createLevelSet<openvdb::FloatGrid>(voxel_size);
     openvdb::tools::ParticlesToLevelSet<openvdb::FloatGrid> raster(*grid);
     raster.rasterizeSpheres(Spheres(positions, k_sphere_radius * h));
     raster.finalize(true);
-    openvdb::tools::LevelSetFilter<openvdb::FloatGrid>(*grid).gaussian(1);
+    openvdb::tools::Filter<openvdb::FloatGrid>(*grid).gaussian(1, 1);
     std::vector<openvdb::Vec3s> points;
     std::vector<openvdb::Vec3I> triangles;
     std::vector<openvdb::Vec4I> quads;
-    openvdb::tools::volumeToMesh(*grid, points, triangles, quads, -inwards, 0.0, false);
+    openvdb::tools::volumeToMesh(*grid, points, triangles, quads, 0.0, 0.0, false);
     Mesh mesh;
     for (const openvdb::Vec3s& p : points) mesh.vertices.emplace_back(p.x(), p.y(), p.z());
     for (const openvdb::Vec3I& t : triangles) mesh.triangles.push_back({t[0], t[1], t[2]});

@@ -58,6 +58,7 @@ constexpr CellPatches find_patches(unsigned inside, int joined) {
     std::int8_t& n = number[static_cast<std::size_t>(patch[e])];
     if (n < 0) n = patches.count++;
     patches.of_edge[e] = n;
+    patches.edges[static_cast<std::size_t>(n)] |= static_cast<std::uint16_t>(1u << e);
   }
   for (int face = 0; face < 6; ++face) {
     const std::array<int, 4>& line = lines[static_cast<std::size_t>(face)];

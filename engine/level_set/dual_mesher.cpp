@@ -1,6 +1,7 @@
 #include "level_set/dual_mesher.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "core/parallel.h"
@@ -239,9 +240,8 @@ void DualMesher::place_vertices(const SurfaceField& field, std::size_t at, Mesh&
     for (int patch = 0; patch < patches.count; ++patch, ++next) {
       Eigen::Vector3f sum(0, 0, 0);
       float cuts = 0;
-      for (std::size_t e = 0; e < k_cell_edges; ++e) {
-        if (patches.of_edge[e] != patch) continue;
-        sum += crossing(k_edges[e], voxel);
+      for (unsigned left = patches.edges[static_cast<std::size_t>(patch)]; left != 0; left &= left - 1) {
+        sum += crossing(k_edges[static_cast<std::size_t>(std::countr_zero(left))], voxel);
         cuts += 1;
       }
       const Eigen::Vector3f in_cell = sum / cuts;
@@ -264,25 +264,27 @@ void DualMesher::write_triangles(std::size_t at, Mesh& mesh) const {
       if (!cuts_edge(inside, axis)) continue;
       // The cells around the edge, counter-clockwise seen from where it leads.
       constexpr int k_around[4][2] = {{1, 1}, {0, 1}, {0, 0}, {1, 0}};
+      constexpr int k_steps[3] = {k_side * k_side, k_side, 1};
+      const int u_axis = (axis + 1) % 3, v_axis = (axis + 2) % 3;
+      const int at_u = u_axis == 0 ? x : u_axis == 1 ? y : z, at_v = v_axis == 0 ? x : v_axis == 1 ? y : z;
       std::array<std::uint32_t, 4> q;
       std::array<Eigen::Vector3f, 4> place;
       for (std::size_t k = 0; k < 4; ++k) {
         const int u = k_around[k][0], v = k_around[k][1];
-        Eigen::Vector3i there(x, y, z), block(0, 0, 0);
-        there[(axis + 1) % 3] -= u;
-        there[(axis + 2) % 3] -= v;
-        const bool elsewhere = (there.array() < 0).any();
-        if (elsewhere) {
-          for (int a = 0; a < 3; ++a) block[a] = there[a] < 0 ? -1 : 0;
-          there -= k_side * block;
+        int there = static_cast<int>(cell) - u * k_steps[u_axis] - v * k_steps[v_axis];
+        const Cells* of = &cells;
+        Eigen::Vector3i block(0, 0, 0);
+        if (u > at_u || v > at_v) {
+          block[u_axis] = u > at_u ? -1 : 0;
+          block[v_axis] = v > at_v ? -1 : 0;
+          there -= k_side * (block[u_axis] * k_steps[u_axis] + block[v_axis] * k_steps[v_axis]);
+          of = &cells_of(at, block);
         }
-        const Cells& of = elsewhere ? cells_of(at, block) : cells;
-        const auto c = static_cast<std::size_t>(cell_at(there.x(), there.y(), there.z()));
+        const auto c = static_cast<std::size_t>(there);
         const int patch =
-            k_cell_patches[of.patches[c]].of_edge[static_cast<std::size_t>(4 * axis + 2 * u + v)];
-        q[k] = of.first_vertex + of.vertex[c] + static_cast<std::uint32_t>(patch);
-        place[k] = local(q[k]);
-        if (elsewhere) place[k] += (k_side * block).cast<float>();
+            k_cell_patches[of->patches[c]].of_edge[static_cast<std::size_t>(4 * axis + 2 * u + v)];
+        q[k] = of->first_vertex + of->vertex[c] + static_cast<std::uint32_t>(patch);
+        place[k] = local(q[k]) + (k_side * block).cast<float>();
       }
       if (!(inside & 1)) std::swap(q[1], q[3]);
       // Along the shorter diagonal; ties, as on flat faces, are not left to rounding.
@@ -294,7 +296,7 @@ void DualMesher::write_triangles(std::size_t at, Mesh& mesh) const {
   });
 }
 
-void DualMesher::append(const SurfaceField& field, int threads, Mesh& mesh) {
+void DualMesher::append(const SurfaceField& field, int threads, MeshCounts& counts, Mesh& mesh) {
   choose_blocks(field);
   cells_.resize(blocks_.size());
   signs_.resize(blocks_.size());
@@ -310,8 +312,8 @@ void DualMesher::append(const SurfaceField& field, int threads, Mesh& mesh) {
   each([&](std::size_t at) { find_signs(field, at); });
   each([&](std::size_t at) { find_corners(field, at); });
   each([&](std::size_t at) { count(at); });
-  first_vertex_ = static_cast<std::uint32_t>(mesh.vertices.size());
-  first_triangle_ = mesh.triangles.size();
+  first_vertex_ = static_cast<std::uint32_t>(counts.vertices);
+  first_triangle_ = counts.triangles;
   std::uint32_t vertices = first_vertex_, quads = 0;
   block_vertices_.clear();
   for (std::size_t at = 0; at < blocks_.size(); ++at) {
@@ -322,9 +324,10 @@ void DualMesher::append(const SurfaceField& field, int threads, Mesh& mesh) {
     quads += cells.quads;
     if (cells.vertices > 0) block_vertices_.push_back({blocks_[at], cells.first_vertex, cells.vertices});
   }
-  mesh.vertices.resize(vertices);
-  mesh.normals.resize(vertices);
-  mesh.triangles.resize(first_triangle_ + 2 * static_cast<std::size_t>(quads));
+  counts = {vertices, first_triangle_ + 2 * static_cast<std::size_t>(quads)};
+  mesh.vertices.resize(counts.vertices);
+  mesh.normals.resize(counts.vertices);
+  mesh.triangles.resize(counts.triangles);
   local_.resize(vertices - first_vertex_);
   each([&](std::size_t at) { place_vertices(field, at, mesh); });
   each([&](std::size_t at) { write_triangles(at, mesh); });

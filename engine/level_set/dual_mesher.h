@@ -9,15 +9,21 @@
 
 namespace mallow {
 
+/// How much of a mesh is there.
+struct MeshCounts {
+  std::size_t vertices = 0, triangles = 0;
+};
+
 /// Meshes the zero of a level set: a vertex for each patch of surface in a cell between eight voxels, at the
 /// mean of where the patch cuts the cell's edges, and a quad, as two triangles, for each edge that is cut
 /// (dual marching cubes, Nielson 2004; closed and manifold after Wenger 2013, 3.3). The mesh is closed
 /// whatever the distances are. Keeps its memory from one frame to the next.
 class DualMesher {
  public:
-  /// Appends the mesh of a field: vertices [m], normals, triangles. Vertices are in the order of the blocks
-  /// they lie in.
-  void append(const SurfaceField& field, int threads, Mesh& mesh);
+  /// Appends the mesh of a field to what counts so far: vertices [m], normals, triangles. What the mesh holds
+  /// beyond that is overwritten: clearing it first would set all of it to zero, for nothing. Vertices are in
+  /// the order of the blocks they lie in.
+  void append(const SurfaceField& field, int threads, MeshCounts& counts, Mesh& mesh);
 
   /// A run of the vertices appended last, all in or next to one block.
   struct BlockVertices {

@@ -98,6 +98,7 @@ struct Surfacer::Work {
   std::vector<SurfaceField> fields;  ///< one for each surface
   DualMesher mesher;
   Mesh mesh;
+  MeshCounts counts;
   std::vector<Vec3> positions, velocities, shares;  ///< of the particles of one surface
   MeshSmoother smoother;
 
@@ -168,9 +169,9 @@ void Surfacer::Work::draw_one(const SurfaceParticles& all, std::size_t surface, 
     v = velocities;
   }
   SurfaceField& field = fields[surface];
-  const std::size_t first = mesh.vertices.size();
+  const std::size_t first = counts.vertices;
   field.build(x, spacing, config, frame, threads);
-  mesher.append(field, threads, mesh);
+  mesher.append(field, threads, counts, mesh);
   if (!all.groups.empty()) mesh.material_ids.resize(mesh.vertices.size(), static_cast<std::uint8_t>(surface));
   if (config.joined && !all.groups.empty()) find_materials(field, all);
   if (!all.velocities.empty()) {
@@ -182,15 +183,16 @@ void Surfacer::Work::draw_one(const SurfaceParticles& all, std::size_t surface, 
 
 void Surfacer::Work::draw(const SurfaceParticles& particles) {
   check(particles);
-  mesh.vertices.clear();
-  mesh.triangles.clear();
-  mesh.normals.clear();
+  counts = {};
   mesh.velocities.clear();
   mesh.material_ids.clear();
   const std::size_t surfaces = config.joined || particles.groups.empty() ? 1 : particles.spacings.size();
   fields.resize(surfaces);
   for (SurfaceField& field : fields) field.clear();
-  if (particles.positions.empty()) return;
+  if (particles.positions.empty()) {
+    mesh = {};
+    return;
+  }
   const float widest = *std::max_element(particles.spacings.begin(), particles.spacings.end());
   const VoxelFrame frame = make_frame(particles.positions, config.particle_radius * widest, config);
   for (std::size_t s = 0; s < surfaces; ++s)
