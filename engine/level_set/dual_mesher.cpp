@@ -36,7 +36,8 @@ void for_each_cut(const std::array<std::uint8_t, k_block_voxels>& inside, const 
 }
 
 /// A block's distances with one more below and two above along each axis, z fastest.
-struct Padded {
+class Padded {
+ public:
   static constexpr int k_row = k_block_side + 3, k_plane = k_row * k_row;
   float at[k_row * k_plane];
 
@@ -50,28 +51,30 @@ struct Padded {
     constexpr Range k_ranges[3] = {{k_side - 1, 1, -1}, {0, k_side, 0}, {0, 2, k_side}};
     for (int bx = 0; bx < 3; ++bx) {
       for (int by = 0; by < 3; ++by) {
-        for (int bz = 0; bz < 3; ++bz) {
-          const std::uint32_t from = field.neighbors(block)[neighbor_slot(bx - 1, by - 1, bz - 1)];
-          const BlockKind kind = from == k_no_block ? BlockKind::outside : field.kind(from);
-          const float* const values = kind == BlockKind::surface ? field.distances(from) : nullptr;
-          const Range &rx = k_ranges[bx], &ry = k_ranges[by], &rz = k_ranges[bz];
-          for (int x = 0; x < rx.count; ++x) {
-            for (int y = 0; y < ry.count; ++y) {
-              float* const to = voxel(rx.to + x, ry.to + y, rz.to);
-              if (!values) {
-                for (int z = 0; z < rz.count; ++z) to[z] = field.distance(kind);
-              } else {
-                const float* const row = values + cell_at(rx.from + x, ry.from + y, rz.from);
-                if (bz == 1)
-                  std::memcpy(to, row, k_side * sizeof(float));
-                else
-                  for (int z = 0; z < rz.count; ++z) to[z] = row[z];
-              }
-            }
+        const float* blocks[3];
+        for (int bz = 0; bz < 3; ++bz)
+          blocks[bz] = distances_of(field, field.neighbors(block)[neighbor_slot(bx - 1, by - 1, bz - 1)]);
+        const Range &rx = k_ranges[bx], &ry = k_ranges[by];
+        for (int x = 0; x < rx.count; ++x) {
+          for (int y = 0; y < ry.count; ++y) {
+            const int row = cell_at(rx.from + x, ry.from + y, 0);
+            float* const to = voxel(rx.to + x, ry.to + y, 0);
+            to[-1] = blocks[0][row + k_side - 1];
+            std::memcpy(to, blocks[1] + row, k_side * sizeof(float));
+            to[k_side] = blocks[2][row];
+            to[k_side + 1] = blocks[2][row + 1];
           }
         }
       }
     }
+  }
+
+ private:
+  static const float* distances_of(const SurfaceField& field, std::uint32_t block) {
+    if (block != k_no_block && field.kind(block) == BlockKind::surface) return field.distances(block);
+    static const std::vector<float> outside(k_block_voxels, SurfaceField::k_background),
+        inside(k_block_voxels, -SurfaceField::k_background);
+    return (block != k_no_block && field.kind(block) == BlockKind::inside ? inside : outside).data();
   }
 };
 
@@ -96,36 +99,40 @@ Vec3 normal_at(const float* voxel, const Eigen::Vector3f& in_cell) {
   return g.squaredNorm() > 0 ? Vec3(g.normalized()) : Vec3(Vec3::UnitZ());
 }
 
-/// Edges of a cell as the place of the lower corner and the offset of both in Padded.
+/// An edge of a cell: its corners as steps in Padded, and how far along x, y and z the lower one is.
 struct CellEdge {
+  int low, high;
   float x, y, z;
-  int axis, low, high;
 };
 constexpr std::array<CellEdge, k_cell_edges> cell_edges() {
   std::array<CellEdge, k_cell_edges> edges{};
-  for (int e = 0; e < k_cell_edges; ++e) {
-    const EdgeCorners c = edge_corners(e);
-    const auto offset = [](int corner) {
-      return (corner >> 2) * Padded::k_plane + (corner >> 1 & 1) * Padded::k_row + (corner & 1);
-    };
-    edges[static_cast<std::size_t>(e)] = {static_cast<float>(c.low >> 2),
-                                          static_cast<float>(c.low >> 1 & 1),
-                                          static_cast<float>(c.low & 1),
-                                          e / 4,
-                                          offset(c.low),
-                                          offset(c.high)};
+  const auto step = [](int corner) {
+    return (corner >> 2) * Padded::k_plane + (corner >> 1 & 1) * Padded::k_row + (corner & 1);
+  };
+  for (std::size_t e = 0; e < k_cell_edges; ++e) {
+    const EdgeCorners c = edge_corners(static_cast<int>(e));
+    edges[e] = {step(c.low), step(c.high), static_cast<float>(c.low >> 2), static_cast<float>(c.low >> 1 & 1),
+                static_cast<float>(c.low & 1)};
   }
   return edges;
 }
 constexpr std::array<CellEdge, k_cell_edges> k_edges = cell_edges();
 
-/// Where the surface cuts an edge. Never at a corner, as cells that share it would put their vertices in one
-/// place.
-Eigen::Vector3f crossing(const CellEdge& edge, const float* voxel) {
-  const float low = voxel[edge.low], high = voxel[edge.high];
-  Eigen::Vector3f point(edge.x, edge.y, edge.z);
-  point[edge.axis] += std::clamp(low / (low - high), 0.01f, 0.99f);
-  return point;
+/// The mean of where the surface cuts a patch's edges, from the cell's lowest corner on. Never at a corner,
+/// as cells that share it would put their vertices in one place.
+Eigen::Vector3f middle_of_cuts(unsigned edges, const float* voxel) {
+  float sum[3] = {0, 0, 0};
+  const auto count = static_cast<float>(std::popcount(edges));
+  for (; edges != 0; edges &= edges - 1) {
+    const int e = std::countr_zero(edges);
+    const CellEdge& edge = k_edges[static_cast<std::size_t>(e)];
+    const float low = voxel[edge.low], high = voxel[edge.high];
+    sum[0] += edge.x;
+    sum[1] += edge.y;
+    sum[2] += edge.z;
+    sum[e / 4] += std::clamp(low / (low - high), 0.01f, 0.99f);
+  }
+  return Eigen::Vector3f(sum[0], sum[1], sum[2]) / count;
 }
 
 }  // namespace
@@ -238,13 +245,7 @@ void DualMesher::place_vertices(const SurfaceField& field, std::size_t at, Mesh&
     const float* const voxel = padded.voxel(x, y, z);
     const CellPatches& patches = k_cell_patches[cells.patches[cell]];
     for (int patch = 0; patch < patches.count; ++patch, ++next) {
-      Eigen::Vector3f sum(0, 0, 0);
-      float cuts = 0;
-      for (unsigned left = patches.edges[static_cast<std::size_t>(patch)]; left != 0; left &= left - 1) {
-        sum += crossing(k_edges[static_cast<std::size_t>(std::countr_zero(left))], voxel);
-        cuts += 1;
-      }
-      const Eigen::Vector3f in_cell = sum / cuts;
+      const Eigen::Vector3f in_cell = middle_of_cuts(patches.edges[static_cast<std::size_t>(patch)], voxel);
       const Eigen::Vector3f local = in_cell + Eigen::Vector3i(x, y, z).cast<float>();
       local_[next - first_vertex_] = local;
       mesh.vertices[next] = field.frame().point(corner + local.cast<double>());

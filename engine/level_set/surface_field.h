@@ -44,8 +44,6 @@ class SurfaceField {
   BlockKind kind(std::uint32_t block) const { return kind_[block]; }
   /// The 512 distances of a surface block, z fastest.
   const float* distances(std::uint32_t block) const { return distances_.data() + place_[block]; }
-  /// What all distances of another block are.
-  float distance(BlockKind kind) const { return kind == BlockKind::inside ? -k_background : k_background; }
   /// Kernel-weighted means of the particles' values at points near a block. points: a whole number of eights,
   /// [voxels] from the block's first voxel. values: by particle, as they were given to build().
   void mean_at(std::uint32_t block, ConstVectors points, std::size_t n, std::span<const Vec3> values,
