@@ -16,10 +16,10 @@ TEST_F(bench_kernels, rows_follow_the_schema) {
   // One of every subject, on small scenes.
   const nlohmann::json document =
       run_command("kernels", {"--threads", "1", "--min-time", "0.001", "--repeats", "2", "--filter",
-                              "cube_15/|rotations/small|svd_float/small|points_10k_in|surface_fill/cube_15"});
+                              "cube_15/|rotations/small|svd_float/small|points_10k_in|surface_field/cube_15"});
   expect_valid("kernels");
   for (const char* kernel : {"row_additions", "write_rows", "region_sums", "region_sums_phase", "goals",
-                             "density", "density_two_groups", "accelerations", "surface", "surface_fill"})
+                             "density", "density_two_groups", "accelerations", "surface", "surface_field"})
     EXPECT_NE(find_row(document, kernel, "cube_15"), nullptr) << kernel;
   EXPECT_NE(find_row(document, "cell_grid", "points_10k_in_cell_order"), nullptr);
   EXPECT_NE(find_row(document, "neighbor_lists", "points_10k_in_cell_order"), nullptr);
