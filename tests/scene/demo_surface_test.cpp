@@ -1,0 +1,31 @@
+#include <gtest/gtest.h>
+
+#include "level_set/meshes.h"
+#include "mallow/files.h"
+#include "mallow/level_set.h"
+#include "mallow/scene.h"
+#include "mallow/simulation.h"
+
+namespace mallow {
+namespace {
+
+TEST(demo, surface_is_closed_and_turned_outwards_on_every_frame) {
+  const Scene scene = read_scene(std::filesystem::path(MALLOW_DATA_DIR) / "scenes/demo.toml");
+  Simulation simulation = build(scene, 2);
+  std::vector<float> spacings;
+  for (const GroupInfo& group : simulation.info().groups) spacings.push_back(group.spacing);
+  Surfacer surfacer(scene.surface, 2);
+  for (int frame = 0; frame <= scene.run.frames; ++frame) {
+    const ParticleFrame now = snapshot(simulation);
+    const Mesh& mesh = surfacer.draw({now.positions, now.velocities, now.groups, spacings});
+    ASSERT_EQ(why_not_closed(mesh), "") << "frame " << frame;
+    ASSERT_GT(signed_volume(mesh), 0) << "frame " << frame;
+    const double end = (frame + 0.5) * static_cast<double>(scene.run.frame_time.value_or(0));
+    do {
+      simulation.step();
+    } while (scene.run.frame_time && simulation.time() < end);
+  }
+}
+
+}  // namespace
+}  // namespace mallow
