@@ -156,7 +156,7 @@ TEST(surfacer, voxels_are_counted_along_all_groups_together) {
   points.emplace_back(100.0f, 0.0f, 0.0f);
   groups.push_back(1);
   const std::vector<float> spacings{1, 1};
-  const Mesh& both = Surfacer({.voxels = 64}).draw({points, {}, groups, spacings});
+  const Mesh both = Surfacer({.voxels = 64}).draw({points, {}, groups, spacings});
   EXPECT_LT(both.vertices.size(), alone.vertices.size() / 50);
 }
 
