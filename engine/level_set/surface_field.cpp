@@ -288,18 +288,7 @@ void SurfaceField::find_near(std::uint32_t block, Near& near) const {
     box.low[a] = static_cast<float>(corner[a]);
     box.high[a] = static_cast<float>(corner[a] + side);
   }
-  const auto radius = static_cast<float>(radius_);
-  const SearchInput input{
-      .sorted = raw(grid_.sorted),
-      .cell_start = grid_.cell_start.data(),
-      .cluster_start = grid_.cluster_start.data(),
-      .origin = {grid_.origin.x(), grid_.origin.y(), grid_.origin.z()},
-      .edge = {grid_.along, grid_.across, grid_.across},
-      .inverse_edge = {1.0f / grid_.along, 1.0f / grid_.across, 1.0f / grid_.across},
-      .dims = {grid_.dims[0], grid_.dims[1], grid_.dims[2]},
-      .squared_radius = radius * radius,
-      .reach = radius + grid_.rounding,
-  };
+  const SearchInput input = search_input(grid_, static_cast<float>(radius_));
   near.runs.resize(std::max(near.runs.size(), grid_.columns() + 1));
   const std::size_t runs = search().find_runs(input, box, near.runs.data());
   std::size_t most = 0;

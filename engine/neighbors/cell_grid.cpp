@@ -189,4 +189,18 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
   cut_clusters(threads, grid);
 }
 
+SearchInput search_input(const CellGrid& grid, float radius) {
+  return {
+      .sorted = raw(grid.sorted),
+      .cell_start = grid.cell_start.data(),
+      .cluster_start = grid.cluster_start.data(),
+      .origin = {grid.origin.x(), grid.origin.y(), grid.origin.z()},
+      .edge = {grid.along, grid.across, grid.across},
+      .inverse_edge = {1.0f / grid.along, 1.0f / grid.across, 1.0f / grid.across},
+      .dims = {grid.dims[0], grid.dims[1], grid.dims[2]},
+      .squared_radius = radius * radius,
+      .reach = radius + grid.rounding,
+  };
+}
+
 }  // namespace mallow

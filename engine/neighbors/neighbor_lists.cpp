@@ -43,15 +43,7 @@ struct Searcher {
   Searcher(const CellGrid& cells, float radius, InstructionLevel level)
       : grid(cells),
         kernels(MALLOW_SELECT(level, search_kernels)),
-        input{.sorted = raw(cells.sorted),
-              .cell_start = cells.cell_start.data(),
-              .cluster_start = cells.cluster_start.data(),
-              .origin = {cells.origin.x(), cells.origin.y(), cells.origin.z()},
-              .edge = {cells.along, cells.across, cells.across},
-              .inverse_edge = {1.0f / cells.along, 1.0f / cells.across, 1.0f / cells.across},
-              .dims = {cells.dims[0], cells.dims[1], cells.dims[2]},
-              .squared_radius = radius * radius,
-              .reach = radius + cells.rounding} {}
+        input(search_input(cells, radius)) {}
 
   /// Appends the list of a cluster.
   void find_near_cluster(std::size_t cluster, Scratch& scratch, std::uint32_t* count) const {

@@ -30,6 +30,10 @@ struct SearchInput {
   float reach;  ///< the radius, and what coordinates may be off by
 };
 
+struct CellGrid;
+/// What searches of a grid within a radius read. radius: at most the one that the grid was built for.
+SearchInput search_input(const CellGrid& grid, float radius);
+
 struct Bounds {
   float low[3], high[3];
 };
