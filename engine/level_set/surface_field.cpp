@@ -29,9 +29,6 @@ constexpr double k_node_distance = 0.2;
 /// Probes are at most this far apart, in spacings: less than a sphere is wide at the default particle radius
 /// and at most what three voxels of background bridge.
 constexpr double k_probe_distance = 0.75;
-/// Where a cell holds more particles than this (two are usual), of those in one place, an eighth of a spacing
-/// wide, so many count: more would say nothing new, and a crowd in one point would take for ever.
-constexpr std::uint32_t k_crowd = 64, k_crowd_keeps = 4;
 /// Bytes of a block that the surface passes through: distances, sums, neighbours, mesh.
 constexpr double k_block_bytes = 8192, k_gibibyte = 1 << 30;
 
@@ -58,6 +55,7 @@ SurfaceShape make_shape(const SurfaceConfig& config, double spacing, double voxe
           .extra_spread = k_extra_spread,
           // ∫ (1 − r²)³ dV = 64π/315 for one particle per cubic spacing.
           .full_weight = static_cast<float>(64 * std::numbers::pi / 315 * radius * radius * radius),
+          .threshold = 0,
           .background = SurfaceField::k_background};
 }
 
@@ -73,63 +71,10 @@ int step_within(double distance) {
   return distance >= 4 ? 4 : distance >= 2 ? 2 : 1;
 }
 
-/// Cubic interpolation (Lagrange) between nodes `step` voxels apart, of which the first lies `before` steps
-/// before the first voxel: through the two nodes on each side of a voxel, or the four that are nearest.
-NodeWeights cubic_weights(int step, int before) {
-  NodeWeights weights{};
-  constexpr int k_last = static_cast<int>(k_nodes) - 1;
-  for (int v = 0; v < k_block_side; ++v) {
-    const double t = static_cast<double>(v) / step + before;
-    const int first = std::clamp(static_cast<int>(std::floor(t)) - 1, 0, k_last - 3);
-    for (int n = first; n < first + 4; ++n) {
-      double w = 1;
-      for (int m = first; m < first + 4; ++m)
-        if (m != n) w *= (t - m) / (n - m);
-      weights.w[v][n] = static_cast<float>(w);
-    }
-  }
-  return weights;
-}
-
-/// Points of a block's lattice, z fastest.
-struct LatticePoints {
-  std::vector<float> x, y, z;
-};
-LatticePoints lattice_points(int step) {
-  LatticePoints points;
-  for (int i = 0; i < k_block_side; i += step)
-    for (int j = 0; j < k_block_side; j += step)
-      for (int k = 0; k < k_block_side; k += step) {
-        points.x.push_back(static_cast<float>(i));
-        points.y.push_back(static_cast<float>(j));
-        points.z.push_back(static_cast<float>(k));
-      }
-  return points;
-}
-std::size_t lattice_count(int step) {
-  const auto side = static_cast<std::size_t>(k_block_side / step);
-  return side * side * side;
-}
-
-/// Points in kernel radii.
-LatticePoints scaled(LatticePoints points, float voxel) {
-  for (std::vector<float>* axis : {&points.x, &points.y, &points.z})
-    for (float& value : *axis) value *= voxel;
-  return points;
-}
-ConstVectors raw(const LatticePoints& points) {
-  return {points.x.data(), points.y.data(), points.z.data()};
-}
-
 const SurfaceKernels& kernels() {
   static const InstructionLevel level = best_instruction_level();
   return MALLOW_SELECT(level, surface_kernels);
 }
-const SearchKernels& search() {
-  static const InstructionLevel level = best_instruction_level();
-  return MALLOW_SELECT(level, search_kernels);
-}
-
 void find_neighbors(const BlockMap& blocks, int threads,
                     std::vector<std::array<std::uint32_t, 27>>& neighbors) {
   neighbors.resize(blocks.size());
@@ -162,86 +107,48 @@ void SurfaceField::build(std::span<const Vec3> positions, float spacing, const S
                          const VoxelFrame& frame, int threads) {
   frame_ = frame;
   shape_ = make_shape(config, static_cast<double>(spacing), frame.voxel_size);
-  spheres_ = config.kind == SurfaceKind::spheres;
+  surface_kind_ = config.kind;
   const double voxels = static_cast<double>(spacing) / frame.voxel_size;  // of a spacing
-  // The cells around an edge that leaves the body are less than two voxels away.
-  double reach = farthest_inside(shape_) * static_cast<double>(config.kernel_radius) * voxels + 2;
-  radius_ = static_cast<double>(config.kernel_radius * spacing);
-  deep_ = -0.5f * shape_.offset / shape_.voxel_size;
-  probe_step_ = step_within(k_probe_distance * voxels);
-  node_step_ = step_within(k_node_distance * static_cast<double>(config.kernel_radius) * voxels);
-  if (spheres_) {
-    // Spheres meet in creases, which nothing can be interpolated across.
-    node_step_ = 1;
-    reach = static_cast<double>(config.particle_radius) * voxels + static_cast<double>(k_background);
-    radius_ = reach * frame.voxel_size;
-    shape_.voxel_size = static_cast<float>(frame.voxel_size / radius_);
-    shape_.offset = config.particle_radius * spacing / static_cast<float>(radius_);
-    deep_ = -0.5f * shape_.offset / shape_.voxel_size;
+  double reach = 0;                                                       // of a particle [voxels]
+  node_step_ = 1;
+  switch (config.kind) {
+    case SurfaceKind::blended:
+      radius_ = config.kernel_radius * spacing;
+      node_step_ = step_within(k_node_distance * static_cast<double>(config.kernel_radius) * voxels);
+      // The cells around an edge that leaves the body are less than two voxels away. Sums are interpolated
+      // from nodes in all blocks that any particle reaches.
+      reach = farthest_inside(shape_) * static_cast<double>(config.kernel_radius) * voxels + 2;
+      if (node_step_ > 1) reach = std::max(reach, static_cast<double>(config.kernel_radius) * voxels);
+      break;
+    case SurfaceKind::anisotropic:
+      radius_ = config.kernel_radius * spacing;
+      reach = static_cast<double>(config.kernel_radius) * voxels;
+      break;
+    case SurfaceKind::spheres:
+      reach = static_cast<double>(config.particle_radius) * voxels + static_cast<double>(k_background);
+      radius_ = static_cast<float>(reach * frame.voxel_size);
+      shape_.voxel_size = static_cast<float>(frame.voxel_size / static_cast<double>(radius_));
+      shape_.offset = config.particle_radius * spacing / radius_;
+      break;
   }
-  probe_step_ = std::max(probe_step_, node_step_);
+  deep_ = -0.5f * shape_.offset / shape_.voxel_size;
+  probe_step_ = std::max(step_within(k_probe_distance * voxels), node_step_);
   weights_ = cubic_weights(node_step_, node_step_ == 4 ? 1 : 0);
-  // Sums are interpolated from nodes in all blocks that any particle reaches.
-  if (node_step_ > 1) reach = std::max(reach, radius_ / frame.voxel_size);
 
   clear();
   if (positions.empty()) return;
-  grid_.spacing = spacing;
-  sort_particles(positions, threads);
+  particles_.sort(positions, spacing, radius_, threads);
+  if (config.kind == SurfaceKind::anisotropic) {
+    const AnisotropyModel model(config.kernel_radius, config.particle_radius);
+    shape_.threshold = static_cast<float>(std::pow(model.threshold, 0.25));
+    kernels_.fit(model, radius_, threads, particles_);
+  }
   find_blocks(reach, config);
   find_neighbors(blocks_, threads, neighbors_);
   probe(threads);
   classify(threads);
   if (node_step_ > 1) sum_at_nodes(threads);
   fill(threads);
-}
-
-void SurfaceField::sort_particles(std::span<const Vec3> positions, int threads) {
-  positions_.resize_unset(positions.size());
-  parallel_for(threads, positions.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) positions_.set(i, positions[i]);
-  });
-  const auto radius = static_cast<float>(radius_);
-  build_cell_grid(positions_, 0, positions.size(), radius, threads, grid_);
-  particle_.clear();
-  if (!thin_crowds()) return;
-  build_cell_grid(positions_, 0, positions_.size(), radius, threads, grid_);
-}
-
-/// Leaves a few particles of those that share a place in crowded cells; tells whether there are any such.
-bool SurfaceField::thin_crowds() {
-  bool crowded = false;
-  const std::size_t cells = grid_.cell_start.size() - 1;
-  for (std::size_t c = 0; c < cells; ++c)
-    crowded = crowded || grid_.cell_start[c + 1] - grid_.cell_start[c] > k_crowd;
-  if (!crowded) return false;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> places;  // place in a cell, particle in sorted order
-  std::vector<std::uint32_t> kept;
-  const float per_place = 8 / grid_.spacing;
-  for (std::size_t c = 0; c < cells; ++c) {
-    places.clear();
-    for (std::uint32_t i = grid_.cell_start[c]; i < grid_.cell_start[c + 1]; ++i) {
-      std::uint64_t place = 0;
-      // Numbers that repeat after a million are as good: cells are not that large.
-      for (const float x : grid_.sorted.get(i))
-        place = place << 20 | (static_cast<std::uint64_t>(std::llround(std::floor(x * per_place))) & 0xFFFFF);
-      places.emplace_back(place, i);
-    }
-    const bool crowd = places.size() > k_crowd;
-    if (crowd) std::sort(places.begin(), places.end());
-    for (std::size_t k = 0; k < places.size(); ++k)
-      if (!crowd || k < k_crowd_keeps || places[k].first != places[k - k_crowd_keeps].first)
-        kept.push_back(places[k].second);
-  }
-  VectorColumn positions;
-  positions.resize(kept.size());
-  particle_.resize(kept.size());
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    positions.set(k, grid_.sorted.get(kept[k]));
-    particle_[k] = grid_.order[kept[k]];
-  }
-  positions_.swap(positions);
-  return true;
 }
 
 /// Every block with a voxel within `reach` voxels of a particle, and some more; all else is outside.
@@ -258,14 +165,14 @@ void SurfaceField::find_blocks(double reach, const SurfaceConfig& config) {
       refuse_memory(static_cast<double>(blocks_.size()), frame_, config);
   };
   const auto in_voxels = [&](std::size_t place) -> Eigen::Vector3d {
-    return (grid_.sorted.get(place).cast<double>() - frame_.origin) / frame_.voxel_size;
+    return (particles_.position(place).cast<double>() - frame_.origin) / frame_.voxel_size;
   };
   const auto block_of = [](const Eigen::Vector3d& voxel) -> BlockMap::Coord {
     return (voxel / k_block_side).array().floor().cast<int>();
   };
   Eigen::Vector3d low = in_voxels(0), high = low;
   BlockMap::Coord block = block_of(low);
-  for (std::size_t i = 1; i < grid_.order.size(); ++i) {
+  for (std::size_t i = 1; i < particles_.count(); ++i) {
     const Eigen::Vector3d x = in_voxels(i);
     if (const BlockMap::Coord here = block_of(x); here != block) {
       insert_around(low, high);
@@ -282,33 +189,54 @@ void SurfaceField::find_blocks(double reach, const SurfaceConfig& config) {
 void SurfaceField::find_near(std::uint32_t block, Near& near) const {
   const Eigen::Vector3d corner =
       frame_.origin + frame_.voxel_size * k_block_side * blocks_.blocks()[block].cast<double>();
-  const double side = frame_.voxel_size * (k_block_side - 1);
-  Bounds box;
-  for (int a = 0; a < 3; ++a) {
-    box.low[a] = static_cast<float>(corner[a]);
-    box.high[a] = static_cast<float>(corner[a] + side);
+  particles_.find_near(corner, frame_.voxel_size * (k_block_side - 1), near);
+  if (surface_kind_ == SurfaceKind::anisotropic) drop_out_of_reach(near);
+}
+
+/// Leaves the particles whose own kernels reach into the block, with these kernels.
+void SurfaceField::drop_out_of_reach(Near& near) const {
+  const float side = static_cast<float>(k_block_side - 1) * shape_.voxel_size;
+  near.shapes.resize(std::max(near.shapes.size(), near.count));
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < near.count; ++k) {
+    const KernelShape& shape = kernels_.shapes()[near.places[k]];
+    const float x[3] = {near.x[k], near.y[k], near.z[k]};
+    bool reaches = true;
+    for (int a = 0; a < 3; ++a)
+      reaches = reaches && x[a] + shape.reach[a] >= 0 && x[a] - shape.reach[a] <= side;
+    if (!reaches) continue;
+    near.places[kept] = near.places[k];
+    near.x[kept] = x[0];
+    near.y[kept] = x[1];
+    near.z[kept] = x[2];
+    near.shapes[kept++] = shape;
   }
-  const SearchInput input = search_input(grid_, static_cast<float>(radius_));
-  near.runs.resize(std::max(near.runs.size(), grid_.columns() + 1));
-  const std::size_t runs = search().find_runs(input, box, near.runs.data());
-  std::size_t most = 0;
-  for (std::size_t r = 0; r < runs; ++r) most += near.runs[r].end - near.runs[r].begin;
-  near.places.resize(std::max(near.places.size(), most + k_cluster));
-  near.count = search().near_cluster(input, box, near.runs.data(), runs, near.places.data());
-  for (std::vector<float>* axis : {&near.x, &near.y, &near.z})
-    axis->resize(std::max(axis->size(), near.count));
-  const double per_radius = 1 / radius_;
-  const float* const from[3] = {grid_.sorted.x(), grid_.sorted.y(), grid_.sorted.z()};
-  float* const to[3] = {near.x.data(), near.y.data(), near.z.data()};
-  for (int a = 0; a < 3; ++a)
-    for (std::size_t k = 0; k < near.count; ++k)
-      to[a][k] = static_cast<float>((static_cast<double>(from[a][near.places[k]]) - corner[a]) * per_radius);
+  near.count = kept;
+}
+
+/// Distances at points about a block. sums: room for k_sums of each.
+void SurfaceField::find_distances(const VoxelLattice& points, const Near& near, float* sums,
+                                  float* distances) const {
+  const std::size_t n = points.x.size();
+  switch (surface_kind_) {
+    case SurfaceKind::blended:
+      kernels().sum_at_points(points.points(), n, near.positions(), near.count, sums);
+      kernels().distances(shape_, sums, n, distances);
+      break;
+    case SurfaceKind::anisotropic:
+      kernels().density_at_points(points.points(), n, near.positions(), near.shapes.data(), near.count, sums);
+      kernels().density_distances(shape_, sums, n, distances);
+      break;
+    case SurfaceKind::spheres:
+      kernels().sphere_distances(shape_, points.points(), n, near.positions(), near.count, distances);
+      break;
+  }
 }
 
 /// Distances at the nodes of the probes' lattice in every block.
 void SurfaceField::probe(int threads) {
   const std::size_t n = lattice_count(probe_step_);
-  const LatticePoints points = scaled(lattice_points(probe_step_), shape_.voxel_size);
+  const VoxelLattice points(probe_step_, shape_.voxel_size);
   probes_.resize(n * blocks_.size());
   const bool keep = node_step_ == probe_step_ && node_step_ > 1;
   if (keep) node_sums_.resize(k_sums * n * blocks_.size());
@@ -320,15 +248,12 @@ void SurfaceField::probe(int threads) {
         scratch.resize(k_sums * n);
         for (std::size_t b = begin; b < end; ++b) {
           find_near(static_cast<std::uint32_t>(b), near);
-          const ConstVectors particles{near.x.data(), near.y.data(), near.z.data()};
           float* const distances = probes_.data() + n * b;
-          if (spheres_) {
-            kernels().sphere_distances(shape_, raw(points), n, particles, near.count, distances);
-            continue;
-          }
-          float* const sums = keep ? node_sums_.data() + k_sums * n * b : scratch.data();
-          kernels().sum_at_points(raw(points), n, particles, near.count, sums);
-          kernels().distances(shape_, sums, n, distances);
+          find_distances(points, near, keep ? node_sums_.data() + k_sums * n * b : scratch.data(), distances);
+          // Far from it, the density overestimates distances: only where there is none is outside for
+          // certain.
+          if (surface_kind_ == SurfaceKind::anisotropic && near.count > 0)
+            for (std::size_t k = 0; k < n; ++k) distances[k] = std::min(distances[k], 0.5f * k_background);
         }
       },
       k_blocks_at_once);
@@ -404,7 +329,7 @@ void SurfaceField::sum_at_nodes(int threads) {
     if (needs_nodes_[b]) stored += k_sums * n;
   }
   node_sums_.resize(stored);
-  const LatticePoints points = scaled(lattice_points(node_step_), shape_.voxel_size);
+  const VoxelLattice points(node_step_, shape_.voxel_size);
   parallel_for(
       threads, blocks_.size(),
       [&](std::size_t begin, std::size_t end) {
@@ -412,7 +337,7 @@ void SurfaceField::sum_at_nodes(int threads) {
         for (std::size_t b = begin; b < end; ++b) {
           if (!needs_nodes_[b]) continue;
           find_near(static_cast<std::uint32_t>(b), near);
-          kernels().sum_at_points(raw(points), n, {near.x.data(), near.y.data(), near.z.data()}, near.count,
+          kernels().sum_at_points(points.points(), n, near.positions(), near.count,
                                   node_sums_.data() + node_place_[b]);
         }
       },
@@ -443,7 +368,7 @@ void SurfaceField::collect_nodes(std::uint32_t block, float* nodes) const {
 }
 
 void SurfaceField::fill(int threads) {
-  const LatticePoints points = scaled(lattice_points(1), shape_.voxel_size);
+  const VoxelLattice points(1, shape_.voxel_size);
   parallel_for(
       threads, blocks_.size(),
       [&](std::size_t begin, std::size_t end) {
@@ -458,13 +383,7 @@ void SurfaceField::fill(int threads) {
             continue;
           }
           find_near(static_cast<std::uint32_t>(b), near);
-          const ConstVectors particles{near.x.data(), near.y.data(), near.z.data()};
-          if (spheres_) {
-            kernels().sphere_distances(shape_, raw(points), k_block_voxels, particles, near.count, to);
-            continue;
-          }
-          kernels().sum_at_points(raw(points), k_block_voxels, particles, near.count, sums);
-          kernels().distances(shape_, sums, k_block_voxels, to);
+          find_distances(points, near, sums, to);
         }
       },
       k_blocks_at_once);
@@ -473,31 +392,27 @@ void SurfaceField::fill(int threads) {
 void SurfaceField::mean_at(std::uint32_t block, ConstVectors points, std::size_t n,
                            std::span<const Vec3> values, Vectors means) const {
   thread_local Near near;
-  thread_local LatticePoints scaled_points, near_values;
+  thread_local std::vector<float> scaled[3], near_values[3];
   find_near(block, near);
   const float* const from[3] = {points.x, points.y, points.z};
-  std::vector<float>* const to[3] = {&scaled_points.x, &scaled_points.y, &scaled_points.z};
-  for (int a = 0; a < 3; ++a) {
-    to[a]->resize(n);
-    for (std::size_t k = 0; k < n; ++k) (*to[a])[k] = from[a][k] * shape_.voxel_size;
+  for (std::size_t a = 0; a < 3; ++a) {
+    scaled[a].resize(n);
+    for (std::size_t k = 0; k < n; ++k) scaled[a][k] = from[a][k] * shape_.voxel_size;
+    near_values[a].resize(near.count);
   }
-  near_values.x.resize(near.count);
-  near_values.y.resize(near.count);
-  near_values.z.resize(near.count);
   for (std::size_t k = 0; k < near.count; ++k) {
-    const std::uint32_t sorted = grid_.order[near.places[k]];
-    const Vec3& value = values[particle_.empty() ? sorted : particle_[sorted]];
-    near_values.x[k] = value.x();
-    near_values.y[k] = value.y();
-    near_values.z[k] = value.z();
+    const Vec3& value = values[particles_.particle(near.places[k])];
+    for (std::size_t a = 0; a < 3; ++a) near_values[a][k] = value[static_cast<Eigen::Index>(a)];
   }
-  kernels().mean_at_points(raw(scaled_points), n, {near.x.data(), near.y.data(), near.z.data()},
-                           raw(near_values), near.count, means);
+  const auto raw = [](const std::vector<float>(&axes)[3]) {
+    return ConstVectors{axes[0].data(), axes[1].data(), axes[2].data()};
+  };
+  kernels().mean_at_points(raw(scaled), n, near.positions(), raw(near_values), near.count, means);
 }
 
 std::size_t SurfaceField::bytes() const {
-  return positions_.bytes() + grid_.bytes() + blocks_.bytes() + distances_.bytes() +
-         particle_.capacity() * sizeof(std::uint32_t) + neighbors_.capacity() * sizeof neighbors_[0] +
+  return particles_.bytes() + kernels_.bytes() + blocks_.bytes() + distances_.bytes() +
+         neighbors_.capacity() * sizeof neighbors_[0] +
          (probes_.capacity() + node_sums_.capacity()) * sizeof(float) +
          (place_.capacity() + node_place_.capacity()) * sizeof(std::size_t) + kind_.capacity() +
          needs_nodes_.capacity();

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "core/column.h"
+#include "level_set/anisotropic_kernels.h"
 #include "level_set/block_map.h"
+#include "level_set/particle_cells.h"
 #include "level_set/surface_kernel.h"
 #include "level_set/voxel_frame.h"
+#include "level_set/voxel_lattice.h"
 #include "mallow/surface_config.h"
-#include "neighbors/cell_grid.h"
-#include "neighbors/search_kernel.h"
 
 namespace mallow {
 
@@ -54,18 +55,15 @@ class SurfaceField {
   static constexpr float k_background = 3.0f;
 
  private:
-  /// The particles within the kernel radius of a block, in kernel radii from its first voxel.
-  struct Near {
-    std::vector<PlaceRun> runs;
-    std::vector<std::uint32_t> places;
-    std::vector<float> x, y, z;
-    std::size_t count = 0;
+  /// The particles near a block, and their kernels where each has its own.
+  struct Near : NearParticles {
+    std::vector<KernelShape> shapes;
   };
 
-  void sort_particles(std::span<const Vec3> positions, int threads);
-  bool thin_crowds();
   void find_blocks(double reach, const SurfaceConfig& config);
   void find_near(std::uint32_t block, Near& near) const;
+  void drop_out_of_reach(Near& near) const;
+  void find_distances(const VoxelLattice& points, const Near& near, float* sums, float* distances) const;
   void probe(int threads);
   void classify(int threads);
   void sum_at_nodes(int threads);
@@ -75,16 +73,15 @@ class SurfaceField {
 
   VoxelFrame frame_;
   SurfaceShape shape_{};
-  double radius_ = 0;  ///< of the kernel [m]
-  bool spheres_ = false;
+  float radius_ = 0;  ///< of the kernel [m]
+  SurfaceKind surface_kind_ = SurfaceKind::blended;
   int node_step_ = 1;   ///< voxels between the nodes that sums are taken at: 1, 2 or 4
   int probe_step_ = 1;  ///< voxels between the nodes that tell whether the surface is in a block
   float deep_ = 0;      ///< distances at or below this are inside of a body for certain [voxels]
   NodeWeights weights_{};
 
-  VectorColumn positions_;
-  std::vector<std::uint32_t> particle_;  ///< of each position, as given; empty: as they are
-  CellGrid grid_;
+  ParticleCells particles_;
+  AnisotropicKernels kernels_;
   BlockMap blocks_;
   std::vector<std::array<std::uint32_t, 27>> neighbors_;
   std::vector<BlockKind> kind_;

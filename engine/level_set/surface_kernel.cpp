@@ -22,6 +22,9 @@ static_assert(k_cluster == k_block_side, "a row of voxels is a row of lanes");
 /// sums are wrong by a fifth of it at the most.
 constexpr float k_least_weight = 0.02f;
 
+/// Densities, and slopes of them [per kernel radius], below this are none.
+constexpr float k_least_density = 1e-6f, k_least_slope = 1e-6f;
+
 struct Sums {
   Floats weight, x, y, z, square;
 };
@@ -153,10 +156,76 @@ void mean_at_points(ConstVectors points, std::size_t n, ConstVectors particles, 
   }
 }
 
+void moments_at_points(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
+                       float* moments) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    Floats m[k_moments] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
+      const Floats square = dx * dx + dy * dy + dz * dz;
+      const Floats w = larger(1.0f - square * square_root(square), Floats{});
+      const Floats wx = w * dx, wy = w * dy, wz = w * dz;
+      m[0] += w;
+      m[1] += wx;
+      m[2] += wy;
+      m[3] += wz;
+      m[4] += wx * dx;
+      m[5] += wx * dy;
+      m[6] += wx * dz;
+      m[7] += wy * dy;
+      m[8] += wy * dz;
+      m[9] += wz * dz;
+    }
+    for (std::size_t s = 0; s < k_moments; ++s) store(m[s], moments + s * n + k);
+  }
+}
+
+// Yu & Turk 2013, eq. 6 and 7: φ(x) = Σ V_i W(|G_i (x_i − x)|), with the weights of above.
+void density_at_points(ConstVectors points, std::size_t n, ConstVectors particles, const KernelShape* shapes,
+                       std::size_t count, float* sums) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    Floats density = {}, x = {}, y = {}, z = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const KernelShape& g = shapes[i];
+      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
+      const Floats qx = g.xx * dx + g.xy * dy + g.xz * dz, qy = g.xy * dx + g.yy * dy + g.yz * dz,
+                   qz = g.xz * dx + g.yz * dy + g.zz * dz;
+      const Floats t = nearness(qx * qx + qy * qy + qz * qz);
+      const Floats slope = g.weight * (t * t);
+      density += slope * t;
+      // ∇(1 − |G d|²)³ = 6 t² G (G d)
+      x += slope * (g.xx * qx + g.xy * qy + g.xz * qz);
+      y += slope * (g.xy * qx + g.yy * qy + g.yz * qz);
+      z += slope * (g.xz * qx + g.yz * qy + g.zz * qz);
+    }
+    store(density, sums + k);
+    store(6.0f * x, sums + n + k);
+    store(6.0f * y, sums + 2 * n + k);
+    store(6.0f * z, sums + 3 * n + k);
+  }
+}
+
+// The first order is taken of the fourth root, as the kernel's integral over a face is (1 − z²)⁴: its root is
+// nearly straight where the density itself has a long tail.
+void density_distances(const SurfaceShape& shape, const float* sums, std::size_t n, float* to) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats density = load(sums + k);
+    const Floats x = load(sums + n + k), y = load(sums + 2 * n + k), z = load(sums + 3 * n + k);
+    const Floats slope = larger(square_root(x * x + y * y + z * z), all(k_least_slope));
+    const Floats root = square_root(square_root(density));
+    const Floats distance = (shape.threshold - root) * (4.0f / shape.voxel_size) * root * root * root / slope;
+    const Ints body = is_larger(density, all(k_least_density));
+    store(where(body, cut(shape, distance)) + where(~body, all(shape.background)), to + k);
+  }
+}
+
 }  // namespace
 
 extern const SurfaceKernels surface_kernels;
-const SurfaceKernels surface_kernels = {sum_at_points, distances, fill_block, sphere_distances,
-                                        mean_at_points};
+const SurfaceKernels surface_kernels = {sum_at_points,     distances,         fill_block,
+                                        sphere_distances,  moments_at_points, density_at_points,
+                                        density_distances, mean_at_points};
 
 }  // namespace mallow::MALLOW_LEVEL

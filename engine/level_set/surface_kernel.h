@@ -21,11 +21,23 @@ struct SurfaceShape {
   float spread;        ///< variance of the x_i about x̄ that is taken for one part of a body at fullness 0
   float extra_spread;  ///< added to it at fullness 1/2
   float full_weight;   ///< Σ w in the middle of a body
+  float threshold;     ///< fourth root of the density at the surface, where kernels are anisotropic
   float background;    ///< distances are cut here [voxels]
+};
+
+/// The kernel of one particle, w(|G (x_i − x)|) with a symmetric G; lengths in kernel radii.
+struct KernelShape {
+  float xx, xy, xz, yy, yz, zz;  ///< G
+  float weight;                  ///< density in its middle, relative to that inside of a body
+  float reach[3];                ///< half of the box it fills
 };
 
 /// Sums over the particles about a point: Σ w, Σ w (x_i − x) and Σ w |x_i − x|².
 inline constexpr std::size_t k_sums = 5;
+/// Density and its gradient at a point.
+inline constexpr std::size_t k_density_sums = 4;
+/// Σ w, Σ w d and Σ w d dᵀ (xx xy xz yy yz zz) of d = x_i − x.
+inline constexpr std::size_t k_moments = 10;
 /// Nodes along a side of what a block's sums are interpolated from.
 inline constexpr std::size_t k_nodes = 5;
 
@@ -48,6 +60,14 @@ struct SurfaceKernels {
   /// background.
   void (*sphere_distances)(const SurfaceShape&, ConstVectors points, std::size_t n, ConstVectors particles,
                            std::size_t count, float* distances) noexcept;
+  /// Moments with w = 1 − |d|³, n of each.
+  void (*moments_at_points)(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
+                            float* moments) noexcept;
+  /// Σ weight (1 − |G d|²)³ over particles with kernels of their own, and its gradient, n of each.
+  void (*density_at_points)(ConstVectors points, std::size_t n, ConstVectors particles,
+                            const KernelShape* shapes, std::size_t count, float* sums) noexcept;
+  /// Signed distances [voxels] from the surface where the density is at its threshold, to first order.
+  void (*density_distances)(const SurfaceShape&, const float* sums, std::size_t n, float* distances) noexcept;
   /// Σ w value / Σ w at points, for three values a particle; zero where there is no particle.
   void (*mean_at_points)(ConstVectors points, std::size_t n, ConstVectors particles, ConstVectors values,
                          std::size_t count, Vectors means) noexcept;

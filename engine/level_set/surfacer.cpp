@@ -26,6 +26,9 @@ void check(const SurfaceConfig& config, int threads) {
     checks.number("surface.voxels", config.voxels, config.voxels >= 8 && config.voxels <= 1024, "8 to 1024");
   checks.number("surface.kernel_radius", config.kernel_radius,
                 config.kernel_radius >= 1 && config.kernel_radius <= 4, "1 to 4 spacings");
+  if (config.kind == SurfaceKind::anisotropic)
+    checks.number("surface.kernel_radius", config.kernel_radius, config.kernel_radius >= 2,
+                  "2 to 4 spacings for anisotropic kernels: fewer neighbours do not tell a shape");
   checks.number("surface.particle_radius", config.particle_radius,
                 config.particle_radius >= 0.1f && config.particle_radius <= 1, "0.1 to 1 spacings");
   checks.number("surface.smoothing", config.smoothing, config.smoothing >= 0 && config.smoothing <= 100,

@@ -62,8 +62,8 @@ std::string value_text(const Field& field);
 constexpr std::array<const char*, 2> choices(Formulation) {
   return {"conservative", "printed"};
 }
-constexpr std::array<const char*, 2> choices(SurfaceKind) {
-  return {"blended", "spheres"};
+constexpr std::array<const char*, 3> choices(SurfaceKind) {
+  return {"blended", "anisotropic", "spheres"};
 }
 template <class T>
 concept Choice = requires { choices(T{}); };

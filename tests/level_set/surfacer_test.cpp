@@ -47,9 +47,11 @@ std::vector<Vec3> ball(float radius, float jitter = 0, const Vec3& center = {0, 
   return sample(sphere_shape(center, radius), {.spacing = 1.0f, .jitter = jitter}).positions;
 }
 
+constexpr SurfaceKind k_kinds[] = {SurfaceKind::blended, SurfaceKind::anisotropic, SurfaceKind::spheres};
+
 TEST(surfacer, meshes_are_manifold_also_where_voxels_are_too_coarse_to_tell_parts_from_each_other) {
   for (unsigned seed = 0; seed < 12; ++seed) {
-    for (const SurfaceKind kind : {SurfaceKind::blended, SurfaceKind::spheres}) {
+    for (const SurfaceKind kind : k_kinds) {
       for (const float voxel : {0.2f, 0.45f, 0.9f}) {
         const Mesh mesh = surface(scattered(300, 9, seed), 1, {.voxel_size = voxel, .kind = kind});
         ASSERT_EQ(why_not_manifold(mesh), "") << seed << ' ' << voxel;
@@ -167,17 +169,19 @@ TEST(surfacer, same_bits_from_used_and_new_memory_and_for_any_thread_count) {
   const std::vector<Vec3> first = ball(6, 0.3f), second = ball(5, 0.3f);
   const std::vector<Vec3> velocities(second.begin(), second.end());
   const std::vector<float> spacings{1};
-  const SurfaceConfig config{.voxels = 64, .smoothing = 2};
-  Surfacer fresh(config, 1);
-  const Mesh expected = fresh.draw({second, velocities, {}, spacings});
-  for (const int threads : {1, 2, 3}) {
-    Surfacer used(config, threads);
-    used.draw({first, {}, {}, spacings});
-    const Mesh& mesh = used.draw({second, velocities, {}, spacings});
-    EXPECT_TRUE(same(mesh.vertices, expected.vertices)) << threads;
-    EXPECT_TRUE(same(mesh.normals, expected.normals)) << threads;
-    EXPECT_TRUE(same(mesh.velocities, expected.velocities)) << threads;
-    EXPECT_EQ(mesh.triangles, expected.triangles) << threads;
+  for (const SurfaceKind kind : k_kinds) {
+    const SurfaceConfig config{.voxels = 64, .kind = kind, .smoothing = 2};
+    Surfacer fresh(config, 1);
+    const Mesh expected = fresh.draw({second, velocities, {}, spacings});
+    for (const int threads : {1, 2, 3}) {
+      Surfacer used(config, threads);
+      used.draw({first, {}, {}, spacings});
+      const Mesh& mesh = used.draw({second, velocities, {}, spacings});
+      EXPECT_TRUE(same(mesh.vertices, expected.vertices)) << threads;
+      EXPECT_TRUE(same(mesh.normals, expected.normals)) << threads;
+      EXPECT_TRUE(same(mesh.velocities, expected.velocities)) << threads;
+      EXPECT_EQ(mesh.triangles, expected.triangles) << threads;
+    }
   }
 }
 
