@@ -49,7 +49,7 @@ struct Drawing {
   void fill() { field.build(scene.positions, scene.spacing, scene.config, frame, threads); }
   void draw() {
     MeshCounts counts;
-    mesher.append(field, threads, counts, mesh);
+    mesher.append(field, 0, threads, counts, mesh);
   }
   Json about() const {
     return {{"particles", scene.positions.size()},

@@ -31,6 +31,8 @@ void check(const SurfaceConfig& config, int threads) {
                   "2 to 4 spacings for anisotropic kernels: fewer neighbours do not tell a shape");
   checks.number("surface.particle_radius", config.particle_radius,
                 config.particle_radius >= 0.1f && config.particle_radius <= 1, "0.1 to 1 spacings");
+  checks.number("surface.adaptivity", config.adaptivity, config.adaptivity >= 0 && config.adaptivity <= 1,
+                "0 to 1 voxels");
   checks.number("surface.smoothing", config.smoothing, config.smoothing >= 0 && config.smoothing <= 100,
                 "0 to 100 rounds");
   checks.number("surface.memory_limit", config.memory_limit, config.memory_limit > 0, "a number above 0");
@@ -174,7 +176,7 @@ void Surfacer::Work::draw_one(const SurfaceParticles& all, std::size_t surface, 
   SurfaceField& field = fields[surface];
   const std::size_t first = counts.vertices;
   field.build(x, spacing, config, frame, threads);
-  mesher.append(field, threads, counts, mesh);
+  mesher.append(field, config.adaptivity, threads, counts, mesh);
   if (!all.groups.empty()) mesh.material_ids.resize(mesh.vertices.size(), static_cast<std::uint8_t>(surface));
   if (config.joined && !all.groups.empty()) find_materials(field, all);
   if (!all.velocities.empty()) {

@@ -179,6 +179,8 @@ FieldTable fields(SurfaceConfig& config) {
        "distance of the surface from the outermost particles"},
       {"kind", &config.kind, k_any, "", "what the surface is the zero of"},
       {"joined", &config.joined, k_any, "", "one surface around all groups"},
+      {"adaptivity", &config.adaptivity, between(0, 1), "voxels",
+       "what merging vertices where the surface is even may move it by"},
       {"smoothing", &config.smoothing, between(0, 100), "", "rounds that smooth the mesh and keep its volume"},
       {"memory_limit", &config.memory_limit, k_positive, "GiB", "a surface that would need more is refused"},
   };

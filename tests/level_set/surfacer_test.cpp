@@ -170,7 +170,7 @@ TEST(surfacer, same_bits_from_used_and_new_memory_and_for_any_thread_count) {
   const std::vector<Vec3> velocities(second.begin(), second.end());
   const std::vector<float> spacings{1};
   for (const SurfaceKind kind : k_kinds) {
-    const SurfaceConfig config{.voxels = 64, .kind = kind, .smoothing = 2};
+    const SurfaceConfig config{.voxels = 64, .kind = kind, .adaptivity = 0.1f, .smoothing = 2};
     Surfacer fresh(config, 1);
     const Mesh expected = fresh.draw({second, velocities, {}, spacings});
     for (const int threads : {1, 2, 3}) {
@@ -194,6 +194,51 @@ TEST(surfacer, memory_stays_from_frame_to_frame) {
   EXPECT_GT(bytes, 1u << 20);
   for (int frame = 0; frame < 3; ++frame) surfacer.draw({points, {}, {}, spacings});
   EXPECT_EQ(surfacer.bytes(), bytes);
+}
+
+/// Also where parts cannot be told from each other, and up to the largest adaptivity.
+TEST(surfacer, adaptive_meshes_are_manifold) {
+  for (unsigned seed = 0; seed < 12; ++seed)
+    for (const SurfaceKind kind : {SurfaceKind::blended, SurfaceKind::spheres})
+      for (const float voxel : {0.12f, 0.3f, 0.7f})
+        for (const float adaptivity : {0.05f, 1.0f})
+          ASSERT_EQ(why_not_manifold(surface(scattered(300, 9, seed), 1,
+                                             {.voxel_size = voxel, .kind = kind, .adaptivity = adaptivity})),
+                    "")
+              << seed << ' ' << voxel << ' ' << adaptivity;
+}
+
+TEST(surfacer, adaptive_meshes_have_few_triangles_on_flat_faces_and_stay_within_their_tolerance) {
+  std::vector<Vec3> cube;
+  for (int i = 0; i < 12; ++i)
+    for (int j = 0; j < 12; ++j)
+      for (int k = 0; k < 12; ++k) cube.push_back(Eigen::Vector3i(i, j, k).cast<float>());
+  constexpr float k_voxel = 0.15f;
+  const Mesh fine = surface(cube, 1, {.voxel_size = k_voxel});
+  std::size_t last = fine.triangles.size();
+  for (const float adaptivity : {0.02f, 0.1f, 0.5f}) {
+    const Mesh mesh = surface(cube, 1, {.voxel_size = k_voxel, .adaptivity = adaptivity});
+    EXPECT_EQ(why_not_manifold(mesh), "") << adaptivity;
+    EXPECT_LT(mesh.triangles.size(), last) << adaptivity;
+    last = mesh.triangles.size();
+    EXPECT_NEAR(signed_volume(mesh) / signed_volume(fine), 1, 0.002 + 0.02 * static_cast<double>(adaptivity));
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const Vec3 normal = (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+      ASSERT_GT(normal.dot(mesh.normals[a] + mesh.normals[b] + mesh.normals[c]), 0) << adaptivity;
+    }
+    // The nearest vertex of the fine mesh is nearly half a voxel away along the surface.
+    for (std::size_t v = 0; v < mesh.vertices.size(); v += 5) {
+      float nearest = 1e9f, height = 0;
+      for (std::size_t u = 0; u < fine.vertices.size(); ++u) {
+        const Vec3 d = mesh.vertices[v] - fine.vertices[u];
+        if (d.squaredNorm() >= nearest) continue;
+        nearest = d.squaredNorm();
+        height = d.dot(fine.normals[u]);
+      }
+      ASSERT_LT(std::abs(height), (adaptivity + 0.05f) * k_voxel) << adaptivity;
+    }
+  }
+  EXPECT_LT(last, fine.triangles.size() / 8);
 }
 
 TEST(surfacer, smoothing_evens_out_bumps_and_keeps_the_volume) {

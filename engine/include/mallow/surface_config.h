@@ -29,6 +29,9 @@ struct SurfaceConfig {
   /// One surface around all groups, which melts where they touch, in place of one around each. The widest
   /// spacing counts for all.
   bool joined = false;
+  /// Where the surface is even, vertices are merged, in cubes of up to eight voxels a side, as long as that
+  /// moves it by no more than this many voxels, in [0, 1]. 0: all triangles are about a voxel large.
+  float adaptivity = 0;
   /// Rounds that smooth the mesh, in [0, 100]; each evens out bumps of about a voxel and keeps the volume
   /// [Taubin 1995].
   int smoothing = 0;
