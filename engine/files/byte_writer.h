@@ -30,6 +30,14 @@ void append_number(std::string& text, T value, int digits) {
   text.append(raw.data(), result.ptr);
 }
 
+/// The shortest text that gives back the same number, whatever the locale.
+template <class T>
+void append_shortest(std::string& text, T value) {
+  std::array<char, 64> raw;
+  const auto result = std::to_chars(raw.data(), raw.data() + raw.size(), value);
+  text.append(raw.data(), result.ptr);
+}
+
 /// Significant digits that give back the same number.
 inline constexpr int k_float_digits = 9;
 inline constexpr int k_double_digits = 17;

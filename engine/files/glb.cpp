@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -7,9 +5,9 @@
 
 #include "files/byte_reader.h"
 #include "files/byte_writer.h"
+#include "files/mesh_materials.h"
 #include "files/tiny_gltf.h"
 #include "files/valid_columns.h"
-#include "mallow/errors.h"
 #include "mallow/files.h"
 
 namespace mallow {
@@ -59,26 +57,14 @@ class GltfColumns {
   std::string bytes_;
 };
 
-std::uint8_t material_id(const Mesh& mesh, std::uint32_t vertex) {
-  return mesh.material_ids.empty() ? std::uint8_t{0} : mesh.material_ids[vertex];
-}
-
-/// Corners of the triangles of each material id, which is that of a triangle's first corner.
+/// Corners of the triangles of each material id.
 std::map<std::uint8_t, std::vector<std::uint32_t>> corners_by_material(const Mesh& mesh) {
   std::map<std::uint8_t, std::vector<std::uint32_t>> corners;
-  for (const auto& triangle : mesh.triangles) {
-    std::vector<std::uint32_t>& of_material = corners[material_id(mesh, triangle[0])];
-    of_material.insert(of_material.end(), triangle.begin(), triangle.end());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    std::vector<std::uint32_t>& of_material = corners[triangle_material(mesh, t)];
+    of_material.insert(of_material.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
   }
   return corners;
-}
-
-void require_finite(const char* field, const std::vector<Vec3>& vectors) {
-  const auto wrong =
-      std::find_if(vectors.begin(), vectors.end(), [](const Vec3& v) { return !v.allFinite(); });
-  if (wrong == vectors.end()) return;
-  throw ConfigError(field + ('[' + std::to_string(wrong - vectors.begin()) + ']'),
-                    "is not allowed: finite numbers");
 }
 
 gltf::Material material_of_color(const Vec3& color) {
@@ -104,10 +90,6 @@ gltf::Mesh shared_vertices(const Mesh& mesh, std::span<const Vec3> colors, gltf:
 
   gltf::Mesh parts;
   for (const auto& [id, corners] : corners_by_material(mesh)) {
-    if (id >= colors.size()) {
-      throw ConfigError("colors", std::to_string(colors.size()) + " are not allowed: material id " +
-                                      std::to_string(id) + " needs one too");
-    }
     primitive.indices = columns.add_corners(corners);
     primitive.material = static_cast<int>(model.materials.size());
     model.materials.push_back(material_of_color(colors[id]));
@@ -122,13 +104,8 @@ gltf::Mesh shared_vertices(const Mesh& mesh, std::span<const Vec3> colors, gltf:
 
 void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const Vec3> colors) {
   require_valid(mesh);
-  require_finite("mesh.vertices", mesh.vertices);
-  require_finite("mesh.normals", mesh.normals);
-  require_finite("mesh.velocities", mesh.velocities);
-  for (std::size_t k = 0; k < colors.size(); ++k) {
-    if ((colors[k].array() >= 0).all() && (colors[k].array() <= 1).all()) continue;
-    throw ConfigError("colors[" + std::to_string(k) + ']', "is not allowed: linear RGB in [0, 1]");
-  }
+  require_finite(mesh);
+  require_colors(mesh, colors);
 
   gltf::Model model;
   model.asset.version = "2.0";

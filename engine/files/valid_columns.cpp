@@ -1,5 +1,6 @@
 #include "files/valid_columns.h"
 
+#include <algorithm>
 #include <string>
 
 #include "mallow/errors.h"
@@ -13,6 +14,14 @@ void require_per_vertex(const char* field, const std::vector<T>& values, const M
   throw ConfigError(field, std::to_string(values.size()) +
                                " are not allowed: none, or as many as vertices (" +
                                std::to_string(mesh.vertices.size()) + ')');
+}
+
+void require_finite(const char* field, const std::vector<Vec3>& vectors) {
+  const auto wrong =
+      std::find_if(vectors.begin(), vectors.end(), [](const Vec3& v) { return !v.allFinite(); });
+  if (wrong == vectors.end()) return;
+  throw ConfigError(field + ('[' + std::to_string(wrong - vectors.begin()) + ']'),
+                    "is not allowed: finite numbers");
 }
 
 }  // namespace
@@ -29,6 +38,12 @@ void require_valid(const Mesh& mesh) {
                             std::to_string(mesh.vertices.size()));
     }
   }
+}
+
+void require_finite(const Mesh& mesh) {
+  require_finite("mesh.vertices", mesh.vertices);
+  require_finite("mesh.normals", mesh.normals);
+  require_finite("mesh.velocities", mesh.velocities);
 }
 
 void require_valid(const ParticleFrame& frame) {

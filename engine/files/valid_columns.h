@@ -9,4 +9,8 @@ namespace mallow {
 void require_valid(const Mesh& mesh);
 void require_valid(const ParticleFrame& frame);
 
+/// Throws ConfigError that names the first vertex with a number that is not finite, for formats that could
+/// not say it.
+void require_finite(const Mesh& mesh);
+
 }  // namespace mallow

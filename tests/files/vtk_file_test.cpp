@@ -1,11 +1,7 @@
-#include <sys/wait.h>
-
-#include <cstdio>
-#include <nlohmann/json.hpp>
 #include <numbers>
-#include <optional>
 
 #include "files/file_fixture.h"
+#include "files/other_reader.h"
 
 namespace mallow {
 namespace {
@@ -24,25 +20,6 @@ Rows column(const std::vector<T>& values) {
   for (const T value : values) rows.push_back({static_cast<double>(value)});
   return rows;
 }
-
-/// What VTK finds in a file, or nothing where there is no VTK.
-std::optional<nlohmann::json> read_with_vtk(const std::filesystem::path& file) {
-  const std::string command = "'" MALLOW_PYTHON "' '" MALLOW_READ_WITH_VTK "' '" + file.string() + "'";
-  std::FILE* const pipe = ::popen(command.c_str(), "r");
-  std::string text;
-  std::array<char, 4096> part{};
-  while (const std::size_t got = std::fread(part.data(), 1, part.size(), pipe)) text.append(part.data(), got);
-  const int status = ::pclose(pipe);
-  if (WEXITSTATUS(status) == 77 || WEXITSTATUS(status) == 127) return std::nullopt;
-  EXPECT_EQ(status, 0) << command;
-  return nlohmann::json::parse(text);
-}
-
-#define READ_WITH_VTK(name, file)                                                                          \
-  const auto name##_or_none = read_with_vtk(file);                                                         \
-  if (!name##_or_none) GTEST_SKIP() << "SKIPPED: there is no python3-vtk9; tools/setup --vtk installs it"; \
-  const nlohmann::json& name = *name##_or_none;                                                            \
-  EXPECT_EQ(name.at("messages"), "")
 
 Mesh full_tetrahedron() {
   constexpr float s = std::numbers::inv_sqrt3_v<float>;

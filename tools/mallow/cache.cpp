@@ -89,9 +89,9 @@ void Cache::remove_images() const {
 
 void Cache::remove_exports() const {
   for (const char* what : {"surface", "particles"}) {
-    for (const char* ending : {"obj", "glb", "vtp", "vdb", "csv"})
+    for (const char* ending : {"obj", "glb", "vtp", "usda", "vdb", "csv"})
       remove_frames(export_folder() / what, ending);
-    fs::remove(export_folder() / what += ".pvd");
+    for (const char* ending : {".pvd", ".usda"}) fs::remove(export_folder() / what += ending);
   }
   std::error_code ignored;  // a folder with somebody's own files in it stays
   fs::remove(export_folder(), ignored);

@@ -1,6 +1,7 @@
 #include "mallow/export_command.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -29,7 +30,17 @@ bool contains(const std::vector<std::string>& formats, const char* format) {
   return std::find(formats.begin(), formats.end(), format) != formats.end();
 }
 
-/// Frames of one kind in all of their formats: OUT/surface/frame_000000.glb and, for VTP, OUT/surface.pvd.
+/// USD's seconds are those of the simulation, as velocities are per second of it; players show a frame after
+/// the other as the film does. frame_time: between frames [s].
+UsdTimeline usd_timeline(const Scene& scene, double frame_time) {
+  const double film = scene.render.frames_per_second;
+  const double rate = 1 / frame_time;
+  // A scene in real time says 0.0333, or a float next to 1/30, but means the film's rate.
+  return {std::abs(rate - film) < 2e-3 * film ? film : rate, film};
+}
+
+/// Frames of one kind in all of their formats: OUT/surface/frame_000000.glb and what plays them where a
+/// format has such a file, OUT/surface.pvd for VTP and OUT/surface.usda.
 class Series {
  public:
   /// Throws IoError where it cannot be written.
@@ -45,18 +56,31 @@ class Series {
   template <class Write>
   void add(int number, double time, const Write& write) {
     for (const std::string& format : formats_) write(format, out_ / kind_ / frame_name(number, format));
-    frames_.push_back({fs::path(kind_) / frame_name(number, "vtp"), time});
+    vtp_frames_.push_back({fs::path(kind_) / frame_name(number, "vtp"), time});
+    usda_frames_.push_back({fs::path(kind_) / frame_name(number, "usda"), number});
   }
-  void finish() const {
-    if (contains(formats_, "vtp")) write_pvd(out_ / (kind_ + std::string(".pvd")), frames_);
-    if (!formats_.empty()) std::printf("%s %zu\n", kind_, frames_.size());
+  void finish(const Scene& scene) const {
+    const std::string name = (out_ / kind_).string();
+    if (contains(formats_, "vtp")) write_pvd(name + ".pvd", vtp_frames_);
+    if (contains(formats_, "usda"))
+      write_usda_series(name + ".usda", usda_frames_, usd_timeline(scene, frame_time(scene)));
+    if (!formats_.empty()) std::printf("%s %zu\n", kind_, vtp_frames_.size());
   }
 
  private:
+  /// Where a frame is one step, the steps taken count: they may be shorter than the scene's.
+  double frame_time(const Scene& scene) const {
+    if (scene.run.frame_time) return *scene.run.frame_time;
+    if (usda_frames_.size() < 2) return scene.solver.time_step;
+    return (vtp_frames_.back().time - vtp_frames_.front().time) /
+           (usda_frames_.back().number - usda_frames_.front().number);
+  }
+
   fs::path out_;
   const char* kind_;
   const std::vector<std::string>& formats_;
-  std::vector<TimedFile> frames_;
+  std::vector<TimedFile> vtp_frames_;
+  std::vector<UsdFrame> usda_frames_;
 };
 
 void check_formats(const ExportOptions& options) {
@@ -93,6 +117,7 @@ void export_frames(const ExportOptions& options) {
     if (format == "obj") write_mesh_obj(file, mesh);
     if (format == "glb") write_mesh_glb(file, mesh, colors);
     if (format == "vtp") write_mesh_vtp(file, mesh);
+    if (format == "usda") write_mesh_usda(file, mesh, colors);
   };
   const auto write_points = [&](const ParticleFrame& frame, const std::string& format, const fs::path& file) {
     if (format == "vdb") write_particles_vdb(file, frame, voxel_size, run.threads);
@@ -117,8 +142,8 @@ void export_frames(const ExportOptions& options) {
           write_surface(mesh, format, file);
       });
     });
-    surfaces.finish();
-    particles.finish();
+    surfaces.finish(run.scene);
+    particles.finish(run.scene);
   } catch (const std::exception& error) {
     throw RunFailure(error.what());
   }
@@ -132,12 +157,12 @@ void add_export_command(CLI::App& app) {
       "export", "Write the surfaces and particles of an earlier run in the formats of other programs");
   command->add_option("DIR", options->folder, "The --out folder of a run")->required();
   command
-      ->add_option(
-          "--surface", options->surface,
-          "Formats of the surfaces, with commas between: obj, glb (glTF; Blender, web), vtp (ParaView), vdb (level sets)")
+      ->add_option("--surface", options->surface,
+                   "Formats of the surfaces, with commas between: obj, glb (glTF; Blender, web), "
+                   "vtp (ParaView), usda (USD), vdb (level sets)")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"obj", "glb", "vtp", "vdb"}));
+      ->check(CLI::IsMember({"obj", "glb", "vtp", "usda", "vdb"}));
   command
       ->add_option("--particles", options->particles,
                    "Formats of the particles: vdb (OpenVDB points; Houdini), vtp (ParaView), csv")
@@ -148,7 +173,9 @@ void add_export_command(CLI::App& app) {
   command->add_option("--threads", options->threads, "Threads; 0 takes all there are")
       ->check(CLI::Range(0, 1024));
   command->footer(
-      "Velocities: _VELOCITY in glb, Velocity in vtp, v in vdb, vx vy vz in csv; an OBJ has none.");
+      "Velocities: _VELOCITY in glb, Velocity in vtp, velocities in usda, v in vdb, vx vy vz in csv; "
+      "an OBJ has none.\n"
+      "surface.pvd and surface.usda play the frames; a time code of USD is a frame.");
   command->callback([options] { export_frames(*options); });
 }
 

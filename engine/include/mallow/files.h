@@ -54,6 +54,10 @@ void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh);
 /// a scene without a mesh, as glTF knows no empty one. colors: linear RGB of each material id, in [0, 1];
 /// throws ConfigError where one is missing, or a number is not finite, as JSON could not say it.
 void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const Vec3> colors);
+/// USD's text: a Mesh /surface with normals and velocities where the mesh has them, z up, in metres.
+/// Triangles have the primvars group, the material id, where the mesh has any, and displayColor. Takes colors
+/// and throws as write_mesh_glb() does.
+void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::span<const Vec3> colors);
 /// VTK's XML PolyData, triangles with the point arrays Normals, Velocity and Material where the mesh has
 /// them.
 void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh);
@@ -72,6 +76,22 @@ struct TimedFile {
 };
 /// ParaView's collection (PVD): what plays VTP files at their times.
 void write_pvd(const std::filesystem::path& file, std::span<const TimedFile> frames);
+
+/// A file of write_mesh_usda() in a series.
+struct UsdFrame {
+  std::filesystem::path file;  ///< relative to the series
+  int number = 0;              ///< its time code, >= 0
+};
+/// How USD's time codes, which number the frames, stand to seconds.
+struct UsdTimeline {
+  double time_codes_per_second = 30;  ///< of the motion, which velocities are given for, > 0
+  double frames_per_second = 30;      ///< that a player shows, > 0
+};
+/// USD's text that plays files of write_mesh_usda(): a prim /surface/frame_000000 refers to each, and time
+/// samples of its visibility show it from its frame to the next, as triangles come and go from one to the
+/// other. frames: ascending; throws ConfigError where not.
+void write_usda_series(const std::filesystem::path& file, std::span<const UsdFrame> frames,
+                       const UsdTimeline& timeline);
 
 /// Writes a file whole or not at all: `write` gets a name beside it, which is synced and renamed when it
 /// returns and removed when it throws.
