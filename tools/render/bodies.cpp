@@ -1,5 +1,7 @@
 #include "render/bodies.h"
 
+#include <tbb/task_arena.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <string>
@@ -45,9 +47,9 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh) {
 
 }  // namespace
 
-// One thread builds: a tree built by several may order its leaves differently each time, and with it which of
-// two triangles a ray through their common edge hits.
-Bodies::Bodies() : device_(rtcNewDevice("threads=1,set_affinity=0")) {
+// Without a number of threads: with one, Embree caps TBB's threads for the whole process, OpenVDB's too, and
+// TBB prints a warning wherever something asks for more.
+Bodies::Bodies() : device_(rtcNewDevice("set_affinity=0")) {
   if (!device_) throw Error("Embree gives no device: error " + std::to_string(rtcGetDeviceError(nullptr)));
 }
 
@@ -66,7 +68,9 @@ void Bodies::commit(RTCGeometry geometry) {
     rtcAttachGeometry(scene_.get(), geometry);
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(scene_.get());
+  // One thread builds: a tree built by several may order its leaves differently each time, and with it which
+  // of two triangles a ray through their common edge hits.
+  tbb::task_arena(1).execute([&] { rtcCommitScene(scene_.get()); });
   check();
 }
 
