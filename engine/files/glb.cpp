@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -63,11 +64,20 @@ std::uint8_t material_id(const Mesh& mesh, std::uint32_t vertex) {
   return mesh.material_ids.empty() ? std::uint8_t{0} : mesh.material_ids[vertex];
 }
 
-/// Corners of the triangles of each material id, which is that of a triangle's first corner.
+/// Of a triangle: where surfaces are joined its corners need not agree.
+std::uint8_t material_id(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+  const std::uint8_t a = material_id(mesh, triangle[0]);
+  const std::uint8_t b = material_id(mesh, triangle[1]);
+  const std::uint8_t c = material_id(mesh, triangle[2]);
+  if (a == b || a == c) return a;
+  return b == c ? b : std::min({a, b, c});
+}
+
+/// Corners of the triangles of each material id.
 std::map<std::uint8_t, std::vector<std::uint32_t>> corners_by_material(const Mesh& mesh) {
   std::map<std::uint8_t, std::vector<std::uint32_t>> corners;
   for (const auto& triangle : mesh.triangles) {
-    std::vector<std::uint32_t>& of_material = corners[material_id(mesh, triangle[0])];
+    std::vector<std::uint32_t>& of_material = corners[material_id(mesh, triangle)];
     of_material.insert(of_material.end(), triangle.begin(), triangle.end());
   }
   return corners;
