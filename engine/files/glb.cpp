@@ -18,7 +18,10 @@ namespace {
 
 namespace gltf = mallow_tinygltf;
 
-constexpr double k_roughness = 0.5;  ///< wet clay: shines a little
+/// glTF's core has no translucency; jelly is told from clay by what it mirrors.
+double roughness(Finish finish) {
+  return finish == Finish::clay ? 0.9 : 0.5;
+}
 
 /// Numbers of a glTF: one buffer, a view of it and an accessor for each column.
 class GltfColumns {
@@ -91,15 +94,16 @@ void require_finite(const char* field, const std::vector<Vec3>& vectors) {
                     "is not allowed: finite numbers");
 }
 
-gltf::Material material_of_color(const Vec3& color) {
+gltf::Material material_of(const Appearance& appearance) {
   gltf::Material material;
+  const Vec3& color = appearance.color;
   material.pbrMetallicRoughness.baseColorFactor = {color.x(), color.y(), color.z(), 1.0};
   material.pbrMetallicRoughness.metallicFactor = 0;
-  material.pbrMetallicRoughness.roughnessFactor = k_roughness;
+  material.pbrMetallicRoughness.roughnessFactor = roughness(appearance.finish);
   return material;
 }
 
-gltf::Mesh shared_vertices(const Mesh& mesh, std::span<const Vec3> colors, gltf::Model& model) {
+gltf::Mesh shared_vertices(const Mesh& mesh, std::span<const Appearance> palette, gltf::Model& model) {
   GltfColumns columns(model);
   gltf::Primitive primitive;
   primitive.mode = TINYGLTF_MODE_TRIANGLES;
@@ -114,13 +118,13 @@ gltf::Mesh shared_vertices(const Mesh& mesh, std::span<const Vec3> colors, gltf:
 
   gltf::Mesh parts;
   for (const auto& [id, corners] : corners_by_material(mesh)) {
-    if (id >= colors.size()) {
-      throw ConfigError("colors", std::to_string(colors.size()) + " are not allowed: material id " +
-                                      std::to_string(id) + " needs one too");
+    if (id >= palette.size()) {
+      throw ConfigError("palette", std::to_string(palette.size()) + " are not allowed: material id " +
+                                       std::to_string(id) + " needs one too");
     }
     primitive.indices = columns.add_corners(corners);
     primitive.material = static_cast<int>(model.materials.size());
-    model.materials.push_back(material_of_color(colors[id]));
+    model.materials.push_back(material_of(palette[id]));
     model.materials.back().name = "material " + std::to_string(id);
     parts.primitives.push_back(primitive);
   }
@@ -130,14 +134,16 @@ gltf::Mesh shared_vertices(const Mesh& mesh, std::span<const Vec3> colors, gltf:
 
 }  // namespace
 
-void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const Vec3> colors) {
+void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh,
+                    std::span<const Appearance> palette) {
   require_valid(mesh);
   require_finite("mesh.vertices", mesh.vertices);
   require_finite("mesh.normals", mesh.normals);
   require_finite("mesh.velocities", mesh.velocities);
-  for (std::size_t k = 0; k < colors.size(); ++k) {
-    if ((colors[k].array() >= 0).all() && (colors[k].array() <= 1).all()) continue;
-    throw ConfigError("colors[" + std::to_string(k) + ']', "is not allowed: linear RGB in [0, 1]");
+  for (std::size_t k = 0; k < palette.size(); ++k) {
+    const auto color = palette[k].color.array();
+    if ((color >= 0).all() && (color <= 1).all()) continue;
+    throw ConfigError("palette[" + std::to_string(k) + "].color", "is not allowed: linear RGB in [0, 1]");
   }
 
   gltf::Model model;
@@ -149,7 +155,7 @@ void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::sp
   node.rotation = {-k_half, 0, 0, k_half};  // a quarter turn about x, as x y z w
   if (!mesh.triangles.empty()) {
     node.mesh = 0;
-    model.meshes.push_back(shared_vertices(mesh, colors, model));
+    model.meshes.push_back(shared_vertices(mesh, palette, model));
   }
   model.scenes.emplace_back().nodes.push_back(0);
   model.defaultScene = 0;

@@ -79,6 +79,7 @@ FieldTable fields(SceneMaterial& material) {
        "one of so many owns a region; more is faster and coarser"},
       {"color", &material.color, between(0, 1), "", "red, green and blue in pictures, linear",
        "one of a palette"},
+      {"finish", &material.finish, k_any, "", "in pictures: translucent and glossy, or opaque and dull"},
   };
 }
 
@@ -179,7 +180,8 @@ FieldTable fields(SurfaceConfig& config) {
        "distance of the surface from the outermost particles"},
       {"kind", &config.kind, k_any, "", "what the surface is the zero of"},
       {"joined", &config.joined, k_any, "", "one surface around all groups"},
-      {"smoothing", &config.smoothing, between(0, 100), "", "rounds that smooth the mesh and keep its volume"},
+      {"smoothing", &config.smoothing, between(0, 100), "",
+       "rounds that smooth the mesh and keep its volume"},
       {"memory_limit", &config.memory_limit, k_positive, "GiB", "a surface that would need more is refused"},
   };
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mallow/appearance.h"
 #include "mallow/body.h"
 #include "mallow/mesh.h"
 
@@ -49,11 +50,12 @@ void write_state_csv(const std::filesystem::path& file, const ParticleFrame& fra
 void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh);
 /// Wavefront OBJ.
 void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh);
-/// glTF 2.0 binary: a primitive and a material for every material id, velocities as attribute _VELOCITY.
+/// glTF 2.0 binary: a primitive and a material for every material id, velocities as attribute _VELOCITY. A
+/// triangle is of the material that most of its corners are of, of the smallest id of three that differ.
 /// Vertices stay as they are; a node turns their z, which is up, to glTF's y. A mesh without triangles gives
-/// a scene without a mesh, as glTF knows no empty one. colors: linear RGB of each material id, in [0, 1];
-/// throws ConfigError where one is missing, or a number is not finite, as JSON could not say it.
-void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const Vec3> colors);
+/// a scene without a mesh, as glTF knows no empty one. palette: the appearance of each material id; throws
+/// ConfigError where one is missing or out of range, or a number is not finite, as JSON could not say it.
+void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const Appearance> palette);
 /// VTK's XML PolyData, triangles with the point arrays Normals, Velocity and Material where the mesh has
 /// them.
 void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh);
