@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <png.h>
+#include <tbb/global_control.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -228,6 +229,16 @@ TEST(renderer, looks_into_kept_in_shapes_through_their_front) {
     const auto color = pixel(image, 80, 50);
     EXPECT_GT(color[0], color[2] + 60);
   }
+}
+
+TEST(renderer, leaves_the_threads_of_others_alone) {
+  const auto most_threads = [] {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  };
+  const std::size_t before = most_threads();
+  Renderer renderer(small(), 1);
+  renderer.render(ball({0, 0, 3}, 3, 8, 0), k_palette, {}, frame_camera(k_bounds, small()));
+  EXPECT_EQ(most_threads(), before);
 }
 
 TEST(renderer, refuses_what_it_cannot_draw) {
