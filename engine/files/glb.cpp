@@ -15,7 +15,10 @@ namespace {
 
 namespace gltf = mallow_tinygltf;
 
-constexpr double k_roughness = 0.5;  ///< wet clay: shines a little
+/// glTF's core has no translucency; jelly is told from clay by what it mirrors.
+double roughness(Finish finish) {
+  return finish == Finish::clay ? 0.9 : 0.5;
+}
 
 /// Numbers of a glTF: one buffer, a view of it and an accessor for each column.
 class GltfColumns {
@@ -67,15 +70,16 @@ std::map<std::uint8_t, std::vector<std::uint32_t>> corners_by_material(const Mes
   return corners;
 }
 
-gltf::Material material_of_color(const Vec3& color) {
+gltf::Material material_of(const Appearance& appearance) {
   gltf::Material material;
+  const Vec3& color = appearance.color;
   material.pbrMetallicRoughness.baseColorFactor = {color.x(), color.y(), color.z(), 1.0};
   material.pbrMetallicRoughness.metallicFactor = 0;
-  material.pbrMetallicRoughness.roughnessFactor = k_roughness;
+  material.pbrMetallicRoughness.roughnessFactor = roughness(appearance.finish);
   return material;
 }
 
-gltf::Mesh shared_vertices(const Mesh& mesh, std::span<const Vec3> colors, gltf::Model& model) {
+gltf::Mesh shared_vertices(const Mesh& mesh, std::span<const Appearance> palette, gltf::Model& model) {
   GltfColumns columns(model);
   gltf::Primitive primitive;
   primitive.mode = TINYGLTF_MODE_TRIANGLES;
@@ -92,7 +96,7 @@ gltf::Mesh shared_vertices(const Mesh& mesh, std::span<const Vec3> colors, gltf:
   for (const auto& [id, corners] : corners_by_material(mesh)) {
     primitive.indices = columns.add_corners(corners);
     primitive.material = static_cast<int>(model.materials.size());
-    model.materials.push_back(material_of_color(colors[id]));
+    model.materials.push_back(material_of(palette[id]));
     model.materials.back().name = "material " + std::to_string(id);
     parts.primitives.push_back(primitive);
   }
@@ -102,10 +106,11 @@ gltf::Mesh shared_vertices(const Mesh& mesh, std::span<const Vec3> colors, gltf:
 
 }  // namespace
 
-void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const Vec3> colors) {
+void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh,
+                    std::span<const Appearance> palette) {
   require_valid(mesh);
   require_finite(mesh);
-  require_colors(mesh, colors);
+  require_appearances(mesh, palette);
 
   gltf::Model model;
   model.asset.version = "2.0";
@@ -116,7 +121,7 @@ void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::sp
   node.rotation = {-k_half, 0, 0, k_half};  // a quarter turn about x, as x y z w
   if (!mesh.triangles.empty()) {
     node.mesh = 0;
-    model.meshes.push_back(shared_vertices(mesh, colors, model));
+    model.meshes.push_back(shared_vertices(mesh, palette, model));
   }
   model.scenes.emplace_back().nodes.push_back(0);
   model.defaultScene = 0;

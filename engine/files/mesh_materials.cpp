@@ -1,5 +1,6 @@
 #include "files/mesh_materials.h"
 
+#include <algorithm>
 #include <string>
 
 #include "mallow/errors.h"
@@ -7,19 +8,25 @@
 namespace mallow {
 
 std::uint8_t triangle_material(const Mesh& mesh, std::size_t triangle) {
-  return mesh.material_ids.empty() ? std::uint8_t{0} : mesh.material_ids[mesh.triangles[triangle][0]];
+  if (mesh.material_ids.empty()) return 0;
+  const auto& corners = mesh.triangles[triangle];
+  const std::uint8_t a = mesh.material_ids[corners[0]], b = mesh.material_ids[corners[1]],
+                     c = mesh.material_ids[corners[2]];
+  if (a == b || a == c) return a;
+  return b == c ? b : std::min({a, b, c});
 }
 
-void require_colors(const Mesh& mesh, std::span<const Vec3> colors) {
-  for (std::size_t k = 0; k < colors.size(); ++k) {
-    if ((colors[k].array() >= 0).all() && (colors[k].array() <= 1).all()) continue;
-    throw ConfigError("colors[" + std::to_string(k) + ']', "is not allowed: linear RGB in [0, 1]");
+void require_appearances(const Mesh& mesh, std::span<const Appearance> palette) {
+  for (std::size_t k = 0; k < palette.size(); ++k) {
+    const auto color = palette[k].color.array();
+    if ((color >= 0).all() && (color <= 1).all()) continue;
+    throw ConfigError("palette[" + std::to_string(k) + "].color", "is not allowed: linear RGB in [0, 1]");
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::uint8_t id = triangle_material(mesh, t);
-    if (id < colors.size()) continue;
-    throw ConfigError("colors", std::to_string(colors.size()) + " are not allowed: material id " +
-                                    std::to_string(id) + " needs one too");
+    if (id < palette.size()) continue;
+    throw ConfigError("palette", std::to_string(palette.size()) + " are not allowed: material id " +
+                                     std::to_string(id) + " needs one too");
   }
 }
 

@@ -48,16 +48,20 @@ void append_vectors(std::string& text, const char* declaration, std::span<const 
 }
 
 /// Groups and their colours, as arrays that programs show without a material.
-void append_primvars(std::string& text, const Mesh& mesh, std::span<const Vec3> colors) {
+void append_primvars(std::string& text, const Mesh& mesh, std::span<const Appearance> palette) {
   if (mesh.triangles.empty()) return;
+  const auto append_colors = [&](std::size_t count) {
+    append_array(text, "color3f[] primvars:displayColor", count,
+                 [&](std::size_t i) -> const Vec3& { return palette[i].color; });
+  };
   if (mesh.material_ids.empty()) {
-    append_vectors(text, "color3f[] primvars:displayColor", colors.first(1));
+    append_colors(1);
     text += " (\n        interpolation = \"constant\"\n    )\n";
     return;
   }
   // Faces, not vertices, have them: a colour between two groups is that of neither.
   const auto group = [&](std::size_t t) { return std::uint32_t{triangle_material(mesh, t)}; };
-  append_vectors(text, "color3f[] primvars:displayColor", colors);
+  append_colors(palette.size());
   text += k_per_face;
   append_array(text, "int[] primvars:displayColor:indices", mesh.triangles.size(), group);
   text += '\n';
@@ -110,10 +114,11 @@ void require_positive(const char* field, double rate) {
 
 }  // namespace
 
-void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::span<const Vec3> colors) {
+void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh,
+                     std::span<const Appearance> palette) {
   require_valid(mesh);
   require_finite(mesh);
-  require_colors(mesh, colors);
+  require_appearances(mesh, palette);
 
   std::string text =
       "#usda 1.0\n(\n    defaultPrim = \"surface\"\n    metersPerUnit = 1\n    upAxis = \"Z\"\n)\n\n"
@@ -141,7 +146,7 @@ void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::s
     append_vectors(text, "vector3f[] velocities", mesh.velocities);
     text += '\n';
   }
-  append_primvars(text, mesh, colors);
+  append_primvars(text, mesh, palette);
   text += "}\n";
   require_readable_size(file, text.size());
   write_whole(file, text);

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "mallow/appearance.h"
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 #include "mallow/surface_config.h"
@@ -33,9 +34,10 @@ constexpr Range between(double lowest, double highest) {
 using Count3 = std::array<int, 3>;
 
 /// Where the value of a field lives; the type says what TOML may hold.
-using Target = std::variant<bool*, int*, std::optional<int>*, float*, std::optional<float>*, Vec3*,
-                            std::optional<Vec3>*, Count3*, std::string*, std::filesystem::path*,
-                            AlphaSchedule*, Formulation*, SurfaceKind*, std::optional<InstructionLevel>*>;
+using Target =
+    std::variant<bool*, int*, std::optional<int>*, float*, std::optional<float>*, Vec3*, std::optional<Vec3>*,
+                 Count3*, std::string*, std::filesystem::path*, AlphaSchedule*, Formulation*, SurfaceKind*,
+                 Finish*, std::optional<InstructionLevel>*>;
 
 /// In place of Field::left_out: a scene without the key is refused.
 inline constexpr char k_required[] = "required";
@@ -64,6 +66,9 @@ constexpr std::array<const char*, 2> choices(Formulation) {
 }
 constexpr std::array<const char*, 3> choices(SurfaceKind) {
   return {"blended", "anisotropic", "spheres"};
+}
+constexpr std::array<const char*, 2> choices(Finish) {
+  return {"jelly", "clay"};
 }
 template <class T>
 concept Choice = requires { choices(T{}); };

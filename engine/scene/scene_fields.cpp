@@ -79,6 +79,7 @@ FieldTable fields(SceneMaterial& material) {
        "one of so many owns a region; more is faster and coarser"},
       {"color", &material.color, between(0, 1), "", "red, green and blue in pictures, linear",
        "one of a palette"},
+      {"finish", &material.finish, k_any, "", "in pictures: translucent and glossy, or opaque and dull"},
   };
 }
 
@@ -181,7 +182,8 @@ FieldTable fields(SurfaceConfig& config) {
       {"joined", &config.joined, k_any, "", "one surface around all groups"},
       {"adaptivity", &config.adaptivity, between(0, 1), "voxels",
        "what merging vertices where the surface is even may move it by"},
-      {"smoothing", &config.smoothing, between(0, 100), "", "rounds that smooth the mesh and keep its volume"},
+      {"smoothing", &config.smoothing, between(0, 100), "",
+       "rounds that smooth the mesh and keep its volume"},
       {"memory_limit", &config.memory_limit, k_positive, "GiB", "a surface that would need more is refused"},
   };
 }

@@ -67,16 +67,18 @@ TEST_F(cli_export, collections_name_files_that_are_there_at_the_time_of_their_fr
   }
 }
 
-TEST_F(cli_export, glb_has_the_colour_of_the_material) {
+TEST_F(cli_export, glb_has_the_colour_and_finish_of_the_material) {
   ASSERT_EQ(run({"--out", at("out"), "--frames", "0"}).exit_code, 0);
   const std::string scene = read_text(at("out/scene.toml"));
   std::string changed = scene;
   changed.replace(changed.find("[[material]]"), 12, "[[material]]\ncolor = [0.25, 0.5, 0.125]");
+  changed.replace(changed.find("\"jelly\""), 7, "\"clay\"");
   write("out/scene.toml", changed);
   const Outcome outcome = run_mallow({"export", at("out"), "--surface", "glb"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::string glb = read_text(at("out/export/surface/frame_000000.glb"));
   EXPECT_NE(glb.find("\"baseColorFactor\":[0.25,0.5,0.125,1.0]"), std::string::npos) << glb.substr(0, 2000);
+  EXPECT_NE(glb.find("\"roughnessFactor\":0.9"), std::string::npos) << glb.substr(0, 2000);
 }
 
 TEST_F(cli_export, usda_is_what_tinyusdz_plays_frame_by_frame) {

@@ -9,7 +9,8 @@ namespace {
 
 namespace gltf = mallow_tinygltf;
 
-const std::vector<Vec3> k_colors = {{0.8f, 0.24f, 0.09f}, {0, 1, 0.5f}, {0.1f, 0.2f, 0.3f}};
+const std::vector<Appearance> k_palette = {
+    {{0.8f, 0.24f, 0.09f}}, {{0, 1, 0.5f}}, {{0.1f, 0.2f, 0.3f}, Finish::clay}};
 
 gltf::Model read_glb(const std::filesystem::path& file) {
   gltf::Model model;
@@ -55,7 +56,7 @@ Mesh two_tetrahedra() {
 TEST(glb, gives_back_vertices_normals_velocities_and_a_primitive_per_material) {
   const TemporaryFolder folder;
   const Mesh mesh = two_tetrahedra();
-  write_mesh_glb(folder / "a.glb", mesh, k_colors);
+  write_mesh_glb(folder / "a.glb", mesh, k_palette);
   const gltf::Model model = read_glb(folder / "a.glb");
   ASSERT_EQ(model.meshes.size(), 1u);
   ASSERT_EQ(model.meshes[0].primitives.size(), 2u);
@@ -71,7 +72,7 @@ TEST(glb, gives_back_vertices_normals_velocities_and_a_primitive_per_material) {
     const auto& color =
         model.materials.at(static_cast<std::size_t>(primitive.material)).pbrMetallicRoughness.baseColorFactor;
     for (int k = 0; k < 3; ++k)
-      EXPECT_EQ(static_cast<float>(color.at(static_cast<std::size_t>(k))), k_colors[2 * part][k]);
+      EXPECT_EQ(static_cast<float>(color.at(static_cast<std::size_t>(k))), k_palette[2 * part].color[k]);
   }
   const gltf::Accessor& positions =
       accessor_of(model, model.meshes[0].primitives[0].attributes.at("POSITION"));
@@ -82,9 +83,41 @@ TEST(glb, gives_back_vertices_normals_velocities_and_a_primitive_per_material) {
   }
 }
 
+TEST(glb, clay_is_rougher_than_jelly) {
+  const TemporaryFolder folder;
+  write_mesh_glb(folder / "a.glb", two_tetrahedra(), k_palette);
+  const gltf::Model model = read_glb(folder / "a.glb");
+  ASSERT_EQ(model.materials.size(), 2u);
+  EXPECT_EQ(model.materials[0].pbrMetallicRoughness.roughnessFactor, 0.5);
+  EXPECT_GE(model.materials[1].pbrMetallicRoughness.roughnessFactor, 0.9);
+  for (const gltf::Material& material : model.materials)
+    EXPECT_EQ(material.pbrMetallicRoughness.metallicFactor, 0);
+}
+
+TEST(glb, a_triangle_is_of_the_material_of_most_of_its_corners) {
+  const TemporaryFolder folder;
+  struct Case {
+    std::array<std::uint8_t, 3> corners;
+    const char* material;
+  };
+  for (const Case& one :
+       {Case{{0, 0, 2}, "material 0"}, Case{{0, 2, 0}, "material 0"}, Case{{0, 2, 2}, "material 2"},
+        Case{{2, 0, 2}, "material 2"}, Case{{2, 1, 0}, "material 0"}, Case{{1, 2, 0}, "material 0"}}) {
+    const Mesh triangle{.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                        .triangles = {{0, 1, 2}},
+                        .normals = {},
+                        .velocities = {},
+                        .material_ids = {one.corners.begin(), one.corners.end()}};
+    write_mesh_glb(folder / "a.glb", triangle, k_palette);
+    const gltf::Model model = read_glb(folder / "a.glb");
+    ASSERT_EQ(model.materials.size(), 1u);
+    EXPECT_EQ(model.materials[0].name, one.material);
+  }
+}
+
 TEST(glb, a_bare_mesh_has_positions_only) {
   const TemporaryFolder folder;
-  write_mesh_glb(folder / "a.glb", tetrahedron(), k_colors);
+  write_mesh_glb(folder / "a.glb", tetrahedron(), k_palette);
   const gltf::Model model = read_glb(folder / "a.glb");
   ASSERT_EQ(model.meshes.at(0).primitives.size(), 1u);
   EXPECT_EQ(model.meshes[0].primitives[0].attributes.size(), 1u);
@@ -105,26 +138,26 @@ TEST(glb, a_mesh_without_triangles_is_a_scene_without_a_mesh) {
 
 TEST(glb, what_gltf_cannot_say_is_refused_by_name) {
   const TemporaryFolder folder;
-  const auto field = [&](const Mesh& mesh, std::span<const Vec3> colors) {
+  const auto field = [&](const Mesh& mesh, std::span<const Appearance> palette) {
     try {
-      write_mesh_glb(folder / "a.glb", mesh, colors);
+      write_mesh_glb(folder / "a.glb", mesh, palette);
     } catch (const ConfigError& error) {
       return error.problems().at(0).field;
     }
     return std::string("nothing");
   };
   const Mesh mesh = two_tetrahedra();
-  EXPECT_EQ(field(mesh, std::span(k_colors).first(2)), "colors");
-  EXPECT_EQ(field(mesh, std::array{Vec3(0, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, 0)}), "colors[1]");
+  EXPECT_EQ(field(mesh, std::span(k_palette).first(2)), "palette");
+  EXPECT_EQ(field(mesh, std::array{Appearance{}, Appearance{{0, 2, 0}}, Appearance{}}), "palette[1].color");
   Mesh wrong = mesh;
   wrong.velocities.pop_back();
-  EXPECT_EQ(field(wrong, k_colors), "mesh.velocities");
+  EXPECT_EQ(field(wrong, k_palette), "mesh.velocities");
   wrong = mesh;
   wrong.vertices[3].y() = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(field(wrong, k_colors), "mesh.vertices[3]");
+  EXPECT_EQ(field(wrong, k_palette), "mesh.vertices[3]");
   wrong = mesh;
   wrong.triangles[5][2] = 8;
-  EXPECT_EQ(field(wrong, k_colors), "mesh.triangles[5]");
+  EXPECT_EQ(field(wrong, k_palette), "mesh.triangles[5]");
   EXPECT_EQ(folder.entries(), 0u);
 }
 

@@ -8,6 +8,7 @@ namespace mallow {
 namespace {
 
 const std::vector<Vec3> k_colors = {{0.8f, 0.24f, 0.09f}, {0, 1, 0.5f}, {0.1f, 0.2f, 0.3f}};
+const std::vector<Appearance> k_palette = {{k_colors[0]}, {k_colors[1]}, {k_colors[2]}};
 
 Mesh triangle() {
   Mesh mesh;
@@ -22,7 +23,7 @@ Mesh full_mesh() {
   mesh.triangles = {{0, 2, 1}, {3, 1, 0}};
   mesh.normals = {{0, 0, 1}, {1, 0, 0}, {0.57735026f, 0.57735026f, 0.57735026f}, {0.6f, 0, -0.8f}};
   mesh.velocities = {{0, 0, -9.8f}, {1e-3f, 0, 0}, {2, 3, 16777217.0f}, {0, -1, 1e-40f}};
-  mesh.material_ids = {2, 2, 2, 0};
+  mesh.material_ids = {0, 2, 2, 0};
   return mesh;
 }
 
@@ -65,8 +66,8 @@ TEST(usda, a_mesh_is_the_text_that_usd_expects) {
   const TemporaryFolder folder;
   Mesh mesh = triangle();
   mesh.velocities = {{0, 0, 0}, {1, 2, 3}, {0, 0, -9.8f}};
-  mesh.material_ids = {1, 0, 0};
-  write_mesh_usda(folder / "a.usda", mesh, k_colors);
+  mesh.material_ids = {1, 1, 0};
+  write_mesh_usda(folder / "a.usda", mesh, k_palette);
   EXPECT_EQ(content_of(folder / "a.usda"), R"(#usda 1.0
 (
     defaultPrim = "surface"
@@ -149,7 +150,7 @@ def Xform "surface"
 TEST(usda, tinyusdz_reads_the_mesh_that_was_written) {
   const TemporaryFolder folder;
   const Mesh mesh = full_mesh();
-  write_mesh_usda(folder / "a.usda", mesh, k_colors);
+  write_mesh_usda(folder / "a.usda", mesh, k_palette);
   READ_WITH_TINYUSDZ(read, folder / "a.usda");
   ASSERT_EQ(read.at("error"), "");
   ASSERT_EQ(read.at("meshes").size(), 1u);
@@ -176,8 +177,8 @@ TEST(usda, tinyusdz_plays_the_frames_of_a_series) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "s");
   const std::array<Mesh, 2> meshes = {triangle(), full_mesh()};
-  write_mesh_usda(folder / "s/frame_000000.usda", meshes[0], k_colors);
-  write_mesh_usda(folder / "s/frame_000001.usda", meshes[1], k_colors);
+  write_mesh_usda(folder / "s/frame_000000.usda", meshes[0], k_palette);
+  write_mesh_usda(folder / "s/frame_000001.usda", meshes[1], k_palette);
   write_usda_series(folder / "a.usda",
                     std::vector<UsdFrame>{{"s/frame_000000.usda", 0}, {"s/frame_000001.usda", 1}},
                     {.time_codes_per_second = 6.5, .frames_per_second = 25});
@@ -222,14 +223,14 @@ TEST(usda, tinyusdz_refuses_a_series_with_a_broken_sample_and_a_mesh_with_a_wron
   EXPECT_NE(no_value.at("error"), "");
   READ_WITH_TINYUSDZ(no_time, damaged("1: \"invisible\"", "one: \"invisible\""));
   EXPECT_NE(no_time.at("error"), "");
-  write_mesh_usda(folder / "a.usda", triangle(), k_colors);
+  write_mesh_usda(folder / "a.usda", triangle(), k_palette);
   READ_WITH_TINYUSDZ(wrong_corner, damaged("[0, 1, 2]", "[0, 1, 3]"));
   EXPECT_NE(wrong_corner.at("error"), "");
 }
 
 TEST(usda, tinyusdz_reads_a_bare_mesh_and_one_of_nothing) {
   const TemporaryFolder folder;
-  write_mesh_usda(folder / "bare.usda", tetrahedron(), std::span(k_colors).first(1));
+  write_mesh_usda(folder / "bare.usda", tetrahedron(), std::span(k_palette).first(1));
   READ_WITH_TINYUSDZ(bare, folder / "bare.usda");
   EXPECT_EQ(bare.at("error"), "");
   expect_values(bare.at("layer"), "color3f[] primvars:displayColor", {k_colors[0]});
@@ -250,18 +251,18 @@ TEST(usda, what_usd_cannot_say_is_refused_by_name) {
     }
     return std::string("nothing");
   };
-  const auto mesh_field = [&](const Mesh& mesh, std::span<const Vec3> colors) {
-    return field([&] { write_mesh_usda(folder / "a.usda", mesh, colors); });
+  const auto mesh_field = [&](const Mesh& mesh, std::span<const Appearance> palette) {
+    return field([&] { write_mesh_usda(folder / "a.usda", mesh, palette); });
   };
-  EXPECT_EQ(mesh_field(full_mesh(), std::span(k_colors).first(2)), "colors");
-  EXPECT_EQ(mesh_field(triangle(), {}), "colors");
-  EXPECT_EQ(mesh_field(triangle(), std::array{Vec3(0, 2, 0)}), "colors[0]");
+  EXPECT_EQ(mesh_field(full_mesh(), std::span(k_palette).first(2)), "palette");
+  EXPECT_EQ(mesh_field(triangle(), {}), "palette");
+  EXPECT_EQ(mesh_field(triangle(), std::array{Appearance{{0, 2, 0}}}), "palette[0].color");
   Mesh wrong = full_mesh();
   wrong.velocities.pop_back();
-  EXPECT_EQ(mesh_field(wrong, k_colors), "mesh.velocities");
+  EXPECT_EQ(mesh_field(wrong, k_palette), "mesh.velocities");
   wrong = full_mesh();
   wrong.normals[2].y() = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(mesh_field(wrong, k_colors), "mesh.normals[2]");
+  EXPECT_EQ(mesh_field(wrong, k_palette), "mesh.normals[2]");
 
   const auto series_field = [&](const std::vector<UsdFrame>& frames, const UsdTimeline& timeline) {
     return field([&] { write_usda_series(folder / "a.usda", frames, timeline); });

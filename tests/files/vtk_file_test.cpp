@@ -84,7 +84,7 @@ TEST(vtk_file, vtk_reads_a_glb_and_turns_its_z_up) {
   Mesh mesh = full_tetrahedron();
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   mesh.material_ids.clear();
-  write_mesh_glb(folder / "a.glb", mesh, std::array{Vec3(1, 0.5f, 0)});
+  write_mesh_glb(folder / "a.glb", mesh, std::array{Appearance{{1, 0.5f, 0}}});
   READ_WITH_VTK(read, folder / "a.glb");
   EXPECT_EQ(read.at("cells"), nlohmann::json(mesh.triangles));
   ASSERT_EQ(read.at("points").size(), 4u);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <png.h>
+#include <tbb/global_control.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -41,7 +42,8 @@ RenderConfig small() {
   return {.width = 160, .height = 90, .samples = 2, .eye = {}, .target = {}};
 }
 
-const std::vector<Vec3> k_palette{{0.7f, 0.08f, 0.06f}, {0.06f, 0.25f, 0.6f}};
+const std::vector<Appearance> k_palette{{{0.7f, 0.08f, 0.06f}}, {{0.06f, 0.25f, 0.6f}}};
+const std::vector<Appearance> k_clay{{{0.7f, 0.08f, 0.06f}, Finish::clay}};
 const std::vector<Collider> k_floor{{.shape = Plane{}}};
 const Aabb k_bounds{{-3, -3, 0}, {3, 3, 6}};
 
@@ -61,15 +63,17 @@ Eigen::Vector2f project(const Camera& camera, const RenderConfig& config, const 
 }
 
 TEST(renderer, same_bits_for_any_thread_count) {
-  const Mesh mesh = ball({0, 0, 3}, 3, 40, 0);
+  Mesh mesh = ball({0, 0, 3}, 3, 40, 0);
+  for (std::size_t v = 0; v < mesh.vertices.size(); v += 5) mesh.material_ids[v] = 1;  // seams everywhere
+  const std::vector<Appearance> palette{k_palette[0], k_clay[0]};
   const std::vector<Collider> colliders{
       {.shape = Plane{}}, {.shape = Sphere{{4, 2, 1}, 1.5f}}, {.shape = Box{{-6, -6, 0}, {6, 6, 7}, true}}};
   const Camera camera = frame_camera(k_bounds, small());
-  const Image one = Renderer(small(), 1).render(mesh, k_palette, colliders, camera);
+  const Image one = Renderer(small(), 1).render(mesh, palette, colliders, camera);
   for (const int threads : {2, 3}) {
     Renderer renderer(small(), threads);
-    EXPECT_EQ(renderer.render(mesh, k_palette, colliders, camera).rgb, one.rgb) << threads << " threads";
-    EXPECT_EQ(renderer.render(mesh, k_palette, colliders, camera).rgb, one.rgb) << "second frame";
+    EXPECT_EQ(renderer.render(mesh, palette, colliders, camera).rgb, one.rgb) << threads << " threads";
+    EXPECT_EQ(renderer.render(mesh, palette, colliders, camera).rgb, one.rgb) << "second frame";
   }
 }
 
@@ -90,15 +94,79 @@ TEST(renderer, bodies_have_the_hue_of_their_group) {
   }
 }
 
+double mean_difference(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) sum += std::abs(a.rgb[i] - b.rgb[i]);
+  return sum / static_cast<double>(a.rgb.size());
+}
+
 TEST(renderer, points_and_a_fine_mesh_of_one_ball_look_the_same) {
   const Camera camera = frame_camera(k_bounds, small());
   Renderer renderer(small(), 1);
-  const Image mesh = renderer.render(ball({0, 0, 3}, 3, 200, 0), k_palette, k_floor, camera);
-  const Image points =
-      renderer.render_points(std::vector<Vec3>{{0, 0, 3}}, 3, {}, k_palette, k_floor, camera);
-  double difference = 0;
-  for (std::size_t i = 0; i < mesh.rgb.size(); ++i) difference += std::abs(mesh.rgb[i] - points.rgb[i]);
-  EXPECT_LT(difference / static_cast<double>(mesh.rgb.size()), 0.3);
+  for (const std::vector<Appearance>& palette : {k_palette, k_clay}) {
+    const Image mesh = renderer.render(ball({0, 0, 3}, 3, 200, 0), palette, k_floor, camera);
+    const Image points =
+        renderer.render_points(std::vector<Vec3>{{0, 0, 3}}, 3, {}, palette, k_floor, camera);
+    EXPECT_LT(mean_difference(mesh, points), 0.3);
+  }
+}
+
+// A red ball: what it mirrors of the white light shows in green.
+TEST(renderer, jelly_has_a_highlight_and_clay_has_none) {
+  const Camera camera = frame_camera(k_bounds, small());
+  Renderer renderer(small(), 1);
+  const auto brightest_green = [&](std::span<const Appearance> palette) {
+    const Image image = renderer.render(ball({0, 0, 3}, 3, 80, 0), palette, k_floor, camera);
+    int brightest = 0;
+    for (int y = 15; y < 60; ++y) {
+      for (int x = 65; x < 95; ++x) brightest = std::max(brightest, pixel(image, x, y)[1]);
+    }
+    return brightest;
+  };
+  EXPECT_GT(brightest_green(k_palette), 140);
+  EXPECT_LT(brightest_green(k_clay), 105);
+}
+
+TEST(renderer, light_shines_through_jelly_and_not_through_clay) {
+  // A thin leaf below the key light, seen from underneath; the lid right above takes that light away.
+  const Mesh leaf{.vertices = {{-4, -4, 3}, {4, -4, 3}, {4, 4, 3}, {-4, 4, 3}},
+                  .triangles = {{0, 1, 2}, {0, 2, 3}},
+                  .normals = {},
+                  .velocities = {},
+                  .material_ids = {}};
+  const std::vector<Collider> lid{{.shape = Box{{-4, -4, 3.5f}, {4, 4, 4}}}};
+  const Camera camera{.eye = {6, -4, -8}, .target = {0, 0, 3}};
+  Renderer renderer(small(), 1);
+  const auto red = [&](std::span<const Appearance> palette, std::span<const Collider> colliders) {
+    return pixel(renderer.render(leaf, palette, colliders, camera), 80, 45)[0];
+  };
+  EXPECT_GT(red(k_palette, {}), red(k_palette, lid) + 30);
+  EXPECT_EQ(red(k_clay, {}), red(k_clay, lid));
+  EXPECT_LT(red(k_clay, {}), red(k_palette, {}) - 30);
+}
+
+TEST(renderer, a_triangle_between_groups_has_the_finish_of_the_nearer_corner) {
+  const Camera camera{.eye = {0, -0.5f, 12}, .target = {0, 0, 0}};
+  const Mesh quad{.vertices = {{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}},
+                  .triangles = {{0, 1, 2}, {0, 2, 3}},
+                  .normals = {},
+                  .velocities = {},
+                  .material_ids = {0, 1, 1, 0}};
+  const Vec3 color = k_clay[0].color;
+  Renderer renderer(small(), 1);
+  const auto picture = [&](Finish left, Finish right) {
+    return renderer.render(quad, std::vector<Appearance>{{color, left}, {color, right}}, {}, camera);
+  };
+  const Image both = picture(Finish::jelly, Finish::clay);
+  const Image jelly = picture(Finish::jelly, Finish::jelly);
+  const Image clay = picture(Finish::clay, Finish::clay);
+  for (const float x : {-3.0f, -0.7f, 0.7f, 3.0f}) {
+    const Eigen::Vector2f at = project(camera, small(), {x, 0.5f, 0});
+    const int column = static_cast<int>(80 * (1 + at.x()));
+    const int row = static_cast<int>(45 * (1 - at.y()));
+    EXPECT_NE(pixel(jelly, column, row), pixel(clay, column, row)) << x;
+    EXPECT_EQ(pixel(both, column, row), pixel(x < 0 ? jelly : clay, column, row)) << x;
+  }
 }
 
 TEST(renderer, no_frame_means_an_empty_bright_studio) {
@@ -161,6 +229,16 @@ TEST(renderer, looks_into_kept_in_shapes_through_their_front) {
     const auto color = pixel(image, 80, 50);
     EXPECT_GT(color[0], color[2] + 60);
   }
+}
+
+TEST(renderer, leaves_the_threads_of_others_alone) {
+  const auto most_threads = [] {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  };
+  const std::size_t before = most_threads();
+  Renderer renderer(small(), 1);
+  renderer.render(ball({0, 0, 3}, 3, 8, 0), k_palette, {}, frame_camera(k_bounds, small()));
+  EXPECT_EQ(most_threads(), before);
 }
 
 TEST(renderer, refuses_what_it_cannot_draw) {

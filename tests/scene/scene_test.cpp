@@ -36,6 +36,7 @@ cohesion = 0.5
 region_radius = 2.25
 region_stride = 3
 color = [1, 0.5, 0]
+finish = "clay"
 [[body]]
 material = "jelly \"red\""
 group = "g"
@@ -115,6 +116,7 @@ TEST_F(scene, fills_in_the_defaults_of_the_configs) {
   EXPECT_FALSE(read.run.frame_time);
   ASSERT_EQ(read.materials.size(), 1u);
   EXPECT_EQ(read.materials[0].material.update_threshold, Material{}.update_threshold);
+  EXPECT_EQ(read.materials[0].finish, Finish::jelly);
   ASSERT_EQ(read.bodies.size(), 1u);
   EXPECT_EQ(read.bodies[0].group, "");
   EXPECT_EQ(read.bodies[0].line, 5);
@@ -148,6 +150,7 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_EQ(material.material.region_radius, 2.25f);
   EXPECT_EQ(material.material.region_stride, 3);
   EXPECT_EQ(material.color, Vec3(1, 0.5f, 0));
+  EXPECT_EQ(material.finish, Finish::clay);
 
   ASSERT_EQ(read.bodies.size(), 8u);
   EXPECT_EQ(read.bodies[0].group, "g");

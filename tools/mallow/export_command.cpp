@@ -12,7 +12,7 @@
 #include "mallow/errors.h"
 #include "mallow/failure.h"
 #include "mallow/files.h"
-#include "mallow/group_colors.h"
+#include "mallow/group_appearances.h"
 #include "mallow/level_set.h"
 
 namespace mallow::cli {
@@ -104,7 +104,7 @@ void export_frames(const ExportOptions& options) {
   const fs::path out = options.out.empty() ? cache.export_folder() : fs::path(options.out);
   Series surfaces(out, "surface", options.surface);
   Series particles(out, "particles", options.particles);
-  const std::vector<Vec3> colors = group_colors(run.scene);
+  const std::vector<Appearance> palette = group_appearances(run.scene);
   const float voxel_size = 2 * *std::max_element(run.spacings.begin(), run.spacings.end());
 
   // Level sets are no part of a cache: they are drawn again, with the run's settings.
@@ -115,9 +115,9 @@ void export_frames(const ExportOptions& options) {
   };
   const auto write_surface = [&](const Mesh& mesh, const std::string& format, const fs::path& file) {
     if (format == "obj") write_mesh_obj(file, mesh);
-    if (format == "glb") write_mesh_glb(file, mesh, colors);
+    if (format == "glb") write_mesh_glb(file, mesh, palette);
     if (format == "vtp") write_mesh_vtp(file, mesh);
-    if (format == "usda") write_mesh_usda(file, mesh, colors);
+    if (format == "usda") write_mesh_usda(file, mesh, palette);
   };
   const auto write_points = [&](const ParticleFrame& frame, const std::string& format, const fs::path& file) {
     if (format == "vdb") write_particles_vdb(file, frame, voxel_size, run.threads);

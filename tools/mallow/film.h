@@ -1,11 +1,31 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+
 #include "mallow/cache.h"
 
 namespace mallow::cli {
 
-/// Joins the pictures of a cache to film.mp4 (H.264) with the program ffmpeg. Where ffmpeg is not installed
-/// it says so on stderr and makes none. Throws RunFailure where ffmpeg fails.
-void make_film(const Cache& cache, int frames_per_second, int threads);
+/// The film that a command line asks for.
+struct FilmOptions {
+  std::string file;      ///< empty: the cache's film.mp4
+  bool no_film = false;  ///< not even that
+};
+
+/// --film FILE and --no-film, one of them.
+void add_film_options(CLI::App& command, FilmOptions& options);
+
+/// Before any work: throws ConfigError or IoError where FILE is no film that can be written, and says on
+/// stderr where ffmpeg is not installed, so that there will be none.
+void check_film(const FilmOptions& options);
+
+/// Joins the pictures of a cache to a film (H.264) with the program ffmpeg. Where ffmpeg is not installed it
+/// makes none, and says so on stderr unless check_film() did. Throws RunFailure where ffmpeg fails.
+void make_film(const FilmOptions& options, const Cache& cache, int frames_per_second, int threads);
+
+/// After all other work: throws RunFailure where FILE was asked for and there was no ffmpeg to make it.
+void require_film(const FilmOptions& options);
 
 }  // namespace mallow::cli

@@ -15,7 +15,7 @@ namespace mallow::cli {
 namespace {
 
 struct RenderOptions : CachedRunOptions {
-  bool no_film = false;
+  FilmOptions film;
 };
 
 /// The surface of a frame; an empty mesh where the run has none, which shows the particles.
@@ -25,6 +25,7 @@ Mesh surface_of(const Cache& cache, int frame) {
 }
 
 void render_cache(const RenderOptions& options) {
+  check_film(options.film);
   CachedRun run = open_cached_run(options, "render");
   const Cache& cache = run.cache;
   const ParticleFrame first = read_particles(cache.particles_file(cache.particle_frames().front()));
@@ -38,15 +39,16 @@ void render_cache(const RenderOptions& options) {
       stills.take(read_particles(cache.particles_file(number)), surface_of(cache, number),
                   cache.image_file(number));
     });
-    if (!options.no_film) {
+    {
       const StageTimer timer(seconds, Stage::film);
-      make_film(cache, run.scene.render.frames_per_second, run.threads);
+      make_film(options.film, cache, run.scene.render.frames_per_second, run.threads);
     }
     close_cached_run(run, seconds, std::array{Stage::pictures, Stage::film});
   } catch (const std::exception& error) {
     throw RunFailure(error.what());
   }
   std::printf("pictures %zu\n", count);
+  require_film(options.film);
 }
 
 }  // namespace
@@ -60,7 +62,7 @@ void add_render_command(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("--threads", options->threads, "Threads; 0 takes all there are")
       ->check(CLI::Range(0, 1024));
-  command->add_flag("--no-film", options->no_film, "No film");
+  add_film_options(*command, options->film);
   command->callback([options] { render_cache(*options); });
 }
 

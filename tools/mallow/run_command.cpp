@@ -30,9 +30,9 @@ struct RunOptions {
   int threads = 0;
   std::string state_out;
   std::string report;
+  FilmOptions film;
   bool no_surface = false;
   bool no_images = false;
-  bool no_film = false;
   bool overwrite = false;
 };
 
@@ -41,6 +41,7 @@ void check_outputs(const RunOptions& options) {
   if (!options.out.empty()) Cache::check(options.out, options.overwrite);
   if (!options.state_out.empty()) check_writable(options.state_out);
   if (!options.report.empty()) check_writable(options.report);
+  check_film(options.film);
 }
 
 Scene scene_of(const RunOptions& options) {
@@ -77,9 +78,9 @@ void run_stages(const RunOptions& options, const Scene& scene, Simulation& simul
                      report.threads};
   run_frames(scene, simulation, plan, cache, report);
   if (!options.state_out.empty()) write_state_csv(options.state_out, snapshot(simulation));
-  if (!cache || options.no_images || options.no_film) return;
+  if (!cache || options.no_images) return;
   const StageTimer timer(report.stage_seconds, Stage::film);
-  make_film(*cache, scene.render.frames_per_second, report.threads);
+  make_film(options.film, *cache, scene.render.frames_per_second, report.threads);
 }
 
 void print_result(const Cache* cache, const RunReport& report) {
@@ -130,6 +131,7 @@ void run(const RunOptions& options) {
     throw RunFailure(failure.what());
   }
   print_result(out, report);
+  require_film(options.film);
 }
 
 }  // namespace
@@ -146,7 +148,8 @@ void add_run_command(CLI::App& app) {
   command->add_option("--steps", options->steps, "Exactly this many steps, instead of frames")
       ->check(CLI::NonNegativeNumber)
       ->excludes(frames);
-  command->add_option("--out", options->out, "Folder for the frames; without it none are written");
+  CLI::Option* out =
+      command->add_option("--out", options->out, "Folder for the frames; without it none are written");
   command
       ->add_option("--threads", options->threads,
                    "Threads; 0 takes all there are. The result does not depend on it")
@@ -154,8 +157,10 @@ void add_run_command(CLI::App& app) {
   command->add_option("--state-out", options->state_out, "CSV file for the state after the last step");
   command->add_option("--report", options->report, "JSON file for what ran and how long it took");
   command->add_flag("--no-surface", options->no_surface, "No surfaces; pictures show the particles");
-  command->add_flag("--no-images", options->no_images, "No pictures and no film");
-  command->add_flag("--no-film", options->no_film, "No film");
+  CLI::Option* no_images = command->add_flag("--no-images", options->no_images, "No pictures and no film");
+  add_film_options(*command, options->film);
+  // A film is made of pictures, and those are kept in the folder.
+  command->get_option("--film")->needs(out)->excludes(no_images);
   command->add_flag("--overwrite", options->overwrite, "Replace an earlier run in the --out folder");
   command->callback([options] { run(*options); });
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "mallow/group_colors.h"
+#include "mallow/group_appearances.h"
 
 namespace mallow::cli {
 namespace {
@@ -98,7 +98,7 @@ Stills::Stills(const Scene& scene, const ParticleFrame& first, std::span<const f
     : scene_(scene),
       renderer_(scene.render, threads),
       camera_(render::frame_camera(view_bounds(scene, first), scene.render)),
-      palette_(group_colors(scene)),
+      palette_(group_appearances(scene)),
       ball_radius_(0.5f * *std::min_element(spacings.begin(), spacings.end())) {}
 
 void Stills::take(const ParticleFrame& frame, const Mesh& surface, const std::filesystem::path& file) {

@@ -10,7 +10,7 @@
 
 namespace mallow::cli {
 
-/// Takes the pictures of a run: camera and colours are those of frame 0 and stay through the film.
+/// Takes the pictures of a run: camera and looks are those of frame 0 and stay through the film.
 class Stills {
  public:
   /// `scene` must outlive the stills. spacings: h of each group [m].
@@ -23,8 +23,8 @@ class Stills {
   const Scene& scene_;
   render::Renderer renderer_;
   render::Camera camera_;
-  std::vector<Vec3> palette_;  ///< colour of each group
-  float ball_radius_;          ///< [m]
+  std::vector<Appearance> palette_;  ///< appearance of each group
+  float ball_radius_;                ///< [m]
 };
 
 /// What the camera has to have in view: the particles of frame 0, the ground below them, and the colliders

@@ -1,5 +1,7 @@
 #include "render/bodies.h"
 
+#include <tbb/task_arena.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <string>
@@ -24,11 +26,11 @@ RTCRayHit embree_ray(const Ray& ray, float t_max) {
   return query;
 }
 
-void check_palette(std::span<const std::uint8_t> groups, std::span<const Vec3> palette, bool any) {
+void check_palette(std::span<const std::uint8_t> groups, std::span<const Appearance> palette, bool any) {
   const std::size_t needed =
       groups.empty() ? (any ? 1 : 0) : 1u + *std::max_element(groups.begin(), groups.end());
   if (palette.size() >= needed) return;
-  throw ConfigError("palette", std::to_string(palette.size()) + " colours are not enough: group " +
+  throw ConfigError("palette", std::to_string(palette.size()) + " are not enough: group " +
                                    std::to_string(needed - 1) + " needs one too");
 }
 
@@ -45,9 +47,9 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh) {
 
 }  // namespace
 
-// One thread builds: a tree built by several may order its leaves differently each time, and with it which of
-// two triangles a ray through their common edge hits.
-Bodies::Bodies() : device_(rtcNewDevice("threads=1,set_affinity=0")) {
+// Without a number of threads: with one, Embree caps TBB's threads for the whole process, OpenVDB's too, and
+// TBB prints a warning wherever something asks for more.
+Bodies::Bodies() : device_(rtcNewDevice("set_affinity=0")) {
   if (!device_) throw Error("Embree gives no device: error " + std::to_string(rtcGetDeviceError(nullptr)));
 }
 
@@ -66,11 +68,13 @@ void Bodies::commit(RTCGeometry geometry) {
     rtcAttachGeometry(scene_.get(), geometry);
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(scene_.get());
+  // One thread builds: a tree built by several may order its leaves differently each time, and with it which
+  // of two triangles a ray through their common edge hits.
+  tbb::task_arena(1).execute([&] { rtcCommitScene(scene_.get()); });
   check();
 }
 
-void Bodies::set_mesh(const Mesh& mesh, std::span<const Vec3> palette) {
+void Bodies::set_mesh(const Mesh& mesh, std::span<const Appearance> palette) {
   check_palette(mesh.material_ids, palette, !mesh.triangles.empty());
   mesh_ = &mesh;
   groups_ = mesh.material_ids;
@@ -91,7 +95,7 @@ void Bodies::set_mesh(const Mesh& mesh, std::span<const Vec3> palette) {
 }
 
 void Bodies::set_points(std::span<const Vec3> positions, float radius, std::span<const std::uint8_t> groups,
-                        std::span<const Vec3> palette) {
+                        std::span<const Appearance> palette) {
   check_palette(groups, palette, !positions.empty());
   mesh_ = nullptr;
   groups_ = groups;
@@ -122,7 +126,9 @@ std::optional<Bodies::Hit> Bodies::nearest(const Ray& ray, float t_max) const {
     fill_mesh_hit(query, hit);
   } else {
     hit.normal = hit.face;
-    hit.albedo = palette_[groups_.empty() ? 0 : groups_[query.hit.primID]];
+    const Appearance& appearance = palette_[groups_.empty() ? 0 : groups_[query.hit.primID]];
+    hit.albedo = appearance.color;
+    hit.finish = appearance.finish;
   }
   // A smooth normal may look away from the viewer near the silhouette; it may not there.
   const float facing = hit.normal.dot(ray.direction);
@@ -136,10 +142,15 @@ void Bodies::fill_mesh_hit(const RTCRayHit& query, Hit& hit) const {
   const std::array<float, 3> weights{1 - query.hit.u - query.hit.v, query.hit.u, query.hit.v};
   hit.normal.setZero();
   hit.albedo.setZero();
+  float clay = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     hit.normal += weights[k] * normals[corners[k]];
-    hit.albedo += weights[k] * palette_[groups_.empty() ? 0 : groups_[corners[k]]];
+    const Appearance& appearance = palette_[groups_.empty() ? 0 : groups_[corners[k]]];
+    hit.albedo += weights[k] * appearance.color;
+    if (appearance.finish == Finish::clay) clay += weights[k];
   }
+  // Where groups are joined the seam runs through the triangles, as colours change there.
+  hit.finish = clay > 0.5f ? Finish::clay : Finish::jelly;
   hit.normal = hit.normal.squaredNorm() > 1e-12f ? Vec3(hit.normal.normalized()) : hit.face;
   // Meshes without a clear outside are lit from the side that is seen.
   if (hit.normal.dot(hit.face) < 0) hit.normal = -hit.normal;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "mallow/appearance.h"
 #include "mallow/mesh.h"
 #include "render/obstacles.h"
 
@@ -18,10 +19,10 @@ class Bodies {
  public:
   Bodies();
 
-  /// The mesh and palette must outlive the rays. Throws ConfigError where a material id has no colour.
-  void set_mesh(const Mesh& mesh, std::span<const Vec3> palette);
+  /// The mesh and palette must outlive the rays. Throws ConfigError where a material id has no appearance.
+  void set_mesh(const Mesh& mesh, std::span<const Appearance> palette);
   void set_points(std::span<const Vec3> positions, float radius, std::span<const std::uint8_t> groups,
-                  std::span<const Vec3> palette);
+                  std::span<const Appearance> palette);
 
   struct Hit {
     float t;
@@ -30,6 +31,7 @@ class Bodies {
     Vec3 normal;   ///< smooth, towards the viewer
     Vec3 face;     ///< of the triangle itself, towards the viewer
     Vec3 albedo;
+    Finish finish;
   };
   std::optional<Hit> nearest(const Ray& ray, float t_max) const;
   /// Distance to the nearest hit, k_far where there is none.
@@ -52,7 +54,7 @@ class Bodies {
   const Mesh* mesh_ = nullptr;  // null: points
   std::vector<Vec3> normals_;   // per vertex, where the mesh has none
   std::span<const std::uint8_t> groups_;
-  std::span<const Vec3> palette_;
+  std::span<const Appearance> palette_;
 };
 
 }  // namespace mallow::render

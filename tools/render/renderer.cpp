@@ -84,7 +84,7 @@ struct Renderer::State {
 void Renderer::State::trace(const World& world, const Viewport& view) {
   for_pixels([&](std::size_t i, int x, int y) {
     surfels[i] = world.look(view.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
-    if (surfels[i].finish == Finish::none) return;
+    if (surfels[i].look == Look::none) return;
     // The two sets are turned against each other, so that a pixel's place in one says nothing about the
     // other.
     light[i] = world.gather(surfels[i], key_points.at(x, y), hemisphere_points.at(y + 2, x + 1));
@@ -98,7 +98,7 @@ void Renderer::State::average(const std::vector<Light>& from, std::vector<Light>
   constexpr int k_radius = InterleavedDisc::k_tile / 2;
   for_pixels([&](std::size_t i, int x, int y) {
     const Surfel& here = surfels[i];
-    if (here.finish == Finish::none) return;
+    if (here.look == Look::none) return;
     const float reach = 2 * footprint * here.distance * static_cast<float>(step_x + step_y);
     Light sum;
     float weights = 0;
@@ -132,7 +132,7 @@ bool Renderer::State::is_edge(int x, int y, float footprint) const {
     if (nx < 0 || ny < 0 || nx >= config.width || ny >= config.height) return false;
     const Surfel& there = surfels[index(nx, ny)];
     if (here.veil.shape != there.veil.shape || here.veil.light != there.veil.light) return true;
-    if (here.finish == Finish::none && there.finish == Finish::none) return false;
+    if (here.look == Look::none && there.look == Look::none) return false;
     return !alike(here, there, 4 * footprint * here.distance);
   };
   return differs(x - 1, y) || differs(x + 1, y) || differs(x, y - 1) || differs(x, y + 1);
@@ -163,7 +163,7 @@ Vec3 Renderer::State::edge_color(const World& world, const Viewport& view, int x
     const Ray ray = view.ray(static_cast<float>(x) + point.x(), static_cast<float>(y) + point.y());
     const Surfel seen = world.look(ray);
     Light near;
-    if (seen.finish != Finish::none) near = light_near(world, seen, x, y, view.footprint());
+    if (seen.look != Look::none) near = light_near(world, seen, x, y, view.footprint());
     // Developed one by one: a highlight brighter than the screen must not eat the edge beside it.
     sum += develop(world.color(ray, seen, near));
   }
@@ -211,14 +211,14 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-Image Renderer::render(const Mesh& mesh, std::span<const Vec3> palette, std::span<const Collider> colliders,
-                       const Camera& camera) {
+Image Renderer::render(const Mesh& mesh, std::span<const Appearance> palette,
+                       std::span<const Collider> colliders, const Camera& camera) {
   state_->bodies.set_mesh(mesh, palette);
   return state_->draw(colliders, camera);
 }
 
 Image Renderer::render_points(std::span<const Vec3> positions, float radius,
-                              std::span<const std::uint8_t> groups, std::span<const Vec3> palette,
+                              std::span<const std::uint8_t> groups, std::span<const Appearance> palette,
                               std::span<const Collider> colliders, const Camera& camera) {
   Checks checks;
   checks.number("radius", radius, radius > 0, "more than 0");

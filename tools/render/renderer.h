@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "mallow/appearance.h"
 #include "mallow/collider.h"
 #include "mallow/mesh.h"
 #include "mallow/scene.h"
@@ -46,13 +47,13 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// A surface; its material ids index `palette`, linear RGB in [0, 1]. An empty mesh gives the empty studio.
-  /// Throws ConfigError where a material id has no colour or the camera is out of range.
-  Image render(const Mesh& mesh, std::span<const Vec3> palette, std::span<const Collider> colliders,
+  /// A surface; its material ids index `palette`. An empty mesh gives the empty studio. Throws ConfigError
+  /// where a material id has no appearance or the camera is out of range.
+  Image render(const Mesh& mesh, std::span<const Appearance> palette, std::span<const Collider> colliders,
                const Camera& camera);
   /// The particles themselves as balls of `radius` [m], > 0. `groups` indexes `palette`; empty: all 0.
   Image render_points(std::span<const Vec3> positions, float radius, std::span<const std::uint8_t> groups,
-                      std::span<const Vec3> palette, std::span<const Collider> colliders,
+                      std::span<const Appearance> palette, std::span<const Collider> colliders,
                       const Camera& camera);
 
  private:

@@ -33,6 +33,16 @@ constexpr float k_wrap = 0.25f;
 // Free path in a body, in half heights of the view.
 constexpr float k_free_path = 0.10f;
 
+// Clay is rough: V-shaped dull facets whose slopes have the standard deviation σ shade and hide each other
+// (Oren & Nayar 1994, the qualitative model). It shows as flat, soft shading that is brighter towards the
+// light's side.
+constexpr float k_slope_variance = 0.12f;  // σ², σ = 20 degrees, by eye
+constexpr float k_facets_level = 1 - 0.5f * k_slope_variance / (k_slope_variance + 0.33f);   // A
+constexpr float k_facets_backwards = 0.45f * k_slope_variance / (k_slope_variance + 0.09f);  // B
+// A faint sheen, as of clay that is not quite dry: 4% of the light, which is what a coat mirrors head-on.
+constexpr float k_sheen_exponent = 8.0f;
+constexpr float k_sheen = 0.04f * (k_sheen_exponent + 2) / 8;
+
 }  // namespace
 
 Studio::Studio(const Camera& camera) : center_(camera.target), view_size_(view_size(camera)) {
@@ -69,9 +79,15 @@ Vec3 Studio::diffuse(const Vec3& albedo, const Vec3& normal, const Light& light)
   return albedo.cwiseProduct(k_key * (cosine * light.key) + light.ambient);
 }
 
-Vec3 Studio::shade(Finish finish, const Vec3& albedo, const Vec3& normal, const Vec3& view,
-                   const Light& light, bool has_floor) const {
-  if (finish != Finish::body) return diffuse(albedo, normal, light);
+Vec3 Studio::shade(Look look, const Vec3& albedo, const Vec3& normal, const Vec3& view, const Light& light,
+                   bool has_floor) const {
+  if (look == Look::jelly) return shade_jelly(albedo, normal, view, light, has_floor);
+  if (look == Look::clay) return shade_clay(albedo, normal, view, light);
+  return diffuse(albedo, normal, light);
+}
+
+Vec3 Studio::shade_jelly(const Vec3& albedo, const Vec3& normal, const Vec3& view, const Light& light,
+                         bool has_floor) const {
   const float cosine = normal.dot(key_direction_);
   float direct = std::max(0.0f, (cosine + k_wrap) / (1 + k_wrap));
   if (cosine < 0) direct += 0.35f * -cosine;  // what shines through from behind
@@ -85,6 +101,22 @@ Vec3 Studio::shade(Finish finish, const Vec3& albedo, const Vec3& normal, const 
   const float openness = std::min(1.0f, light.ambient.sum() / k_sky_mean.sum());
   const float softbox = smoothstep(0.90f, 0.975f, reflected.dot(key_direction_)) * light.key;
   color += fresnel * (openness * sky(reflected, has_floor) + softbox * 7.0f * k_key);
+  return color;
+}
+
+Vec3 Studio::shade_clay(const Vec3& albedo, const Vec3& normal, const Vec3& view, const Light& light) const {
+  const float to_key = std::max(0.0f, normal.dot(key_direction_));
+  const float to_eye = std::max(0.0f, normal.dot(view));
+  // cos(φ_i - φ_r) sin α tan β, with α the larger and β the smaller angle to the normal.
+  const float aligned = key_direction_.dot(view) - to_key * to_eye;
+  const float backwards = std::max(0.0f, aligned) / std::max({to_key, to_eye, 1e-3f});
+  const float facets = to_key * (k_facets_level + k_facets_backwards * backwards);
+  // Light from all around has no direction that facets could single out.
+  Vec3 color = albedo.cwiseProduct(k_key * (facets * light.key) + light.ambient);
+
+  // Blinn's lobe, normalised, so broad that nothing is mirrored in it.
+  const float across = std::max(0.0f, normal.dot((key_direction_ + view).normalized()));
+  color += k_key * (k_sheen * std::pow(across, k_sheen_exponent) * to_key * light.key);
   return color;
 }
 

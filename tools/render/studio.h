@@ -5,8 +5,12 @@
 
 namespace mallow::render {
 
-/// What a surface is: bodies are translucent and glossy, obstacles and floor dull.
-enum class Finish : std::uint8_t { none, floor, body, obstacle };
+/// What a ray of the camera meets, and so how that answers light: floor and obstacles are dull, bodies as
+/// their finish says.
+enum class Look : std::uint8_t { none, floor, obstacle, jelly, clay };
+inline Look look_of(Finish finish) {
+  return finish == Finish::clay ? Look::clay : Look::jelly;
+}
 
 /// Light that reaches a point: what the surroundings send, and how much of the key light is seen.
 struct Light {
@@ -35,12 +39,15 @@ class Studio {
   /// Light that leaves a dull surface.
   Vec3 diffuse(const Vec3& albedo, const Vec3& normal, const Light& light) const;
   /// Light that leaves a surface towards the viewer.
-  Vec3 shade(Finish finish, const Vec3& albedo, const Vec3& normal, const Vec3& view, const Light& light,
+  Vec3 shade(Look look, const Vec3& albedo, const Vec3& normal, const Vec3& view, const Light& light,
              bool has_floor) const;
-  /// Share of light that crosses `thickness` [m] of a body.
+  /// Share of light that crosses `thickness` [m] of jelly.
   float transmitted(float thickness) const;
 
  private:
+  Vec3 shade_jelly(const Vec3& albedo, const Vec3& normal, const Vec3& view, const Light& light,
+                   bool has_floor) const;
+  Vec3 shade_clay(const Vec3& albedo, const Vec3& normal, const Vec3& view, const Light& light) const;
   // What leaves the floor where nothing is near.
   Vec3 open_floor() const;
 

@@ -37,7 +37,7 @@ Surfel World::look(const Ray& ray) const {
               .albedo = Vec3::Constant(Studio::k_floor_albedo),
               .distance = *t,
               .fade = fade,
-              .finish = Finish::floor};
+              .look = Look::floor};
     } else {
       seen.distance = *t;
     }
@@ -50,7 +50,7 @@ Surfel World::look(const Ray& ray) const {
             .normal = hit->normal,
             .albedo = k_obstacle_albedo,
             .distance = hit->t,
-            .finish = Finish::obstacle,
+            .look = Look::obstacle,
             .shape = hit->shape};
   }
   if (const auto hit = bodies_.nearest(ray, seen.distance)) {
@@ -59,7 +59,7 @@ Surfel World::look(const Ray& ray) const {
             .normal = hit->normal,
             .albedo = hit->albedo,
             .distance = hit->t,
-            .finish = Finish::body};
+            .look = look_of(hit->finish)};
   }
   seen.veil = obstacles_.veil(ray, seen.distance);
   return seen;
@@ -76,7 +76,7 @@ float World::key_seen(const Surfel& at, const Vec3& to_light) const {
     const Ray ray{at.outside + epsilon_ * at.normal, to_light};
     return bodies_.occludes(ray) || obstacles_.shades(ray) ? 0.0f : 1.0f;
   }
-  if (at.finish != Finish::body) return 0;
+  if (at.look != Look::jelly) return 0;
   // Light that comes from behind crosses the body, and is lost in it with its thickness there.
   const Ray inward{at.position - epsilon_ * at.normal, to_light};
   const float thickness = bodies_.distance(inward);
@@ -136,9 +136,9 @@ Light World::gather(const Surfel& at, std::span<const Point2> key, std::span<con
 Vec3 World::color(const Ray& ray, const Surfel& at, const Light& light) const {
   const Vec3 backdrop = studio_.backdrop(ray.direction);
   Vec3 color = backdrop;
-  if (at.finish != Finish::none) {
+  if (at.look != Look::none) {
     const Vec3 surface =
-        studio_.shade(at.finish, at.albedo, at.normal, -ray.direction, light, obstacles_.floor().has_value());
+        studio_.shade(at.look, at.albedo, at.normal, -ray.direction, light, obstacles_.floor().has_value());
     color = surface + (backdrop - surface) * at.fade;
   }
   return color + (Vec3::Constant(at.veil.light) - color) * at.veil.cover;

@@ -17,11 +17,11 @@ struct Surfel {
   Vec3 albedo{0, 0, 0};
   float distance = k_far;  ///< from the eye
   float fade = 0;          ///< share of the backdrop in what is seen
-  Finish finish = Finish::none;
+  Look look = Look::none;
   std::uint32_t shape = 0;  ///< of an obstacle
   Obstacles::Veil veil{};
 
-  bool same_object(const Surfel& other) const { return finish == other.finish && shape == other.shape; }
+  bool same_object(const Surfel& other) const { return look == other.look && shape == other.shape; }
 };
 
 /// Bodies, obstacles, floor and studio, and the light between them.

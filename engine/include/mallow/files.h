@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mallow/appearance.h"
 #include "mallow/body.h"
 #include "mallow/mesh.h"
 
@@ -49,15 +50,16 @@ void write_state_csv(const std::filesystem::path& file, const ParticleFrame& fra
 void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh);
 /// Wavefront OBJ.
 void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh);
-/// glTF 2.0 binary: a primitive and a material for every material id, velocities as attribute _VELOCITY.
+/// glTF 2.0 binary: a primitive and a material for every material id, velocities as attribute _VELOCITY. A
+/// triangle is of the material that most of its corners are of, of the smallest id of three that differ.
 /// Vertices stay as they are; a node turns their z, which is up, to glTF's y. A mesh without triangles gives
-/// a scene without a mesh, as glTF knows no empty one. colors: linear RGB of each material id, in [0, 1];
-/// throws ConfigError where one is missing, or a number is not finite, as JSON could not say it.
-void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const Vec3> colors);
+/// a scene without a mesh, as glTF knows no empty one. palette: the appearance of each material id; throws
+/// ConfigError where one is missing or out of range, or a number is not finite, as JSON could not say it.
+void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const Appearance> palette);
 /// USD's text: a Mesh /surface with normals and velocities where the mesh has them, z up, in metres.
-/// Triangles have the primvars group, the material id, where the mesh has any, and displayColor. Takes colors
-/// and throws as write_mesh_glb() does.
-void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::span<const Vec3> colors);
+/// Triangles have the primvars group, the material id, where the mesh has any, and displayColor. Takes a
+/// palette and throws as write_mesh_glb() does.
+void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::span<const Appearance> palette);
 /// VTK's XML PolyData, triangles with the point arrays Normals, Velocity and Material where the mesh has
 /// them.
 void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh);

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "mallow/appearance.h"
 #include "mallow/body.h"
 #include "mallow/collider.h"
 #include "mallow/material.h"
@@ -22,6 +23,7 @@ struct SceneMaterial {
   std::string name = {};
   Material material;
   std::optional<Vec3> color = {};  ///< linear RGB in [0, 1]; left out: one of a palette
+  Finish finish = Finish::jelly;
 };
 
 struct SphereSource {

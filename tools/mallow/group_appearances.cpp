@@ -1,4 +1,4 @@
-#include "mallow/group_colors.h"
+#include "mallow/group_appearances.h"
 
 #include <array>
 
@@ -14,12 +14,13 @@ const std::array<Vec3, 8> k_palette = {
 
 }  // namespace
 
-std::vector<Vec3> group_colors(const Scene& scene) {
-  std::vector<Vec3> colors;
-  for (const std::size_t material : group_materials(scene)) {
-    colors.push_back(scene.materials[material].color.value_or(k_palette[material % k_palette.size()]));
+std::vector<Appearance> group_appearances(const Scene& scene) {
+  std::vector<Appearance> appearances;
+  for (const std::size_t index : group_materials(scene)) {
+    const SceneMaterial& material = scene.materials[index];
+    appearances.push_back({material.color.value_or(k_palette[index % k_palette.size()]), material.finish});
   }
-  return colors;
+  return appearances;
 }
 
 }  // namespace mallow::cli
