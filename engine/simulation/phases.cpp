@@ -34,8 +34,8 @@ TimeStepLimits limits(const Simulation::State& state) {
                               std::uint32_t row) {
   const std::uint32_t id = state.store.id[row];
   std::ostringstream text;
-  text << "step " << state.step << ": particle " << id << " at (" << state.store.position.get(row).transpose()
-       << ") ";
+  text << "step " << state.step << ": particle " << id << " at ("
+       << state.far(state.store.position.get(row)).transpose() << ") ";
   if (!std::isfinite(velocity)) {
     text << "would get a velocity that is not finite; lower solver.time_step (now " << state.config.time_step
          << ") or material.pressure_coefficient";
@@ -66,7 +66,7 @@ void take_reference(Simulation::State& state, Group& group) {
   update_reference(state.store.position, group.begin, group.end, state.threads, group.shape);
   sort_reference(state.threads, columns, group.shape);
   state.store.permute(group.begin, columns.order.span(), state.threads);
-  state.sph.kept.forget();
+  state.rows_moved();
 }
 
 int update_references(Simulation::State& state) {
@@ -95,7 +95,7 @@ void sort_fluids(Simulation::State& state) {
       if (row >= group.begin && row < group.end)
         state.fluid_order[count++] = row - static_cast<std::uint32_t>(group.begin);
     state.store.permute(group.begin, state.fluid_order.span(), state.threads);
-    state.sph.kept.forget();
+    state.rows_moved();
   }
 }
 
@@ -105,7 +105,7 @@ void call_force(Simulation::State& state) {
   const std::size_t n = state.store.size();
   a.resize(n);
   for (std::size_t axis = 0; axis < 3; ++axis) std::fill_n(a.axis(axis), n, 0.0f);
-  const VectorColumn &x = state.store.position, &v = state.store.velocity;
+  const VectorColumn &x = state.seen_positions(), &v = state.store.velocity;
   state.force({state.time, state.store.id.span(), {x.x(), n, x.stride()}, {v.x(), n, v.stride()}},
               {a.x(), n, a.stride()});
 }
@@ -143,7 +143,7 @@ void move_groups(Simulation::State& state, float time_step) {
         .cross_group = state.cross_group(),
         .user = state.user(),
         .pull = group.matches_shape() ? &group.shape.pull : nullptr,
-        .colliders = state.colliders,
+        .colliders = state.contact_colliders(),
         .contact = {.time_step = time_step,
                     .max_push = config.support_radius / (10.0f * config.time_step),
                     .contact_offset = config.contact_offset.value_or(0.5f * group.spacing)},
@@ -165,6 +165,7 @@ void finish_step(Simulation::State& state, float time_step) {
   state.store.position.swap(state.store.next_position);
   state.store.velocity.swap(state.store.next_velocity);
   move_colliders(static_cast<double>(time_step), state.colliders);
+  move_colliders(static_cast<double>(time_step), state.near_colliders);
   state.time += static_cast<double>(time_step);
   ++state.step;
 }

@@ -75,12 +75,22 @@ void refuse_overlaps(const Simulation::State& state) {
       if (&a == &b || !is_new || distance >= limit) continue;
       std::ostringstream text;
       text << "groups '" << a.name << "' and '" << b.name << "' overlap at ("
-           << state.store.position.get(i).transpose() << "): particles " << state.store.id[i] << " and "
-           << state.store.id[j] << " are " << distance << " m apart, at least a tenth of the spacing ("
-           << limit << " m) is needed; move a body, or give both one group";
+           << state.far(state.store.position.get(i)).transpose() << "): particles " << state.store.id[i]
+           << " and " << state.store.id[j] << " are " << distance
+           << " m apart, at least a tenth of the spacing (" << limit
+           << " m) is needed; move a body, or give both one group";
       throw ConfigError("body", text.str());
     }
   }
+}
+
+/// Colliders that are there already are seen from the origin too.
+void take_origin(Simulation::State& state, const Vec3& origin) {
+  state.origin = origin;
+  state.near_colliders.clear();
+  if (!state.is_far()) return;
+  for (const Collider& collider : state.colliders)
+    state.near_colliders.push_back(relative_to(origin, collider));
 }
 
 }  // namespace
@@ -104,6 +114,8 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 GroupId Simulation::add_group(const Material& material, std::string name) {
   Checks checks;
   check(material, checks);
+  checks.finish();
+  check_stiffness(state_->config, material, checks);
   checks.finish();
   State& s = *state_;
   if (s.groups.size() == k_max_groups) throw ConfigError("group", "at most 256 groups are possible");
@@ -132,7 +144,10 @@ void Simulation::add_body(const Body& body, GroupId id) {
   checks.finish();
   std::vector<Vec3> velocities(body.positions.size(), body.velocity);
   for (std::size_t i = 0; i < body.velocities.size(); ++i) velocities[i] += body.velocities[i];
-  s.store.insert(group.end, body.positions, velocities);
+  if (s.store.size() == 0) take_origin(s, choose_origin(body));
+  std::vector<Vec3> positions;
+  for (const Vec3& x : body.positions) positions.push_back(relative_to(s.origin, x));
+  s.store.insert(group.end, positions, velocities);
   group.end += body.positions.size();
   for (std::size_t g = static_cast<std::size_t>(id) + 1; g < s.groups.size(); ++g) {
     s.groups[g].begin += body.positions.size();
@@ -143,6 +158,7 @@ void Simulation::add_body(const Body& body, GroupId id) {
   group.grew = true;
   s.prepared = false;
   s.sph_ran = false;
+  s.far_step = -1;
 }
 
 GroupId Simulation::add_body(const Body& body, const Material& material, std::string name) {
@@ -160,13 +176,15 @@ ColliderId Simulation::add_collider(const Collider& collider) {
   checks.finish();
   state_->colliders.push_back(collider);
   std::visit([](auto& shape) { normalize(shape); }, state_->colliders.back().shape);
+  if (state_->is_far())
+    state_->near_colliders.push_back(relative_to(state_->origin, state_->colliders.back()));
   return static_cast<ColliderId>(state_->colliders.size() - 1);
 }
 
 PinId Simulation::pin(const Aabb& region, const Vec3& velocity) {
   std::vector<ParticleId> ids;
   for (std::size_t row = 0; row < state_->store.size(); ++row) {
-    const Vec3 x = state_->store.position.get(row);
+    const Vec3 x = state_->far(state_->store.position.get(row));
     if ((x.array() >= region.min.array()).all() && (x.array() <= region.max.array()).all())
       ids.push_back(state_->store.id[row]);
   }
@@ -208,6 +226,10 @@ void Simulation::set_alpha(GroupId id, const AlphaSchedule& alpha) {
   Checks checks;
   check(alpha, checks);
   checks.finish();
+  Material changed = group.material;
+  changed.alpha = alpha;
+  check_stiffness(state_->config, changed, checks);
+  checks.finish();
   group.material.alpha = alpha;
   // A fluid that may turn elastic remembers the shape it has now.
   if (group.keeps_reference() && group.shape.reference.size() != group.size()) {
@@ -223,6 +245,7 @@ void Simulation::set_velocity(ColliderId id, const Vec3& velocity) {
     checks.problem("collider", "there is no collider " + std::to_string(static_cast<std::size_t>(id)));
   checks.finish();
   state_->colliders[static_cast<std::size_t>(id)].velocity = velocity;
+  if (state_->is_far()) state_->near_colliders[static_cast<std::size_t>(id)].velocity = velocity;
 }
 
 void Simulation::set_velocity(PinId id, const Vec3& velocity) {

@@ -10,6 +10,7 @@
 #include "motion/time_step.h"
 #include "particles/particle_store.h"
 #include "shape_matching/shape_matching.h"
+#include "simulation/near_origin.h"
 #include "sph/sph.h"
 
 namespace mallow {
@@ -40,13 +41,19 @@ struct Simulation::State {
   std::int64_t step = 0;
   double time = 0;
 
+  Vec3 origin{0, 0, 0};  ///< that positions in the store are relative to, see choose_origin() [m]
   ParticleStore store;
   std::vector<Group> groups;
-  std::vector<Collider> colliders;
+  std::vector<Collider> colliders;       ///< as the user sees them
+  std::vector<Collider> near_colliders;  ///< relative to the origin; empty where that is 0
   std::vector<Vec3> pin_velocities;
   ForceCallback force;
   Sph sph;
   VectorColumn user_acceleration;  ///< empty without a force callback
+
+  /// Positions as the user sees them, of step `far_step`; empty where the origin is 0.
+  VectorColumn far_position;
+  std::int64_t far_step = -1;
 
   bool prepared = false;
   std::size_t checked_particles = 0;  ///< ids below were looked at for overlaps
@@ -56,6 +63,19 @@ struct Simulation::State {
   Column<std::uint32_t> fluid_order;
   std::vector<Fastest> partial_fastest;
   std::vector<MotionSums> partial_motion;
+
+  bool is_far() const { return origin != Vec3(0, 0, 0); }
+  /// A position of the store as the user sees it.
+  Vec3 far(const Vec3& x) const { return (origin.cast<double>() + x.cast<double>()).cast<float>(); }
+  /// The position column as the user sees it.
+  const VectorColumn& seen_positions();
+  /// What knows particles by their rows forgets them.
+  void rows_moved() {
+    sph.kept.forget();
+    far_step = -1;
+  }
+  /// The colliders that contact reads.
+  std::span<Collider> contact_colliders() { return is_far() ? near_colliders : colliders; }
 
   /// Some acceleration of SPH counts: pairs within a group that is not purely elastic, or between groups.
   bool needs_sph() const;

@@ -1,5 +1,7 @@
 #include "simulation/validation.h"
 
+#include <sstream>
+
 namespace mallow {
 namespace {
 
@@ -88,6 +90,21 @@ void check(const Material& material, Checks& checks) {
   check_optional("material.rest_density", material.rest_density, checks);
   check_optional("material.region_radius", material.region_radius, checks);
   checks.number("material.region_stride", material.region_stride, material.region_stride >= 1, "1 or above");
+}
+
+// Each component of g − x pulls by κ = (1 − α) Δt/Δt_SM of itself a step, or less. x' = 2x − x_before − κx,
+// the recurrence of such a spring, stays bounded for κ up to 4 and grows without end beyond; measured, it
+// does so at 4.2. Where α is 0 and Δt_SM = Δt0, as in the paper, κ is 1.
+void check_stiffness(const SolverConfig& config, const Material& material, Checks& checks) {
+  constexpr float k_most = 4;
+  if (!material.elastic_time_step) return;
+  const float least = (1 - material.alpha.lowest()) * config.time_step / k_most;
+  if (*material.elastic_time_step >= least) return;
+  std::ostringstream text;
+  text << *material.elastic_time_step
+       << " is not allowed: at least (1 - alpha) solver.time_step/4 = " << least
+       << ", as a stiffer body would blow up; lower solver.time_step (now " << config.time_step << ")";
+  checks.problem("material.elastic_time_step", text.str());
 }
 
 void check(const Collider& collider, Checks& checks) {

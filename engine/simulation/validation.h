@@ -14,6 +14,8 @@ void check(const SolverConfig& config, Checks& checks);
 void check(InstructionLevel level, InstructionLevel best, Checks& checks);
 void check(const AlphaSchedule& alpha, Checks& checks);
 void check(const Material& material, Checks& checks);
+/// Whether steps of this solver are short enough for the material's springs.
+void check_stiffness(const SolverConfig& config, const Material& material, Checks& checks);
 void check(const Collider& collider, Checks& checks);
 void check(const Body& body, Checks& checks);
 

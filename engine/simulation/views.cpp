@@ -1,6 +1,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "core/parallel.h"
 #include "simulation/state.h"
 
 namespace mallow {
@@ -26,6 +27,17 @@ double count_neighbors(const Simulation::State& s, const Group& group) {
 }
 
 }  // namespace
+
+const VectorColumn& Simulation::State::seen_positions() {
+  if (!is_far()) return store.position;
+  if (far_step == step) return far_position;
+  far_position.resize_unset(store.size());
+  parallel_for(threads, store.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) far_position.set(i, far(store.position.get(i)));
+  });
+  far_step = step;
+  return far_position;
+}
 
 const char* name(Phase phase) {
   constexpr std::array<const char*, k_phase_count> k_names{"reference_update", "neighbors", "density",
@@ -57,7 +69,7 @@ std::span<const ParticleId> Simulation::ids() const {
   return state_->store.id.span();
 }
 VectorView Simulation::positions() const {
-  return view(state_->store.position);
+  return view(state_->seen_positions());
 }
 VectorView Simulation::velocities() const {
   return view(state_->store.velocity);
@@ -74,7 +86,7 @@ Simulation::Rows Simulation::rows(GroupId group) const {
 }
 
 std::vector<Vec3> Simulation::positions_by_id() const {
-  return by_id(state_->store, state_->store.position);
+  return by_id(state_->store, state_->seen_positions());
 }
 std::vector<Vec3> Simulation::velocities_by_id() const {
   return by_id(state_->store, state_->store.velocity);
@@ -89,11 +101,13 @@ std::vector<std::uint8_t> Simulation::groups_by_id() const {
 }
 
 std::uint64_t Simulation::state_hash() const {
-  const std::vector<Vec3> x = positions_by_id(), v = velocities_by_id();
+  // Positions as they are kept: what the origin hides of them counts too.
+  const std::vector<Vec3> x = by_id(state_->store, state_->store.position), v = velocities_by_id();
   static_assert(sizeof(Vec3) == 3 * sizeof(float));
   std::uint64_t hash =
       XXH3_64bits_withSeed(x.data(), x.size() * sizeof(Vec3), static_cast<XXH64_hash_t>(state_->step));
   hash = XXH3_64bits_withSeed(v.data(), v.size() * sizeof(Vec3), hash);
+  if (state_->is_far()) hash = XXH3_64bits_withSeed(state_->origin.data(), sizeof(Vec3), hash);
   return XXH3_64bits_withSeed(&state_->time, sizeof(double), hash);
 }
 
@@ -107,7 +121,7 @@ SimulationInfo Simulation::info() {
   info.cross_group = s.groups.size() > 1;
   info.instruction_level = s.level;
   info.bytes = s.store.bytes() + s.sph.bytes() + s.fluid_order.bytes() + s.user_acceleration.bytes() +
-               s.region_scratch.bytes();
+               s.far_position.bytes() + s.region_scratch.bytes();
   for (const Group& group : s.groups) {
     info.bytes += group.shape.bytes();
     info.groups.push_back(

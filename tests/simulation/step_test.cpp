@@ -262,6 +262,45 @@ TEST(groups, that_touch_push_each_other_and_never_merge) {
   EXPECT_NEAR(mean_velocity(a) + mean_velocity(b), 0.5, 1e-4);
 }
 
+/// As at 0, to what single precision shows of a position at 1e5, and a hundred times better in velocities.
+TEST(step, moves_a_scene_at_1e5_as_it_would_at_0) {
+  const auto scene = [](const Vec3& at) {
+    Simulation s(config());
+    s.add_collider({.shape = Plane{{0, 0, 1}, at.z()}, .friction = 0.3f});  // before there is a body
+    s.add_body(cube(7, at + Vec3(0, 0, 1)), Material{.alpha = 0.5f, .update_threshold = 0.1f});
+    s.add_body(cube(5, at + Vec3(1, 1, 9)), Material{.alpha = 0});
+    s.add_body(cube(4, at + Vec3(10, 1, 1)), Material{.alpha = 1});
+    s.add_collider(
+        {.shape = Union{{Sphere{at + Vec3(4, 4, 0), 2}, Box{at + Vec3(-3, -3, 0), at + Vec3(-1, -1, 3)}}},
+         .velocity = {0, 0.1f, 0}});
+    s.pin(Aabb{at + Vec3(0, 0, 1), at + Vec3(1, 1, 2)}, {0, 0, 0.05f});
+    s.set_force([at](const ForceInput& in, VectorSpan a) {
+      for (std::size_t i = 0; i < in.ids.size(); ++i) a.x()[i] -= 0.02f * (in.positions.y()[i] - at.y());
+    });
+    return s;
+  };
+  const Vec3 far(98765, -123456, 65432);
+  Simulation a = scene({0, 0, 0}), b = scene(far);
+  int updates = 0;
+  for (int k = 0; k < 60; ++k) {
+    a.step();
+    updates += b.step().updated_references;
+    // A view between steps, so that one that is stale would be seen.
+    ASSERT_LT((b.positions_by_id()[0] - far - a.positions_by_id()[0]).norm(), 0.02f) << k;
+  }
+  EXPECT_GT(updates, 0);
+  const std::vector<Vec3> x = a.positions_by_id(), y = b.positions_by_id();
+  const std::vector<Vec3> v = a.velocities_by_id(), w = b.velocities_by_id();
+  float distance = 0, velocity = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    distance = std::max(distance, (y[i] - far - x[i]).norm());
+    velocity = std::max(velocity, (w[i] - v[i]).norm());
+  }
+  EXPECT_LT(distance, 0.02f);
+  EXPECT_LT(velocity, 0.002f);
+  EXPECT_LT((nearest(std::get<Plane>(b.colliders()[0].shape), far + Vec3(0, 0, 2)).distance - 2), 0.01f);
+}
+
 TEST(pinned_particles, move_as_told_and_hold_the_body) {
   Simulation s(config());
   s.add_body(cube(5, {0, 0, 10}), Material{.alpha = 0});
@@ -350,6 +389,35 @@ std::string message_of(const F& f) {
     return error.what();
   }
   return "no ConfigError";
+}
+
+TEST(errors, refuse_springs_that_would_blow_up_in_these_steps) {
+  const auto energy_after = [](float elastic_time_step) {
+    SolverConfig c = config();
+    c.gravity = {0, 0, 0};
+    Simulation s(c);
+    Body body = cube(5);
+    for (const Vec3& x : body.positions)
+      body.velocities.push_back(0.2f * Vec3(std::sin(x.y()), std::sin(x.z()), 0));
+    s.add_body(body, Material{.alpha = 0, .elastic_time_step = elastic_time_step});
+    const float start = s.velocities().eigen().squaredNorm();
+    for (int k = 0; k < 500; ++k) s.step();
+    return s.velocities().eigen().squaredNorm() / start;
+  };
+  EXPECT_LT(energy_after(0.0375f), 4);
+  EXPECT_THROW(energy_after(0.0374f), ConfigError);
+  // As much softer as alpha makes it; and no softer alpha than that later on.
+  Simulation s(config());
+  const GroupId group = s.add_body(cube(3), Material{.alpha = 0.5f, .elastic_time_step = 0.02f});
+  EXPECT_THROW(s.set_alpha(group, 0.4f), ConfigError);
+  try {
+    s.add_group(Material{.alpha = 0, .elastic_time_step = 0.02f});
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.problems()[0].field, "material.elastic_time_step");
+    for (const char* words : {"0.02 is not allowed", "0.0375", "solver.time_step (now 0.15)"})
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
 }
 
 TEST(errors, of_configs_name_field_value_and_what_is_allowed) {

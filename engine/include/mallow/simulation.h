@@ -114,7 +114,9 @@ class Simulation {
   const std::vector<Collider>& colliders() const;  ///< as they stand now
 
   std::span<const ParticleId> ids() const;
-  VectorView positions() const;   ///< [m]
+  /// [m]. A scene whose first body is more than a thousand spacings from 0 is kept relative to a point near it,
+  /// so that it moves as it would at 0; then this is a copy, in which digits are lost, made once a step.
+  VectorView positions() const;
   VectorView velocities() const;  ///< [m/s]
   /// ρ [kg/m³] of the last step; empty where no SPH ran.
   std::span<const float> densities() const;
