@@ -130,7 +130,7 @@ double Textbook::limited_time_step(double max_velocity) const {
   double sound_speed = 0;
   for (const Group& group : groups_) {
     sound_speed = std::max(sound_speed, std::sqrt(double{group.material.pressure_coefficient}));
-    time_step = std::min(time_step, 0.125 * sigma * sigma * group.rest_density / group.material.viscosity);
+    time_step = std::min(time_step, sigma * sigma * group.rest_density / (15 * group.material.viscosity));
   }
   return std::min(time_step, 0.4 * sigma / (sound_speed + max_velocity));
 }

@@ -69,7 +69,7 @@ TEST(time_step, acoustic_limit_is_that_of_sound_and_of_viscous_diffusion) {
                         .viscous_time = std::numeric_limits<float>::infinity()};
   EXPECT_DOUBLE_EQ(limited_time_step(limits, 6), 0.4 * 2 / 10);
   limits.viscous_time = 0.4f;
-  EXPECT_DOUBLE_EQ(limited_time_step(limits, 6), 0.125 * static_cast<double>(0.4f));
+  EXPECT_DOUBLE_EQ(limited_time_step(limits, 6), static_cast<double>(0.4f) / 15);
 }
 
 TEST(fastest_particle, sees_numbers_that_are_not_finite_and_passes_over_pinned_ones) {

@@ -259,7 +259,7 @@ double Oracle::time_step(double max_velocity) const {
     for (const Group& group : groups_) {
       const Material& material = group.material;
       largest_k = std::max(largest_k, double{material.pressure_coefficient});
-      dt = std::min(dt, 0.125 * sigma * sigma * group.rest_density / material.viscosity);
+      dt = std::min(dt, sigma * sigma * group.rest_density / (15 * material.viscosity));
     }
     dt = std::min(dt, 0.4 * sigma / (std::sqrt(largest_k) + max_velocity));
   }

@@ -279,7 +279,7 @@ TEST(oracle, time_step_is_bounded_by_support_radius_sound_and_viscosity) {
   EXPECT_NEAR(bounded(16, 0.5f, 20, false, 1), 0.999 * 2 / 20, 1e-15);
   EXPECT_NEAR(bounded(16, 0.5f, 20, false, 0), 0.15f, 1e-15);
   EXPECT_NEAR(bounded(16, 0.5f, 3, true, 1), 0.4 * 2 / (4 + 3), 1e-15);
-  EXPECT_NEAR(bounded(16, 20, 0, true, 1), 0.125 * 4 / 20, 1e-15);
+  EXPECT_NEAR(bounded(16, 20, 0, true, 1), 4 / (15 * 20.0), 1e-15);
   EXPECT_NEAR(bounded(16, 20, 3, true, 0), 0.15f, 1e-15);
   EXPECT_THROW(bounded(16, 0.5f, 1e6, false, 1), std::runtime_error);
 }
