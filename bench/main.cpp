@@ -4,6 +4,7 @@
 #include "kernels/kernels_command.h"
 #include "mallow/program.h"
 #include "scaling/scaling_command.h"
+#include "stability/stability_command.h"
 #include "table1/table1_command.h"
 #include "tradeoff/tradeoff_command.h"
 
@@ -17,5 +18,6 @@ int main(int argc, char** argv) {
   add_scaling_command(app);
   add_kernels_command(app);
   add_figures_command(app);
+  add_stability_command(app);
   return mallow::cli::run_program(app, argc, argv);
 }

@@ -1,0 +1,227 @@
+#include "stability/extremes.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace mallow::bench {
+namespace {
+
+/// What most extremes start from, and change one thing of: a small body in the default units.
+struct Setup {
+  SolverConfig config{.support_radius = 2.1f, .threads = 1};
+  Material material;
+  Body body = sample(Lattice{.count = {5, 5, 5}, .corner = {0, 0, 1}});
+  std::vector<Collider> colliders = {};
+
+  Simulation build() const {
+    Simulation simulation(config);
+    for (const Collider& collider : colliders) simulation.add_collider(collider);
+    simulation.add_body(body, material);
+    return simulation;
+  }
+};
+
+Setup free_body() {
+  Setup setup;
+  setup.config.gravity = Vec3::Zero();
+  return setup;
+}
+Setup falling_body() {
+  Setup setup;
+  setup.colliders = {{.shape = Plane{}, .friction = 0.3f}};
+  return setup;
+}
+
+/// Velocities that twist and stretch, as large as they say.
+void stir(Setup& setup, float velocity) {
+  for (const Vec3& x : setup.body.positions) {
+    const auto wave = [](float c) { return std::sin(0.4f * std::numbers::pi_v<float> * c); };
+    setup.body.velocities.push_back(velocity * Vec3(wave(x.y()), wave(x.z()), wave(x.x())));
+  }
+}
+
+class Catalogue {
+ public:
+  explicit Catalogue(int long_steps) : long_steps_(long_steps) {}
+
+  std::vector<Extreme> list() && {
+    neighbors();
+    few_particles();
+    shapes();
+    magnitudes();
+    places();
+    contacts();
+    schedules();
+    return std::move(list_);
+  }
+
+ private:
+  using Change = std::function<void(Setup&)>;
+
+  void add(const std::string& name, const Setup& base, const Change& change, const Trial& trial = {}) {
+    for (const float alpha : {0.0f, 0.5f, 1.0f}) {
+      Setup setup = base;
+      setup.material.alpha = alpha;
+      change(setup);
+      Trial t = trial;
+      t.spacing = setup.body.spacing;
+      t.mass = setup.material.particle_mass.value_or(1.0f);
+      t.is_free = setup.config.gravity.isZero() && setup.colliders.empty();
+      t.build = [setup] { return setup.build(); };
+      list_.push_back({name, alpha, t});
+    }
+  }
+  void add_free(const std::string& name, const Change& change) {
+    add(name, free_body(), [&](Setup& setup) {
+      change(setup);
+      if (setup.body.velocities.empty()) stir(setup, 0.2f);
+    });
+  }
+
+  void neighbors() {
+    add_free("nobody has a neighbour", [](Setup& s) { s.config.support_radius = 0.5f; });
+    add_free("everybody is everybody's neighbour", [](Setup& s) { s.config.support_radius = 20; });
+    add_free("a region of everybody", [](Setup& s) { s.material.region_radius = 20.0f; });
+    add_free("a region of oneself", [](Setup& s) { s.material.region_radius = 0.5f; });
+  }
+
+  void few_particles() {
+    for (const int n : {1, 2, 3})
+      add_free(std::to_string(n) + (n == 1 ? " particle" : " particles"), [n](Setup& s) {
+        s.body = sample(Lattice{.count = {n, 1, 1}});
+      });
+  }
+
+  void shapes() {
+    add_free("a line", [](Setup& s) { s.body = sample(Lattice{.count = {20, 1, 1}}); });
+    add_free("a plane", [](Setup& s) { s.body = sample(Lattice{.count = {8, 8, 1}}); });
+    add_free("all in one place", [](Setup& s) {
+      s.body.positions.assign(20, Vec3(1, 2, 3));
+      s.body.velocity = {1, 0, 0};
+    });
+    add_free("pairs in one place", [](Setup& s) {
+      const std::vector<Vec3> once = s.body.positions;
+      s.body.positions.insert(s.body.positions.end(), once.begin(), once.end());
+    });
+    list_.back().trial.energy_room = list_[list_.size() - 2].trial.energy_room =
+        1e3;  // pressure from the start
+    // In its first step every particle passes through the middle to the other side.
+    add_free("turned inside out", [](Setup& s) {
+      const Vec3 middle(2.5f, 2.5f, 3.5f);
+      for (const Vec3& x : s.body.positions)
+        s.body.velocities.push_back(2 / s.config.time_step * (middle - x));
+    });
+    add_free("pressed flat", [](Setup& s) {
+      for (const Vec3& x : s.body.positions)
+        s.body.velocities.push_back(Vec3(0, 0, (3.5f - x.z()) / s.config.time_step));
+    });
+  }
+
+  void magnitudes() {
+    add_free("velocities of 1e6", [](Setup& s) { stir(s, 1e6f); });
+    add_free("all at 1e6", [](Setup& s) { s.body.velocity = {1e6f, 0, 0}; });
+    for (const float mass : {1e-9f, 1e9f})
+      add_free(mass < 1 ? "masses of 1e-9" : "masses of 1e9", [mass](Setup& s) {
+        s.material.particle_mass = mass;
+        s.material.viscosity *= mass;  // the same material, in another unit of mass
+      });
+    add_free("light particles, viscosity as it was", [](Setup& s) { s.material.particle_mass = 1e-6f; });
+    add("gravity of 1e4", falling_body(), [](Setup& s) { s.config.gravity = {0, 0, -1e4f}; });
+    add_free("an elastic time step of a quarter", [](Setup& s) { s.material.elastic_time_step = 0.0375f; });
+    for (Extreme* e = &list_.back() - 2; e <= &list_.back(); ++e)
+      e->trial.energy_room = 3;  // springs overshoot
+    add_free("an elastic time step of a tenth", [](Setup& s) { s.material.elastic_time_step = 0.015f; });
+    add_free("an elastic time step of a hundred", [](Setup& s) { s.material.elastic_time_step = 15.0f; });
+    add_free("stride of 50", [](Setup& s) { s.material.region_stride = 50; });
+    add_free("one rotation iteration", [](Setup& s) { s.config.rotation_iterations = 1; });
+    add_free("printed formulas", [](Setup& s) { s.config.formulation = Formulation::printed; });
+  }
+
+  void places() {
+    for (const float scale : {1e-3f, 1e3f})
+      add(scale < 1 ? "a thousandth of the size" : "a thousand times the size", falling_body(),
+          [scale](Setup& s) {
+            s.config.support_radius *= scale;
+            s.config.gravity *= scale;
+            s.body.spacing *= scale;
+            for (Vec3& x : s.body.positions) x *= scale;
+            // Accelerations scale like lengths, k like their squares.
+            s.material.pressure_coefficient *= scale * scale;
+            s.material.update_threshold *= scale;
+            s.material.viscosity /= scale;
+          });
+    add("at 1e5 from the origin", falling_body(), [](Setup& s) {
+      for (Vec3& x : s.body.positions) x += Vec3(1e5f, -1e5f, 0);
+    });
+    add_free("in free flight at 1e5", [](Setup& s) {
+      for (Vec3& x : s.body.positions) x += Vec3::Constant(1e5f);
+    });
+  }
+
+  void contacts() {
+    Trial pressed;
+    pressed.energy_room = 1e9;  // the plates do work without end
+    add(
+        "between two plates that close", falling_body(),
+        [](Setup& s) {
+          s.colliders.push_back(
+              {.shape = Plane{.normal = {0, 0, -1}, .offset = -6.5f}, .velocity = {0, 0, -0.1f}});
+        },
+        pressed);
+    Trial inside;
+    inside.energy_room = 1e9;  // it is pushed out, which lifts it
+    add(
+        "spawned inside a collider", falling_body(),
+        [](Setup& s) {
+          s.colliders.push_back({.shape = Box{.min = {-3, -3, -1}, .max = {8, 8, 9}}});
+        },
+        inside);
+    add(
+        "in the tip of two planes", falling_body(),
+        [](Setup& s) {
+          s.colliders = {{.shape = Plane{.normal = {1, 0, 0.2f}}},
+                         {.shape = Plane{.normal = {-1, 0, 0.2f}, .offset = -5}},
+                         {.shape = Plane{}}};
+        },
+        inside);
+  }
+
+  void schedules() {
+    Trial switched;
+    switched.before_step = [](Simulation& simulation, int step) {
+      simulation.set_alpha(GroupId{0}, step % 2 == 0 ? 1.0f : 0.0f);
+    };
+    add(
+        "alpha switched every step", falling_body(),
+        [](Setup& s) {
+          // What it keeps for both is there from the start.
+          s.material.alpha = AlphaSchedule{{0, 0.0f}, {1, 1.0f}};
+        },
+        switched);
+    add("updates in every step", falling_body(), [](Setup& s) {
+      s.config.update_interval = 1;
+      s.material.update_threshold = 0;
+    });
+    add("never an update", falling_body(), [](Setup& s) { s.material.update_threshold = 1e30f; });
+    Trial rests;
+    rests.steps = long_steps_;
+    add(
+        "rests for " + std::to_string(long_steps_) + " steps", falling_body(),
+        [](Setup& s) {
+          s.body = sample(Lattice{.count = {3, 3, 3}});
+        },
+        rests);
+  }
+
+  int long_steps_;
+  std::vector<Extreme> list_;
+};
+
+}  // namespace
+
+std::vector<Extreme> extremes(int long_steps) {
+  return Catalogue(long_steps).list();
+}
+
+}  // namespace mallow::bench

@@ -1,0 +1,91 @@
+#include "stability/stability_map.h"
+
+#include <sstream>
+
+#include "mallow/files.h"
+
+namespace mallow::bench {
+namespace {
+
+constexpr int k_field = 9, k_gap = 8, k_left = 90, k_top = 70;
+
+const char* color(Verdict verdict) {
+  constexpr const char* k_colors[] = {"#3a9d5d", "#9ccf7c", "#e3b23c", "#c8342b"};
+  return k_colors[static_cast<std::size_t>(verdict)];
+}
+
+class Drawing {
+ public:
+  void text(int x, int y, const std::string& words, const char* anchor = "middle") {
+    body_ << "<text x='" << x << "' y='" << y << "' text-anchor='" << anchor << "'>" << words << "</text>\n";
+  }
+  void field(int x, int y, int width, const char* color) {
+    body_ << "<rect x='" << x << "' y='" << y << "' width='" << width << "' height='" << k_field << "' fill='"
+          << color << "'/>\n";
+  }
+  std::string svg(int width, int height) const {
+    std::ostringstream all;
+    all << "<svg xmlns='http://www.w3.org/2000/svg' width='" << width << "' height='" << height
+        << "' font-family='Helvetica' font-size='13'>\n<rect width='100%' height='100%' fill='white'/>\n"
+        << body_.str() << "</svg>\n";
+    return all.str();
+  }
+
+ private:
+  std::ostringstream body_;
+};
+
+std::string number(float value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+}  // namespace
+
+void write_map(const std::filesystem::path& svg, const StabilityGrid& grid,
+               const std::vector<Outcome>& outcomes) {
+  const int across = static_cast<int>(grid.viscosities.size()),
+            down = static_cast<int>(grid.pressures.size());
+  const int panel_x = across * k_field + k_gap, panel_y = down * k_field + k_gap;
+  const int width = k_left + static_cast<int>(grid.alphas.size()) * panel_x + 20;
+  const int height = k_top + static_cast<int>(grid.time_steps.size()) * panel_y + 50;
+  Drawing drawing;
+  drawing.text(width / 2, 20,
+               "A cube that falls: stable, held by the limit on the step, refused with an error, unstable");
+  int x = width / 2 - 200;
+  for (const Verdict verdict : {Verdict::stable, Verdict::limited, Verdict::refused, Verdict::unstable}) {
+    drawing.field(x, 30, 2 * k_field, color(verdict));
+    drawing.text(x + 25, 39, name(verdict), "start");
+    x += 110;
+  }
+  for (std::size_t a = 0; a < grid.alphas.size(); ++a)
+    drawing.text(k_left + static_cast<int>(a) * panel_x + panel_x / 2, k_top - 8,
+                 "&#945; " + number(grid.alphas[a]));
+  for (std::size_t t = 0; t < grid.time_steps.size(); ++t)
+    drawing.text(k_left - 8, k_top + static_cast<int>(t) * panel_y + panel_y / 2,
+                 number(grid.time_steps[t]) + " &#916;t0", "end");
+  drawing.text(width / 2, height - 30,
+               "in each panel: k from " + number(grid.pressures.front()) + " (top) to " +
+                   number(grid.pressures.back()) + ", &#956; from " + number(grid.viscosities.front()) +
+                   " (left) to " + number(grid.viscosities.back()));
+  // Fields of one colour in a row are one, which makes the file a quarter as large.
+  std::size_t index = 0;
+  for (std::size_t a = 0; a < grid.alphas.size(); ++a) {
+    for (std::size_t t = 0; t < grid.time_steps.size(); ++t) {
+      for (int k = 0; k < down; ++k) {
+        for (int m = 0, run = 1; m < across; m += run, run = 1) {
+          const Verdict verdict = outcomes[index + static_cast<std::size_t>(m)].verdict;
+          while (m + run < across && outcomes[index + static_cast<std::size_t>(m + run)].verdict == verdict)
+            ++run;
+          drawing.field(k_left + static_cast<int>(a) * panel_x + m * k_field,
+                        k_top + static_cast<int>(t) * panel_y + k * k_field, run * k_field, color(verdict));
+        }
+        index += static_cast<std::size_t>(across);
+      }
+    }
+  }
+  write_whole(svg, drawing.svg(width, height));
+}
+
+}  // namespace mallow::bench

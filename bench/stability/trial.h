@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mallow/simulation.h"
+
+namespace mallow::bench {
+
+/// How a trial ended.
+enum class Verdict {
+  stable,    ///< bounded, with the steps that were asked for
+  limited,   ///< bounded, because steps were shortened [TK eq. 12]
+  refused,   ///< stopped with an error that says what to change, at a state that is still good
+  unstable,  ///< energy from nowhere, or numbers that are none
+};
+const char* name(Verdict verdict);
+
+/// A simulation that is pushed to where it might break.
+struct Trial {
+  std::function<Simulation()> build;
+  int steps = 300;
+  /// Called before every step.
+  std::function<void(Simulation&, int step)> before_step = {};
+  float spacing = 1;     ///< of the particles [m], what distances are compared with
+  float mass = 1;        ///< of a particle [kg]
+  float floor = 0;       ///< height that nothing falls below [m]; where there is gravity
+  bool is_free = false;  ///< nothing acts from outside: momentum has to stay
+  /// Work that something outside may do on the particles, relative to their energy at the start. 0.5 leaves
+  /// room for what falls onto others.
+  double energy_room = 0.5;
+};
+
+struct Outcome {
+  Verdict verdict = Verdict::stable;
+  std::string message = {};   ///< of the error, where it was refused
+  int steps = 0;              ///< that were taken
+  double limited_share = 0;   ///< of the steps
+  double energy = 0;          ///< largest kinetic and potential energy, relative to that at the start
+  double end_energy = 0;      ///< kinetic energy at the end, likewise
+  double momentum_drift = 0;  ///< |Δ Σ m v| over Σ m |v| at the start; where nothing acts from outside
+  double angular_drift = 0;   ///< |Δ Σ m x × v| over Σ m |x| |v| likewise
+  double end_speed = 0;       ///< root mean square, in spacings a step
+};
+
+/// Runs a trial. Never throws what a simulation throws.
+Outcome run(const Trial& trial);
+
+}  // namespace mallow::bench

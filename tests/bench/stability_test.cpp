@@ -1,0 +1,45 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "bench_fixture.h"
+
+namespace mallow::test {
+namespace {
+
+using bench_stability = BenchTest;
+
+TEST_F(bench_stability, nothing_is_unstable_and_what_is_refused_says_why) {
+  const nlohmann::json document =
+      run_command("stability", {"--thin", "--steps", "100", "--long-steps", "2000"});
+  expect_valid("stability");
+  EXPECT_EQ(document.at("complete"), true);
+  int trials = 0, extremes = 0;
+  for (const nlohmann::json& row : document.at("rows")) {
+    EXPECT_NE(row.at("kind"), "unstable") << row;
+    if (row.at("kind") == "grid" && row.at("axis") == "alpha") {
+      for (const char* verdict : {"stable", "limited", "refused"}) trials += row.at(verdict).get<int>();
+      // Shape matching alone takes any step.
+      if (row.at("value") == 0) {
+        EXPECT_EQ(row.at("limited").get<int>() + row.at("refused").get<int>(), 0);
+      }
+    }
+    if (row.at("kind") != "extreme") continue;
+    ++extremes;
+    EXPECT_NE(row.at("verdict"), "unstable") << row;
+    EXPECT_EQ(row.at("verdict") == "refused", row.at("message") != "") << row;
+    // [TK]'s formulas as printed do not keep it.
+    if (row.at("name") != "printed formulas") {
+      EXPECT_LT(row.at("momentum_drift"), 1e-5) << row;
+    }
+    if (row.at("alpha") == 0) {
+      EXPECT_LT(row.at("angular_drift"), 0.005) << row;
+    }
+  }
+  EXPECT_EQ(trials, document.at("settings").at("trials"));
+  EXPECT_GT(extremes, 90);
+  EXPECT_TRUE(std::filesystem::exists(at("out/stability.svg")));
+}
+
+}  // namespace
+}  // namespace mallow::test
