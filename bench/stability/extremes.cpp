@@ -162,6 +162,7 @@ class Catalogue {
   void contacts() {
     Trial pressed;
     pressed.energy_room = 1e9;  // the plates do work without end
+    pressed.steps = 700;        // they meet after 430
     add(
         "between two plates that close", falling_body(),
         [](Setup& s) {
