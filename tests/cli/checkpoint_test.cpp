@@ -142,6 +142,11 @@ TEST_F(cli_checkpoint, says_what_to_do_where_there_is_none_to_resume) {
   ASSERT_EQ(run({"--out", at("out"), "--no-surface"}).exit_code, 0);
   outcome = resume("out", {"--frames", "5"});
   EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("holds a run that is complete"), std::string::npos) << outcome.err;
+
+  fs::remove(at("out/report.json"));
+  outcome = resume("out");
+  EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("holds no checkpoint"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("--overwrite"), std::string::npos) << outcome.err;
 

@@ -52,6 +52,14 @@ CheckpointedRun load(const fs::path& file, const Cache& cache, int threads) try 
   throw IoError({file.string(), 0, 0, "", error.what()});
 }
 
+bool is_complete(const Cache& cache) {
+  try {
+    return read_report(cache.report_file()).value("complete", false);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 Checkpoints::Checkpoints(const Scene& scene, const RunPlan& plan, const Cache& cache)
@@ -93,6 +101,8 @@ CheckpointedRun load_newest_checkpoint(const Cache& cache, int threads) {
     }
   }
   const std::string folder = cache.folder().string();
+  if (refused.empty() && is_complete(cache))
+    throw IoError({folder, 0, 0, "--resume", "holds a run that is complete, and no checkpoint of it"});
   const std::string why =
       refused.empty() ? "holds no checkpoint: the run ended before the first one was due" : refused;
   throw IoError({folder, 0, 0, "--resume",

@@ -8,8 +8,8 @@ namespace mallow::cli {
 /// When checkpoints are due, by either count.
 struct CheckpointInterval {
   int frames = 0;  ///< 0: not by frames
-  /// Of wall time [s]; 0: not by time. The default costs a run less than 1% at a million particles, and most
-  /// of that beside the steps.
+  /// Of wall time [s]; 0: not by time. With a million particles the steps wait 30 ms for a checkpoint, while
+  /// 50 MB are written in about a second beside them: far below 1% of the default.
   double seconds = 60;
 };
 
