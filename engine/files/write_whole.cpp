@@ -1,3 +1,5 @@
+#include "files/write_whole.h"
+
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -71,6 +73,25 @@ class PartialFile {
   fs::path path_;
 };
 
+void write_content(const fs::path& file, std::string_view content, const fs::path& name) {
+  OpenFile out(file, O_WRONLY | O_CREAT | O_TRUNC, name);
+  out.write(content);
+  out.close();
+}
+
+/// What the file was goes to `previous`, or is lost where that is empty.
+void replace(const fs::path& file, const std::function<void(const fs::path& beside)>& write,
+             const fs::path& previous) {
+  const PartialFile partial(fs::path(file).replace_filename('.' + file.filename().string() + ".partial"));
+  write(partial.path());
+  OpenFile(partial.path(), O_RDONLY, file).sync();
+  if (!previous.empty() && ::rename(file.c_str(), previous.c_str()) != 0 && errno != ENOENT)
+    fail_write(previous, errno);
+  if (::rename(partial.path().c_str(), file.c_str()) != 0) fail_write(file, errno);
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  OpenFile(folder, O_RDONLY | O_DIRECTORY, file).sync();
+}
+
 }  // namespace
 
 void write_whole(const fs::path& file, const std::function<void(const fs::path& beside)>& write) {
@@ -83,20 +104,16 @@ void write_whole(const fs::path& file, const std::function<void(const fs::path& 
     return;
   }
 
-  const PartialFile partial(fs::path(file).replace_filename('.' + file.filename().string() + ".partial"));
-  write(partial.path());
-  OpenFile(partial.path(), O_RDONLY, file).sync();
-  if (::rename(partial.path().c_str(), file.c_str()) != 0) fail_write(file, errno);
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  OpenFile(folder, O_RDONLY | O_DIRECTORY, file).sync();
+  replace(file, write, {});
 }
 
 void write_whole(const fs::path& file, std::string_view content) {
-  write_whole(file, [&](const fs::path& beside) {
-    OpenFile out(beside, O_WRONLY | O_CREAT | O_TRUNC, file);
-    out.write(content);
-    out.close();
-  });
+  write_whole(file, [&](const fs::path& beside) { write_content(beside, content, file); });
+}
+
+void write_whole_keeping(const fs::path& file, std::string_view content, const fs::path& previous) {
+  replace(
+      file, [&](const fs::path& beside) { write_content(beside, content, file); }, previous);
 }
 
 }  // namespace mallow

@@ -189,8 +189,13 @@ std::string read_text(const std::filesystem::path& file) {
 }  // namespace scene_file
 
 Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  return parse_scene(scene_file::read_text(file), file, overrides);
+}
+
+Scene parse_scene(const std::string& text, const std::filesystem::path& file,
+                  std::span<const std::string> overrides) {
   using namespace scene_file;
-  Node root = parse_document(read_text(file), file.string());
+  Node root = parse_document(text, file.string());
   Problems problems(file.string());
   for (const std::string& override_text : overrides) apply_override(root, override_text, problems);
   Scene scene = SceneReader(root, file, problems).read();

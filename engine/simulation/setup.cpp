@@ -10,9 +10,6 @@
 namespace mallow {
 namespace {
 
-/// Groups, and pins, are named by 8 and 16 bits a particle.
-constexpr std::size_t k_max_groups = 256;
-constexpr std::size_t k_max_pins = 65535;
 /// Bodies of one group share their spacing to this relative difference.
 constexpr float k_same_spacing = 1e-3f;
 /// Particles of different groups nearer than this share of the spacing are an error of the scene.
@@ -94,6 +91,26 @@ void take_origin(Simulation::State& state, const Vec3& origin) {
 }
 
 }  // namespace
+
+void describe_groups(Simulation::State& state) {
+  Sph& sph = state.sph;
+  sph.groups.clear();
+  sph.group_end.clear();
+  sph.viscous = false;
+  double volume = 0;
+  for (const Group& group : state.groups) {
+    volume += static_cast<double>(group.size()) * std::pow(static_cast<double>(group.spacing), 3);
+    sph.groups.push_back({.mass = group.mass,
+                          .rest_density = group.rest_density,
+                          .rest_volume = group.mass / group.rest_density,
+                          .pressure_coefficient = group.material.pressure_coefficient,
+                          .viscosity = group.material.viscosity,
+                          .cohesion = group.material.cohesion});
+    sph.group_end.push_back(group.end);
+    sph.viscous = sph.viscous || group.material.viscosity > 0;
+  }
+  sph.grid.spacing = static_cast<float>(std::cbrt(volume / static_cast<double>(state.store.size())));
+}
 
 Simulation::Simulation(const SolverConfig& config) : state_(std::make_unique<State>()) {
   Checks checks;
@@ -231,6 +248,13 @@ void Simulation::set_alpha(GroupId id, const AlphaSchedule& alpha) {
   check_stiffness(state_->config, changed, checks);
   checks.finish();
   group.material.alpha = alpha;
+  if (!group.keeps_reference()) {
+    // Rows of fluids are sorted, which a reference shape that is kept would not follow.
+    ShapeMatching none;
+    none.region_radius = group.shape.region_radius;
+    none.region_stride = group.shape.region_stride;
+    group.shape = std::move(none);
+  }
   // A fluid that may turn elastic remembers the shape it has now.
   if (group.keeps_reference() && group.shape.reference.size() != group.size()) {
     group.grew = true;
@@ -269,24 +293,11 @@ void Simulation::prepare() {
   s.checked_particles = s.store.size();
 
   s.sph.kept.forget();
-  s.sph.groups.clear();
-  s.sph.group_end.clear();
-  s.sph.viscous = false;
-  double volume = 0;
+  describe_groups(s);
   for (Group& group : s.groups) {
-    volume += static_cast<double>(group.size()) * std::pow(static_cast<double>(group.spacing), 3);
-    s.sph.groups.push_back({.mass = group.mass,
-                            .rest_density = group.rest_density,
-                            .rest_volume = group.mass / group.rest_density,
-                            .pressure_coefficient = group.material.pressure_coefficient,
-                            .viscosity = group.material.viscosity,
-                            .cohesion = group.material.cohesion});
-    s.sph.group_end.push_back(group.end);
-    s.sph.viscous = s.sph.viscous || group.material.viscosity > 0;
     if (group.grew && group.keeps_reference()) take_reference(s, group);
     group.grew = false;
   }
-  s.sph.grid.spacing = static_cast<float>(std::cbrt(volume / static_cast<double>(s.store.size())));
   read_alphas(s);
   for (Group& group : s.groups)
     if (group.matches_shape() && !group.shape.built)

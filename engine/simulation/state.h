@@ -15,6 +15,10 @@
 
 namespace mallow {
 
+/// Groups, and pins, are named by 8 and 16 bits a particle.
+inline constexpr std::size_t k_max_groups = 256;
+inline constexpr std::size_t k_max_pins = 65535;
+
 /// One material, one reference shape, one range of rows.
 struct Group {
   std::string name;
@@ -107,6 +111,9 @@ void finish_step(Simulation::State& state, float time_step);
 
 /// Takes the positions of a group as its reference shape and sorts its rows for that.
 void take_reference(Simulation::State& state, Group& group);
+
+/// groups -> their constants in SPH, the typical spacing of particles.
+void describe_groups(Simulation::State& state);
 
 /// Writes the wall time between laps into a report.
 class PhaseTimer {

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <sstream>
 
@@ -64,10 +65,9 @@ std::vector<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
-Outcome run_mallow(const std::vector<std::string>& arguments) {
-  const fs::path folder = new_folder();
-  const std::string out = (folder / "out").string();
-  const std::string err = (folder / "err").string();
+Running::Running(const std::vector<std::string>& arguments) : folder_(new_folder()) {
+  const std::string out = (folder_ / "out").string();
+  const std::string err = (folder_ / "err").string();
   std::vector<std::string> words{MALLOW_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -78,16 +78,37 @@ Outcome run_mallow(const std::vector<std::string>& arguments) {
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT, 0600);
   posix_spawn_file_actions_addopen(&files, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT, 0600);
-  pid_t child = 0;
-  const int error = ::posix_spawn(&child, argv[0], &files, nullptr, argv.data(), environ);
+  const int error = ::posix_spawn(&child_, argv[0], &files, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&files);
   if (error != 0) throw std::runtime_error("cannot start " MALLOW_PROGRAM);
-  int status = 0;
-  ::waitpid(child, &status, 0);
+}
 
-  Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
-  fs::remove_all(folder);
-  return outcome;
+Running::~Running() {
+  if (!ended_) {
+    send(SIGKILL);
+    ::waitpid(child_, &status_, 0);
+  }
+  fs::remove_all(folder_);
+}
+
+void Running::send(int signal) const {
+  if (!ended_) ::kill(child_, signal);
+}
+
+bool Running::alive() {
+  if (!ended_) ended_ = ::waitpid(child_, &status_, WNOHANG) == child_;
+  return !ended_;
+}
+
+Outcome Running::wait() {
+  if (!ended_) ::waitpid(child_, &status_, 0);
+  ended_ = true;
+  return {WIFEXITED(status_) ? WEXITSTATUS(status_) : -1, read_text(folder_ / "out"),
+          read_text(folder_ / "err")};
+}
+
+Outcome run_mallow(const std::vector<std::string>& arguments) {
+  return Running(arguments).wait();
 }
 
 CliTest::CliTest() : folder_(new_folder()), scene_(write("cube.toml", k_scene).string()) {}

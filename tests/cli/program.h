@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <sys/types.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,26 @@ struct Outcome {
   int exit_code = -1;
   std::string out;
   std::string err;
+};
+
+/// The built program while it runs.
+class Running {
+ public:
+  explicit Running(const std::vector<std::string>& arguments);
+  ~Running();  ///< kills it where nobody waited for its end
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  void send(int signal) const;
+  /// Whether it is still there.
+  bool alive();
+  Outcome wait();
+
+ private:
+  std::filesystem::path folder_;
+  pid_t child_ = 0;
+  int status_ = 0;
+  bool ended_ = false;
 };
 
 /// Runs the built program as a user would.

@@ -242,6 +242,23 @@ TEST(alpha, set_below_1_on_a_fluid_remembers_the_shape_of_that_moment) {
   EXPECT_NEAR(mean, width, 0.15 * width);
 }
 
+/// Rows of fluids are sorted at steps 61, 121, ...: what a shape that is long gone would not follow.
+TEST(alpha, of_a_solid_that_melts_and_freezes_again_takes_its_shape_anew) {
+  SolverConfig c = config();
+  c.gravity = {0, 0, 0};
+  Simulation s(c);
+  const GroupId group = s.add_body(cube(6), Material{.alpha = 0});
+  s.step();
+  s.set_alpha(group, 1.0f);
+  EXPECT_EQ(s.info().groups[0].regions, 0u);
+  for (int k = 0; k < 70; ++k) s.step();
+  const std::vector<Vec3> melted = s.positions_by_id();
+  s.set_alpha(group, 0.0f);
+  for (int k = 0; k < 10; ++k) s.step();
+  const std::vector<Vec3> frozen = s.positions_by_id();
+  for (std::size_t i = 0; i < frozen.size(); ++i) EXPECT_LT((frozen[i] - melted[i]).norm(), 0.1f) << i;
+}
+
 TEST(groups, that_touch_push_each_other_and_never_merge) {
   SolverConfig c = config();
   c.gravity = {0, 0, 0};

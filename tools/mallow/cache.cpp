@@ -122,10 +122,28 @@ Cache Cache::create(const fs::path& folder, bool overwrite) {
     cache.remove_images();
     cache.remove_exports();
     // scene.toml is what marks a run, so it goes last: an interrupted removal can be done again.
-    for (const auto& file : {cache.report_file(), cache.summary_file(), cache.scene_file()}) fs::remove(file);
+    for (const auto& file : {cache.checkpoint_file(), previous_checkpoint(cache.checkpoint_file()),
+                             cache.report_file(), cache.summary_file(), cache.scene_file()})
+      fs::remove(file);
     fs::create_directories(folder / "particles");
   } catch (const fs::filesystem_error& error) {
     refuse(folder, "cannot be written: " + error.code().message());
+  }
+  return cache;
+}
+
+Cache Cache::open_to_resume(const fs::path& folder) {
+  const Cache cache(folder);
+  if (!fs::is_regular_file(cache.scene_file()))
+    throw IoError({folder.string(), 0, 0, "--resume",
+                   "holds no run of mallow (no scene.toml); start one with: mallow run SCENE --out " +
+                       folder.string()});
+  for (const fs::path& place : {folder, folder / "particles", folder / "surface", cache.images_folder()}) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(place, error)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with('.') && name.ends_with(".partial")) fs::remove(entry.path(), error);
+    }
   }
   return cache;
 }
@@ -143,7 +161,7 @@ Cache Cache::open(const fs::path& folder) {
   return cache;
 }
 
-void Cache::write_scene(Scene scene) const {
+Scene Cache::moved_here(Scene scene) const {
   const fs::path home = fs::absolute(scene.file).parent_path();
   const fs::path here = fs::absolute(folder_);
   const auto moved = [&](const fs::path& file) {
@@ -155,7 +173,11 @@ void Cache::write_scene(Scene scene) const {
     if (auto* points = std::get_if<PointsSource>(&body.source)) points->file = moved(points->file);
   }
   scene.file = scene_file();
-  write_whole(scene_file(), print_scene(scene));
+  return scene;
+}
+
+void Cache::write_scene(const Scene& scene) const {
+  write_whole(scene_file(), print_scene(moved_here(scene)));
 }
 
 }  // namespace mallow::cli

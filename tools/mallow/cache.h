@@ -13,6 +13,7 @@ std::filesystem::path frame_name(int frame, const std::string& ending);
 
 /// A folder that holds a run, so that its parts can be made again apart from each other:
 ///   scene.toml  report.json  summary.html  film.mp4
+///   checkpoint  checkpoint.previous  what an unfinished run goes on from
 ///   particles/frame_000000.ply  surface/frame_000000.ply  images/frame_000000.png
 ///   export/                     what `mallow export` made of these for other programs
 /// Frame 0 is the initial state.
@@ -24,6 +25,9 @@ class Cache {
   static Cache create(const std::filesystem::path& folder, bool overwrite);
   /// What create() would throw, found out without a change on disk.
   static void check(const std::filesystem::path& folder, bool overwrite);
+  /// The cache of a run that goes on; removes what a killed writer left half written. Throws IoError where
+  /// the folder holds no run.
+  static Cache open_to_resume(const std::filesystem::path& folder);
   /// The cache of an earlier run. Throws IoError where the folder holds none.
   static Cache open(const std::filesystem::path& folder);
 
@@ -31,6 +35,7 @@ class Cache {
   std::filesystem::path scene_file() const { return folder_ / "scene.toml"; }
   std::filesystem::path report_file() const { return folder_ / "report.json"; }
   std::filesystem::path summary_file() const { return folder_ / "summary.html"; }
+  std::filesystem::path checkpoint_file() const { return folder_ / "checkpoint"; }
   std::filesystem::path film_file() const { return folder_ / "film.mp4"; }
   std::filesystem::path images_folder() const { return folder_ / "images"; }
   std::filesystem::path particles_file(int frame) const;
@@ -50,8 +55,10 @@ class Cache {
   /// Exports of every format, which an earlier run's frames would be among.
   void remove_exports() const;
 
-  /// scene.toml, with the paths in it made right for where it stands now.
-  void write_scene(Scene scene) const;
+  /// A scene with the paths in it made right for scene.toml.
+  Scene moved_here(Scene scene) const;
+  /// scene.toml
+  void write_scene(const Scene& scene) const;
 
  private:
   explicit Cache(std::filesystem::path folder) : folder_(std::move(folder)) {}

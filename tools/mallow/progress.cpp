@@ -23,9 +23,10 @@ std::string bar(double share) {
 
 }  // namespace
 
-Progress::Progress(std::string verb, long long total, std::string unit)
+Progress::Progress(std::string verb, long long total, std::string unit, long long done_before)
     : verb_(std::move(verb)),
       total_(total),
+      done_before_(done_before),
       unit_(std::move(unit)),
       terminal_(::isatty(STDERR_FILENO) != 0),
       started_(Clock::now()),
@@ -46,12 +47,12 @@ void Progress::show(long long done) {
   shown_done_ = done;
 
   const double seconds = std::chrono::duration<double>(now - started_).count();
-  const double rate = static_cast<double>(done) / std::max(seconds, 1e-9);
+  const double rate = static_cast<double>(done - done_before_) / std::max(seconds, 1e-9);
   const double share =
       total_ > 0 ? std::min(1.0, static_cast<double>(done) / static_cast<double>(total_)) : 1.0;
   std::string line = verb_ + " " + (terminal_ ? bar(share) : "") + std::to_string(done) + "/" +
                      std::to_string(total_) + " " + unit_;
-  if (done > 0) {
+  if (done > done_before_) {
     char speed[64];
     std::snprintf(speed, sizeof speed, ", %.3g %s/s, ", rate, unit_.c_str());
     line += speed;

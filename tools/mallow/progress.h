@@ -9,8 +9,8 @@ namespace mallow::cli {
 /// every two seconds in a pipe.
 class Progress {
  public:
-  /// "simulating", 240, "frames"
-  Progress(std::string verb, long long total, std::string unit);
+  /// "simulating", 240, "frames"; so many of them were done before, and took no time now.
+  Progress(std::string verb, long long total, std::string unit, long long done_before = 0);
   ~Progress();  ///< ends the line on a terminal
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -23,6 +23,7 @@ class Progress {
 
   std::string verb_;
   long long total_;
+  long long done_before_;
   std::string unit_;
   bool terminal_;
   Clock::time_point started_;

@@ -1,5 +1,6 @@
 #include "mallow/run_command.h"
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -8,14 +9,17 @@
 #include <vector>
 
 #include "mallow/cache.h"
+#include "mallow/checkpoint.h"
 #include "mallow/failure.h"
 #include "mallow/files.h"
 #include "mallow/film.h"
 #include "mallow/interrupt.h"
 #include "mallow/machine.h"
 #include "mallow/run_loop.h"
+#include "mallow/run_plan.h"
 #include "mallow/run_report.h"
 #include "mallow/scene.h"
+#include "mallow/scene_changes.h"
 #include "mallow/scene_options.h"
 #include "mallow/summary.h"
 
@@ -27,6 +31,9 @@ struct RunOptions {
   std::optional<int> frames;
   std::optional<std::int64_t> steps;
   std::string out;
+  std::string resume;
+  std::optional<int> checkpoint_every;
+  std::optional<double> checkpoint_seconds;
   int threads = 0;
   std::string state_out;
   std::string report;
@@ -34,6 +41,15 @@ struct RunOptions {
   bool no_surface = false;
   bool no_images = false;
   bool overwrite = false;
+};
+
+/// What a run is made of, as it begins or as it goes on.
+struct Run {
+  Scene scene;
+  RunPlan plan;
+  RunReport report;
+  std::optional<Simulation> simulation;
+  std::optional<Cache> cache;
 };
 
 /// All that can be known to be wrong before anything is computed.
@@ -50,16 +66,88 @@ Scene scene_of(const RunOptions& options) {
   return scene;
 }
 
-RunReport open_report(const RunOptions& options, const Scene& scene, int threads) {
-  RunReport report;
-  report.scene = options.scene.file;
-  report.overrides = options.scene.overrides;
-  if (options.scene.quality) report.quality = name(*options.scene.quality);
+CheckpointInterval checkpoint_interval(const RunOptions& options, CheckpointInterval interval) {
+  if (options.checkpoint_every) interval = {*options.checkpoint_every, 0};
+  if (options.checkpoint_seconds) interval.seconds = *options.checkpoint_seconds;
+  return interval;
+}
+
+/// What both kinds of runs have: a simulation, and what it says of itself.
+void describe(const Scene& scene, int threads, Simulation& simulation, RunReport& report) {
   report.threads = threads;
-  for (const std::size_t material : group_materials(scene)) {
+  report.info = simulation.info();
+  for (const std::size_t material : group_materials(scene))
     report.group_materials.push_back(scene.materials[material].name);
+}
+
+Run begin(const RunOptions& options, int threads) {
+  Run run{.scene = scene_of(options), .plan = {}, .report = {}, .simulation = {}, .cache = {}};
+  run.plan = {.frames = run.scene.run.frames,
+              .steps = options.steps,
+              .surface = !options.no_surface,
+              .images = !options.no_images,
+              .threads = threads,
+              .checkpoints = checkpoint_interval(options, {})};
+  run.report.scene = options.scene.file;
+  run.report.overrides = options.scene.overrides;
+  if (options.scene.quality) run.report.quality = name(*options.scene.quality);
+  {
+    const StageTimer timer(run.report.stage_seconds, Stage::build);
+    run.simulation.emplace(build(run.scene, threads));
+    describe(run.scene, threads, *run.simulation, run.report);
   }
-  return report;
+  if (!options.out.empty()) run.cache = Cache::create(options.out, options.overwrite);
+  return run;
+}
+
+/// What of a scene counts when a run goes on: how frames look, and how many there are. What moves the
+/// particles is in the checkpoint.
+bool counts_when_resumed(const std::string& key) {
+  return key.starts_with("surface.") || key.starts_with("render.") || key == "run.frames";
+}
+
+/// Takes over what counts of a scene that is not the checkpoint's any more, and says on stderr what differs.
+void take_changes(const Scene& now, Scene& scene) {
+  std::string said;
+  for (const SceneChange& change : scene_changes(scene, now)) {
+    if (change.key == "run.frames") continue;  // to go on longer is no change of what is there
+    const auto text = [](const std::string& value) { return value.empty() ? "left out" : value; };
+    said += "\n  " + change.key + " is " + text(change.now) + ", was " + text(change.before) +
+            (counts_when_resumed(change.key) ? ": from the next frame on" : ": without effect");
+  }
+  if (!said.empty())
+    std::fprintf(stderr,
+                 "mallow: warning: %s has changed since the run began; its motion goes on as it began:%s\n",
+                 now.file.c_str(), said.c_str());
+  scene.surface = now.surface;
+  scene.render = now.render;
+  scene.run.frames = now.run.frames;
+}
+
+/// The run in a folder as its newest whole checkpoint has it.
+Run resume(const RunOptions& options, int threads) {
+  const auto started = std::chrono::steady_clock::now();
+  Cache cache = Cache::open_to_resume(options.resume);
+  CheckpointedRun saved = load_newest_checkpoint(cache, threads);
+  SceneOptions now = options.scene;
+  if (now.file.empty()) now.file = cache.scene_file().string();
+  take_changes(cache.moved_here(read_scene(now)), saved.scene);
+  if (options.frames) saved.scene.run.frames = *options.frames;
+
+  Run run{std::move(saved.scene), saved.plan, std::move(saved.report), std::move(saved.simulation),
+          std::move(cache)};
+  if (options.frames) run.plan.steps.reset();
+  if (options.steps) run.plan.steps = options.steps;
+  run.plan.frames = run.scene.run.frames;
+  run.plan.surface = run.plan.surface && !options.no_surface;
+  run.plan.images = run.plan.images && !options.no_images;
+  run.plan.threads = threads;
+  run.plan.checkpoints = checkpoint_interval(options, run.plan.checkpoints);
+  describe(run.scene, threads, *run.simulation, run.report);
+  run.report.resumed_after.push_back(run.report.steps);
+  run.report.stage_seconds[static_cast<std::size_t>(Stage::build)] +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  return run;
 }
 
 void write_reports(const RunOptions& options, const Scene& scene, const Cache* cache,
@@ -71,16 +159,14 @@ void write_reports(const RunOptions& options, const Scene& scene, const Cache* c
   write_summary(*cache, scene, document);
 }
 
-/// Motion, surfaces, pictures and film; `report` says what was done, also when this throws.
-void run_stages(const RunOptions& options, const Scene& scene, Simulation& simulation, const Cache* cache,
-                RunReport& report) {
-  const RunPlan plan{scene.run.frames, options.steps, !options.no_surface, !options.no_images,
-                     report.threads};
-  run_frames(scene, simulation, plan, cache, report);
-  if (!options.state_out.empty()) write_state_csv(options.state_out, snapshot(simulation));
-  if (!cache || options.no_images) return;
-  const StageTimer timer(report.stage_seconds, Stage::film);
-  make_film(options.film, *cache, scene.render.frames_per_second, report.threads);
+/// Motion, surfaces, pictures and film; the report says what was done, also when this throws.
+void run_stages(const RunOptions& options, Run& run) {
+  const Cache* cache = run.cache ? &*run.cache : nullptr;
+  run_frames(run.scene, *run.simulation, run.plan, cache, run.report);
+  if (!options.state_out.empty()) write_state_csv(options.state_out, snapshot(*run.simulation));
+  if (!cache || !run.plan.images) return;
+  const StageTimer timer(run.report.stage_seconds, Stage::film);
+  make_film(options.film, *cache, run.scene.render.frames_per_second, run.plan.threads);
 }
 
 void print_result(const Cache* cache, const RunReport& report) {
@@ -93,45 +179,45 @@ void print_result(const Cache* cache, const RunReport& report) {
 void run(const RunOptions& options) {
   check_outputs(options);
   const int threads = resolve_threads(options.threads);
-  const Scene scene = scene_of(options);
-  RunReport report = open_report(options, scene, threads);
-  std::optional<Simulation> simulation;
-  {
-    const StageTimer timer(report.stage_seconds, Stage::build);
-    simulation.emplace(build(scene, threads));
-    report.info = simulation->info();
-  }
-  std::optional<Cache> cache;
-  if (!options.out.empty()) cache = Cache::create(options.out, options.overwrite);
-  const Cache* out = cache ? &*cache : nullptr;
+  Run run = options.resume.empty() ? begin(options, threads) : resume(options, threads);
+  const Cache* out = run.cache ? &*run.cache : nullptr;
 
   // From here on something is computed, so what goes wrong is a failure of the run, and is reported as far as
   // it came.
   watch_for_interrupt();
   const auto close_report = [&](const std::string& why_ended) {
-    report.error = why_ended;
-    report.complete = why_ended.empty();
-    report.simulated_time = simulation->time();
-    report.state_hash = simulation->state_hash();
-    write_reports(options, scene, out, report);
+    run.report.error = why_ended;
+    run.report.complete = why_ended.empty();
+    run.report.simulated_time = run.simulation->time();
+    run.report.state_hash = run.simulation->state_hash();
+    write_reports(options, run.scene, out, run.report);
   };
   try {
-    if (cache) cache->write_scene(scene);
+    if (out) out->write_scene(run.scene);
     close_report("the run has not ended yet");
-    run_stages(options, scene, *simulation, out, report);
+    run_stages(options, run);
     close_report("");
   } catch (const std::exception& failure) {
     try {
       close_report(failure.what());
       // The state before the step that failed: what was computed is not lost.
-      if (!options.state_out.empty()) write_state_csv(options.state_out, snapshot(*simulation));
+      if (!options.state_out.empty()) write_state_csv(options.state_out, snapshot(*run.simulation));
     } catch (const std::exception&) {
       // Where the disk is full the report written at the start stays, and it says that the run did not end.
     }
     throw RunFailure(failure.what());
   }
-  print_result(out, report);
+  print_result(out, run.report);
   require_film(options.film);
+}
+
+/// What options cannot say of each other to the parser.
+void check_together(const RunOptions& options) {
+  if (options.resume.empty() && options.scene.file.empty()) throw CLI::RequiredError("SCENE");
+  const bool kept = !options.out.empty() || !options.resume.empty();
+  if (!options.film.file.empty() && !kept) throw CLI::RequiresError("--film", "--out");
+  if ((options.checkpoint_every || options.checkpoint_seconds) && !kept)
+    throw CLI::RequiresError("--checkpoint-every, --checkpoint-seconds", "--out");
 }
 
 }  // namespace
@@ -141,6 +227,7 @@ void add_run_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("run", "Simulate a scene; write particles, surfaces, pictures and a film");
   add_scene_options(*command, options->scene);
+  command->get_option("SCENE")->required(false);
   CLI::Option* frames =
       command
           ->add_option("--frames", options->frames, "Frames after frame 0, instead of the scene's run.frames")
@@ -150,6 +237,19 @@ void add_run_command(CLI::App& app) {
       ->excludes(frames);
   CLI::Option* out =
       command->add_option("--out", options->out, "Folder for the frames; without it none are written");
+  CLI::Option* resume = command
+                            ->add_option("--resume", options->resume,
+                                         "Go on with the run in this folder, to the same bits as if it had "
+                                         "never ended; with SCENE, tells what differs from it")
+                            ->excludes(out);
+  command
+      ->add_option("--checkpoint-every", options->checkpoint_every,
+                   "Frames between checkpoints, from which a run can be resumed")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--checkpoint-seconds", options->checkpoint_seconds,
+                   "Seconds between checkpoints, 60 where no --checkpoint-every is given; 0: none by time")
+      ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--threads", options->threads,
                    "Threads; 0 takes all there are. The result does not depend on it")
@@ -159,10 +259,14 @@ void add_run_command(CLI::App& app) {
   command->add_flag("--no-surface", options->no_surface, "No surfaces; pictures show the particles");
   CLI::Option* no_images = command->add_flag("--no-images", options->no_images, "No pictures and no film");
   add_film_options(*command, options->film);
-  // A film is made of pictures, and those are kept in the folder.
-  command->get_option("--film")->needs(out)->excludes(no_images);
-  command->add_flag("--overwrite", options->overwrite, "Replace an earlier run in the --out folder");
-  command->callback([options] { run(*options); });
+  // A film is made of pictures.
+  command->get_option("--film")->excludes(no_images);
+  command->add_flag("--overwrite", options->overwrite, "Replace an earlier run in the --out folder")
+      ->excludes(resume);
+  command->callback([options] {
+    check_together(*options);
+    run(*options);
+  });
 }
 
 }  // namespace mallow::cli

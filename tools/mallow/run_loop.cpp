@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "mallow/background_writer.h"
+#include "mallow/checkpoint.h"
 #include "mallow/failure.h"
+#include "mallow/files.h"
 #include "mallow/interrupt.h"
 #include "mallow/level_set.h"
 #include "mallow/progress.h"
@@ -22,7 +24,7 @@ class FrameWriter {
  public:
   FrameWriter(const Scene& scene, const RunPlan& plan, const Cache& cache, const ParticleFrame& first,
               RunReport& report)
-      : cache_(cache), report_(report) {
+      : cache_(cache), report_(report), checkpoints_(scene, plan, cache), whole_frames_(report.frames) {
     for (const GroupInfo& group : report.info.groups) spacings_.push_back(group.spacing);
     if (plan.surface) {
       std::filesystem::create_directories(cache.surface_file(0).parent_path());
@@ -70,6 +72,18 @@ class FrameWriter {
     }
   }
 
+  /// A checkpoint behind the files of all frames so far, so that those need not be made again.
+  void write_checkpoint(const Simulation& simulation) {
+    const auto state = std::make_shared<const SavedState>(checkpoints_.take(simulation, report_));
+    files_.add([this, state] { mallow::write_checkpoint(cache_.checkpoint_file(), *state); });
+  }
+  void after_step(const Simulation& simulation) {
+    if (checkpoints_.due_after_step()) write_checkpoint(simulation);
+  }
+  void after_frame(const Simulation& simulation) {
+    if (checkpoints_.due_after_frame(report_.frames)) write_checkpoint(simulation);
+  }
+
   /// Waits until all files are there.
   void finish() {
     const StageTimer timer(report_.stage_seconds, surfacer_ ? Stage::surface : Stage::particles);
@@ -79,18 +93,39 @@ class FrameWriter {
  private:
   const Cache& cache_;
   RunReport& report_;
+  Checkpoints checkpoints_;
   std::vector<float> spacings_;
   std::optional<Surfacer> surfacer_;
   std::optional<Stills> stills_;
-  int whole_frames_ = 0;    ///< the last frame of which all files are there; read when none is being written
+  int whole_frames_;        ///< the last frame of which all files are there; read when none is being written
   BackgroundWriter files_;  // last: its thread uses the others
 };
+
+/// Frame 0, which every picture is framed by: as the simulation has it, or of the run that goes on.
+std::shared_ptr<const ParticleFrame> first_frame(const Simulation& simulation, const Cache& cache) {
+  return std::make_shared<const ParticleFrame>(
+      simulation.step_count() == 0 ? snapshot(simulation) : read_particles(cache.particles_file(0)));
+}
+
+/// What a run that is asked to end leaves behind and says.
+[[noreturn]] void stop(const Simulation& simulation, const Cache* cache, FrameWriter* writer,
+                       const RunReport& report) {
+  std::string said = "interrupted after " + std::to_string(report.steps) + " steps";
+  if (!writer) throw RunFailure(said);
+  try {
+    writer->write_checkpoint(simulation);
+    writer->finish();
+  } catch (const Error& error) {
+    throw RunFailure(said + ", and no checkpoint could be written: " + error.what());
+  }
+  throw RunFailure(said + "; to go on: mallow run --resume " + cache->folder().string());
+}
 
 /// Whether the simulation has come to frame `number`; without a frame time every step is a frame.
 bool at_frame(const Simulation& simulation, const Scene& scene, int number) {
   if (!scene.run.frame_time) return simulation.step_count() >= number;
   // The step that ends nearest to the frame's time is its last one.
-  const double half_step = 0.5 * static_cast<double>(scene.solver.time_step);
+  const double half_step = 0.5 * static_cast<double>(simulation.config().time_step);
   return simulation.time() >= number * static_cast<double>(*scene.run.frame_time) - half_step;
 }
 
@@ -100,25 +135,30 @@ void run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan,
                 RunReport& report) {
   std::optional<FrameWriter> writer;
   if (cache) {
-    const auto first = std::make_shared<const ParticleFrame>(snapshot(simulation));
+    const auto first = first_frame(simulation, *cache);
     writer.emplace(scene, plan, *cache, *first, report);
-    writer->write(0, first);
+    if (report.steps == 0) writer->write(0, first);
   }
 
-  Progress progress("simulating", plan.steps.value_or(plan.frames), plan.steps ? "steps" : "frames");
+  Progress progress("simulating", plan.steps.value_or(plan.frames), plan.steps ? "steps" : "frames",
+                    plan.steps ? report.steps : report.frames);
   const auto steps_left = [&] { return !plan.steps || report.steps < *plan.steps; };
   const auto ended = [&] { return plan.steps ? !steps_left() : report.frames >= plan.frames; };
   while (!ended()) {
     const int number = report.frames + 1;
     while (!at_frame(simulation, scene, number) && steps_left()) {
-      if (interrupted()) throw RunFailure("interrupted after " + std::to_string(report.steps) + " steps");
-      const StageTimer timer(report.stage_seconds, Stage::motion);
-      report.add(simulation.step());
+      if (interrupted()) stop(simulation, cache, writer ? &*writer : nullptr, report);
+      {
+        const StageTimer timer(report.stage_seconds, Stage::motion);
+        report.add(simulation.step());
+      }
+      if (writer) writer->after_step(simulation);
       if (plan.steps) progress.show(report.steps);
     }
     if (!at_frame(simulation, scene, number)) break;
     if (writer) writer->write(number, std::make_shared<const ParticleFrame>(snapshot(simulation)));
     report.frames = number;
+    if (writer) writer->after_frame(simulation);
     if (!plan.steps) progress.show(number);
   }
   if (writer) writer->finish();

@@ -1,27 +1,16 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-
 #include "mallow/cache.h"
-#include "mallow/files.h"
+#include "mallow/run_plan.h"
 #include "mallow/run_report.h"
 #include "mallow/scene.h"
 #include "mallow/simulation.h"
 
 namespace mallow::cli {
 
-/// How far to run and what to write of every frame.
-struct RunPlan {
-  int frames = 0;                     ///< frames after frame 0
-  std::optional<std::int64_t> steps;  ///< where given: this many steps, however many frames that makes
-  bool surface = true;
-  bool images = true;
-  int threads = 1;
-};
-
-/// Runs a scene to its end and writes its frames into `cache`, where there is one. `report` is kept up to
-/// date: it is right also when this throws.
+/// Runs a scene to its end, from where `simulation` and `report` are, and writes its frames and checkpoints
+/// into `cache`, where there is one. `report` is kept up to date: it is right also when this throws. Throws
+/// RunFailure where the run is interrupted; with a cache it can be resumed then.
 void run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan, const Cache* cache,
                 RunReport& report);
 

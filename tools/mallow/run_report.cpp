@@ -29,6 +29,13 @@ nlohmann::ordered_json groups_json(const RunReport& report) {
   return groups;
 }
 
+nlohmann::ordered_json updates_json(const RunReport& report) {
+  nlohmann::ordered_json updates = nlohmann::ordered_json::array();
+  for (const auto& update : report.reference_updates)
+    updates.push_back({{"step", update.step}, {"groups", update.groups}});
+  return updates;
+}
+
 nlohmann::ordered_json phases_json(const RunReport& report) {
   nlohmann::ordered_json phases = nlohmann::ordered_json::array();
   const double steps = static_cast<double>(std::max<std::int64_t>(report.steps, 1));
@@ -64,11 +71,39 @@ void RunReport::add(const StepReport& step) {
   for (std::size_t i = 0; i < k_phase_count; ++i) phase_seconds[i] += step.seconds[i];
 }
 
+nlohmann::ordered_json RunReport::progress() const {
+  return {{"scene", scene},
+          {"overrides", overrides},
+          {"quality", quality},
+          {"frames", frames},
+          {"steps", steps},
+          {"smallest_step", smallest_step},
+          {"largest_step", largest_step},
+          {"limited_steps", limited_steps},
+          {"reference_updates", updates_json(*this)},
+          {"resumed_after", resumed_after},
+          {"phase_seconds", phase_seconds},
+          {"stage_seconds", stage_seconds}};
+}
+
+void RunReport::set_progress(const nlohmann::ordered_json& progress) {
+  progress.at("scene").get_to(scene);
+  progress.at("overrides").get_to(overrides);
+  progress.at("quality").get_to(quality);
+  progress.at("frames").get_to(frames);
+  progress.at("steps").get_to(steps);
+  progress.at("smallest_step").get_to(smallest_step);
+  progress.at("largest_step").get_to(largest_step);
+  progress.at("limited_steps").get_to(limited_steps);
+  reference_updates.clear();
+  for (const auto& update : progress.at("reference_updates"))
+    reference_updates.push_back({update.at("step").get<std::int64_t>(), update.at("groups").get<int>()});
+  progress.at("resumed_after").get_to(resumed_after);
+  progress.at("phase_seconds").get_to(phase_seconds);
+  progress.at("stage_seconds").get_to(stage_seconds);
+}
+
 nlohmann::ordered_json to_json(const RunReport& report) {
-  nlohmann::ordered_json updates = nlohmann::ordered_json::array();
-  for (const auto& update : report.reference_updates) {
-    updates.push_back({{"step", update.step}, {"groups", update.groups}});
-  }
   const double mean_step = report.steps > 0 ? report.simulated_time / static_cast<double>(report.steps) : 0;
   return {{"version", MALLOW_VERSION},
           {"scene", report.scene},
@@ -93,7 +128,8 @@ nlohmann::ordered_json to_json(const RunReport& report) {
             {"mean", mean_step},
             {"largest", report.largest_step},
             {"limited_steps", report.limited_steps}}},
-          {"reference_updates", updates},
+          {"reference_updates", updates_json(report)},
+          {"resumed_after", report.resumed_after},
           {"phases", phases_json(report)},
           {"stage_seconds", stages_json(report)},
           {"state_hash", hash_text(report.state_hash)}};

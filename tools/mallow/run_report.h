@@ -56,10 +56,15 @@ struct RunReport {
     int groups;
   };
   std::vector<ReferenceUpdate> reference_updates;
+  std::vector<std::int64_t> resumed_after;  ///< steps after which the run was taken up again
   PhaseTimes phase_seconds{};
   StageTimes stage_seconds{};
   std::uint64_t state_hash = 0;
 
+  /// How far the run is, and how long that took, as a checkpoint keeps it.
+  nlohmann::ordered_json progress() const;
+  /// The reverse. Throws nlohmann's exceptions.
+  void set_progress(const nlohmann::ordered_json& progress);
   /// Takes in a step that has just been made.
   void add(const StepReport& step);
 };

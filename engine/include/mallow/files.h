@@ -11,10 +11,11 @@
 #include "mallow/appearance.h"
 #include "mallow/body.h"
 #include "mallow/mesh.h"
+#include "mallow/saved_state.h"
 
-/// Files of meshes and particles: target mallow::scene. Readers check every count against the bytes that are
-/// left before they allocate, and throw IoError that names file, line (of text), field, value and what is
-/// allowed.
+/// Files of meshes, particles and checkpoints: target mallow::scene. Readers check every count against the
+/// bytes that are left before they allocate, and throw IoError that names file, line (of text), field, value
+/// and what is allowed.
 namespace mallow {
 
 class Simulation;
@@ -59,7 +60,8 @@ void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::sp
 /// USD's text: a Mesh /surface with normals and velocities where the mesh has them, z up, in metres.
 /// Triangles have the primvars group, the material id, where the mesh has any, and displayColor. Takes a
 /// palette and throws as write_mesh_glb() does.
-void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::span<const Appearance> palette);
+void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh,
+                     std::span<const Appearance> palette);
 /// VTK's XML PolyData, triangles with the point arrays Normals, Velocity and Material where the mesh has
 /// them.
 void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh);
@@ -94,6 +96,16 @@ struct UsdTimeline {
 /// other. frames: ascending; throws ConfigError where not.
 void write_usda_series(const std::filesystem::path& file, std::span<const UsdFrame> frames,
                        const UsdTimeline& timeline);
+
+/// A saved state as a file, compressed, every bit of it under a checksum. Whole or not at all; the checkpoint
+/// that was there is kept as previous_checkpoint(), so that whenever a writer is killed, one of the two is
+/// whole. Throws IoError.
+void write_checkpoint(const std::filesystem::path& file, const SavedState& state);
+/// Throws IoError for a file that is not, bit by bit, what was written, and for one of another version of the
+/// format or from a machine of the other byte order: a damaged checkpoint is never read.
+SavedState read_checkpoint(const std::filesystem::path& file);
+/// "checkpoint.previous" for "checkpoint".
+std::filesystem::path previous_checkpoint(const std::filesystem::path& file);
 
 /// Writes a file whole or not at all: `write` gets a name beside it, which is synced and renamed when it
 /// returns and removed when it throws.

@@ -8,6 +8,7 @@
 #include "mallow/material.h"           // IWYU pragma: export
 #include "mallow/quality.h"            // IWYU pragma: export
 #include "mallow/report.h"             // IWYU pragma: export
+#include "mallow/saved_state.h"        // IWYU pragma: export
 #include "mallow/simulation.h"         // IWYU pragma: export
 #include "mallow/solver_config.h"      // IWYU pragma: export
 #include "mallow/vec3.h"               // IWYU pragma: export

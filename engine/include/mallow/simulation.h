@@ -13,6 +13,7 @@
 #include "mallow/errors.h"
 #include "mallow/material.h"
 #include "mallow/report.h"
+#include "mallow/saved_state.h"
 #include "mallow/solver_config.h"
 #include "mallow/vec3.h"
 
@@ -133,6 +134,15 @@ class Simulation {
 
   /// 64 bits of positions and velocities in id order, time and step: equal states have equal hashes.
   std::uint64_t state_hash() const;
+  /// All that later steps depend on; engine/STEP.md lists it. Not the force callback, which no bytes can
+  /// hold.
+  SavedState save() const;
+  /// A simulation that goes on where a saved one stood: with the same bits as that one, by the same build of
+  /// mallow, with any number of threads. Whoever had set a force sets it again before the next step.
+  /// densities() are empty until then, and instruction_level is the machine's best. Throws ConfigError that
+  /// names the chunk where a state is not whole, is of another version, or holds what no simulation could.
+  static Simulation restore(const SavedState& saved, int threads = 0);
+
   /// What runs and what it holds; calls prepare().
   SimulationInfo info();
 

@@ -1,0 +1,222 @@
+#include <sys/mount.h>
+
+#include <chrono>
+#include <csignal>
+#include <map>
+#include <thread>
+
+#include "cli/program.h"
+#include "mallow/files.h"
+
+namespace mallow::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class cli_checkpoint : public CliTest {
+ protected:
+  /// Content of all frames of a run, by name.
+  std::map<std::string, std::string> frames(const std::string& folder) const {
+    std::map<std::string, std::string> contents;
+    for (const char* what : {"particles", "surface", "images"})
+      for (const std::string& name : names_in(folder_ / folder / what))
+        contents[what + ('/' + name)] = read_text(folder_ / folder / what / name);
+    return contents;
+  }
+
+  void expect_same_run(const std::string& folder, const std::string& uninterrupted) const {
+    const auto a = frames(folder), b = frames(uninterrupted);
+    ASSERT_EQ(a.size(), b.size());
+    for (const auto& [name, content] : b) {
+      ASSERT_TRUE(a.contains(name)) << name;
+      EXPECT_TRUE(a.at(name) == content) << name;
+    }
+    const nlohmann::json report = read_json(folder_ / folder / "report.json"),
+                         expected = read_json(folder_ / uninterrupted / "report.json");
+    for (const char* key : {"complete", "error", "scene", "overrides", "frames", "steps", "simulated_time",
+                            "time_step", "reference_updates", "state_hash"})
+      EXPECT_EQ(report.at(key), expected.at(key)) << key;
+    EXPECT_EQ(read_text(folder_ / folder / "scene.toml"), read_text(folder_ / uninterrupted / "scene.toml"));
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ / folder))
+      EXPECT_FALSE(entry.path().filename().string().ends_with(".partial")) << entry.path();
+  }
+
+  Outcome resume(const std::string& folder, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"run", "--resume", at(folder)});
+    return run_mallow(more);
+  }
+
+  void flip_a_bit(const std::string& file) const {
+    std::string bytes = read_text(folder_ / file);
+    bytes[bytes.size() / 2] ^= 4;
+    write(file, bytes);
+  }
+};
+
+bool wait_for(const fs::path& file) {
+  for (int k = 0; k < 20000; ++k) {
+    if (fs::exists(file)) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
+}
+
+TEST_F(cli_checkpoint, interrupted_run_goes_on_to_the_same_bytes) {
+  const std::vector<std::string> what = {"run", scene_, "--frames", "150", "--no-images"};
+  std::vector<std::string> whole = what, halves = what;
+  whole.insert(whole.end(), {"--out", at("whole"), "--threads", "1"});
+  halves.insert(halves.end(), {"--out", at("halves"), "--threads", "2"});
+  ASSERT_EQ(run_mallow(whole).exit_code, 0);
+
+  int threads = 3;
+  Running running(halves);
+  ASSERT_TRUE(wait_for(folder_ / "halves/particles/frame_000002.ply"));
+  running.send(SIGINT);
+  Outcome outcome = running.wait();
+  ASSERT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("to go on: mallow run --resume " + at("halves")), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(read_json(at("halves/report.json")).at("complete"), false);
+
+  // Once more, by the other signal.
+  {
+    Running again({"run", "--resume", at("halves"), "--threads", std::to_string(threads)});
+    ASSERT_TRUE(wait_for(folder_ / "halves/particles/frame_000040.ply"));
+    again.send(SIGTERM);
+    ASSERT_EQ(again.wait().exit_code, 1);
+  }
+  outcome = resume("halves", {"--threads", "1"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << outcome.err;
+  expect_same_run("halves", "whole");
+  EXPECT_EQ(read_json(at("halves/report.json")).at("resumed_after").size(), 2u);
+}
+
+TEST_F(cli_checkpoint, run_of_so_many_steps_goes_on_to_the_same_state) {
+  ASSERT_EQ(run({"--steps", "2000", "--state-out", at("whole.csv")}).exit_code, 0);
+  Running running({"run", scene_, "--steps", "2000", "--out", at("out"), "--no-images", "--no-surface"});
+  ASSERT_TRUE(wait_for(folder_ / "out/particles/frame_000003.ply"));
+  running.send(SIGINT);
+  ASSERT_EQ(running.wait().exit_code, 1);
+  ASSERT_EQ(resume("out", {"--state-out", at("state.csv")}).exit_code, 0);
+  EXPECT_EQ(read_text(at("state.csv")), read_text(at("whole.csv")));
+  EXPECT_EQ(names_in(at("out")), (std::vector<std::string>{"checkpoint", "particles", "report.json",
+                                                           "scene.toml", "summary.html"}));
+}
+
+TEST_F(cli_checkpoint, are_written_every_so_many_frames_and_a_run_can_be_made_longer) {
+  ASSERT_EQ(run({"--out", at("out"), "--checkpoint-every", "2", "--frames", "5"}, true).exit_code, 0);
+  EXPECT_TRUE(fs::exists(at("out/checkpoint")) && fs::exists(at("out/checkpoint.previous")));
+  const Outcome outcome = resume("out", {"--frames", "9"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("frame 4\n"), std::string::npos) << outcome.err;
+  ASSERT_EQ(run({"--out", at("whole"), "--frames", "9"}, true).exit_code, 0);
+  expect_same_run("out", "whole");
+  EXPECT_EQ(frames("out").size(), 30u);
+}
+
+TEST_F(cli_checkpoint, are_written_every_so_many_seconds) {
+  const Outcome outcome = run({"--out", at("out"), "--checkpoint-seconds", "0.001", "--frames", "9"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(at("out/checkpoint")));
+}
+
+TEST_F(cli_checkpoint, that_is_damaged_is_passed_over_for_the_one_before) {
+  ASSERT_EQ(run({"--out", at("whole"), "--frames", "6"}).exit_code, 0);
+  ASSERT_EQ(run({"--out", at("out"), "--frames", "6", "--checkpoint-every", "2"}).exit_code, 0);
+  flip_a_bit("out/checkpoint");
+  fs::remove(at("out/particles/frame_000005.ply"));
+  const Outcome outcome = resume("out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: " + at("out/checkpoint") + ": "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("damaged"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("checkpoint.previous: step 12, frame 4"), std::string::npos) << outcome.err;
+  expect_same_run("out", "whole");
+}
+
+TEST_F(cli_checkpoint, says_what_to_do_where_there_is_none_to_resume) {
+  Outcome outcome = resume("nowhere");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("holds no run of mallow"), std::string::npos) << outcome.err;
+
+  ASSERT_EQ(run({"--out", at("out"), "--no-surface"}).exit_code, 0);
+  outcome = resume("out", {"--frames", "5"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("holds a run that is complete"), std::string::npos) << outcome.err;
+
+  fs::remove(at("out/report.json"));
+  outcome = resume("out");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("holds no checkpoint"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("--overwrite"), std::string::npos) << outcome.err;
+
+  const std::string last = read_text(at("out/particles/frame_000002.ply"));
+  for (const char* file : {"out/checkpoint", "out/checkpoint.previous"}) write(file, "half of a checkpoint");
+  outcome = resume("out");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("checkpoint: "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("checkpoint.previous: "), std::string::npos) << outcome.err;
+  EXPECT_EQ(read_text(at("out/particles/frame_000002.ply")), last);
+}
+
+TEST_F(cli_checkpoint, warns_of_a_scene_that_has_changed_and_moves_as_before) {
+  ASSERT_EQ(run({"--out", at("whole"), "--frames", "6"}).exit_code, 0);
+  ASSERT_EQ(run({"--out", at("out"), "--frames", "3", "--checkpoint-every", "3"}).exit_code, 0);
+  std::string changed = read_text(scene_);
+  changed.replace(changed.find("alpha = 0.7"), 11, "alpha = 0.4");
+  write("changed.toml", changed);
+  const Outcome outcome = run_mallow({"run", at("changed.toml"), "--resume", at("out"), "--frames", "6",
+                                      "--set", "solver.gravity=[0.0, 0.0, -1.0]"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* line : {"material[0].alpha is 0.4, was 0.7: without effect", "solver.gravity is"})
+    EXPECT_NE(outcome.err.find(line), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("time_step"), std::string::npos) << outcome.err;
+  expect_same_run("out", "whole");
+
+  const Outcome same = run_mallow({"run", scene_, "--resume", at("out"), "--frames", "6"});
+  ASSERT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_EQ(same.err.find("warning"), std::string::npos) << same.err;
+}
+
+TEST_F(cli_checkpoint, overwrite_removes_them) {
+  ASSERT_EQ(run({"--out", at("out"), "--frames", "4", "--checkpoint-every", "1"}).exit_code, 0);
+  ASSERT_EQ(run({"--out", at("out"), "--overwrite", "--no-surface"}).exit_code, 0);
+  EXPECT_EQ(names_in(at("out")),
+            (std::vector<std::string>{"particles", "report.json", "scene.toml", "summary.html"}));
+}
+
+TEST_F(cli_checkpoint, options_that_contradict_are_refused) {
+  for (const std::vector<std::string>& bad : std::vector<std::vector<std::string>>{
+           {"run", "--resume", at("out"), "--out", at("other")},
+           {"run", "--resume", at("out"), "--overwrite"},
+           {"run", scene_, "--checkpoint-every", "5"},
+           {"run", scene_, "--out", at("other"), "--checkpoint-every", "0"}}) {
+    const Outcome outcome = run_mallow(bad);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+  }
+}
+
+TEST_F(cli_checkpoint, goes_on_after_a_full_disk_was_given_room) {
+  fs::create_directory(at("disk"));
+  if (::mount("none", at("disk").c_str(), "tmpfs", 0, "size=512k") != 0)
+    GTEST_SKIP() << "only root can mount a small disk";
+  const std::vector<std::string> what = {"--frames", "200", "--no-surface", "--checkpoint-every", "1"};
+  std::vector<std::string> full = what, whole = what;
+  full.insert(full.end(), {"--out", at("disk/out")});
+  whole.insert(whole.end(), {"--out", at("whole")});
+  Outcome outcome = run(full);
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.err.find("No space left"), std::string::npos) << outcome.err;
+  outcome = resume("disk/out");
+  EXPECT_EQ(outcome.exit_code, 1) << "the disk is still full; " << outcome.err;
+
+  ASSERT_EQ(::mount("none", at("disk").c_str(), "tmpfs", MS_REMOUNT, "size=16m"), 0);
+  outcome = resume("disk/out");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_EQ(run(whole).exit_code, 0);
+  expect_same_run("disk/out", "whole");
+  ::umount(at("disk").c_str());
+}
+
+}  // namespace
+}  // namespace mallow::test
