@@ -13,8 +13,8 @@ namespace mallow::scene_file {
 inline constexpr std::size_t k_max_nesting = 16;
 /// Points of one key: "a.b.c" has two.
 inline constexpr std::size_t k_max_key_points = 8;
-/// What a document may hold in all: a value takes one of the characters = , . [ { at least, and 250 bytes of
-/// memory.
+/// What a document may hold in all: a value takes one of the characters = , . [ { at least, and up to 500
+/// bytes of memory.
 inline constexpr std::size_t k_max_values = 1'000'000;
 
 struct DocumentFault {

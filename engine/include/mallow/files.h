@@ -12,17 +12,18 @@
 #include "mallow/body.h"
 #include "mallow/mesh.h"
 
-/// Files of meshes and particles: target mallow::scene. Files may come from strangers. Readers check every count
-/// against the bytes that are left before they allocate, and throw IoError that names file, line (of text), field,
-/// value and what is allowed. They open nothing but the file that they are given, and refuse what is beyond:
+/// Files of meshes and particles: target mallow::scene. Files may come from strangers. Readers check every
+/// count against the bytes that are left before they allocate, and throw IoError that names file, line (of
+/// text), field, value and what is allowed. They open only the file that they are given, and refuse what is
+/// beyond:
 ///
 ///   file                                   2 GiB - 1 byte, a regular file (scene: 16 MiB)
 ///   line of text                           1 MiB
 ///   vertices, triangles, points            100,000,000 each
 ///   corners of a polygon                   1,048,576
 ///   header of a PLY                        1 MiB, 1000 elements and properties
-///   memory                                 the file and 12 bytes for each vertex, normal, velocity, triangle and
-///                                          corner of an STL, twice that while a column grows: 10 GB at the most
+///   memory                                 the file, and 12 bytes for each vertex, normal, velocity,
+///                                          triangle and corner of an STL, twice that while they grow: 10 GB
 ///
 /// and for scenes (mallow/scene.h)
 ///
@@ -78,7 +79,8 @@ void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::sp
 /// USD's text: a Mesh /surface with normals and velocities where the mesh has them, z up, in metres.
 /// Triangles have the primvars group, the material id, where the mesh has any, and displayColor. Takes a
 /// palette and throws as write_mesh_glb() does.
-void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::span<const Appearance> palette);
+void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh,
+                     std::span<const Appearance> palette);
 /// VTK's XML PolyData, triangles with the point arrays Normals, Velocity and Material where the mesh has
 /// them.
 void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh);
