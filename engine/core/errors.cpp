@@ -29,6 +29,9 @@ std::string to_string(const Problem& problem) {
     if (!text.empty()) text += ": ";
     text += *part;
   }
+  // Names and values from files are in it: none may write to a terminal what is no text.
+  for (char& c : text)
+    if ((static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7f) c = '?';
   return text;
 }
 

@@ -54,6 +54,11 @@ void require_readable_size(const std::filesystem::path& file, std::uint64_t byte
   fail_file(file, counted(bytes, "byte") + " are not allowed: at most " + std::to_string(k_max_file_bytes));
 }
 
+std::string why_too_many(std::uint64_t count, const char* nouns) {
+  if (count <= k_max_rows) return {};
+  return "at most " + std::to_string(k_max_rows) + ' ' + nouns + " are allowed";
+}
+
 std::string read_whole_file(const std::filesystem::path& file) {
   // O_NONBLOCK, so that a pipe without a writer is refused below and not waited for.
   const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));

@@ -19,6 +19,10 @@ inline constexpr std::uint64_t k_max_file_bytes = 0x7fffffff;
 /// Corners of one polygon.
 inline constexpr std::uint64_t k_max_polygon_corners = 1u << 20;
 
+/// Vertices, triangles or points of one file: more than anything here simulates, and not more than 1.2 GB a
+/// column.
+inline constexpr std::uint64_t k_max_rows = 100'000'000;
+
 /// Throws IoError about a file as a whole.
 [[noreturn]] void fail_file(const std::filesystem::path& file, std::string message);
 
@@ -34,6 +38,10 @@ std::string read_whole_file(const std::filesystem::path& file);
 
 /// Throws IoError if a file of this size could not be read again.
 void require_readable_size(const std::filesystem::path& file, std::uint64_t bytes);
+
+/// "at most 100000000 triangles are allowed" where there are more, else empty: readers ask before they take
+/// memory.
+std::string why_too_many(std::uint64_t count, const char* nouns);
 
 /// Takes numbers of a known byte order from a span of bytes and never leaves it.
 class ByteReader {

@@ -73,6 +73,7 @@ void read_face(TextReader& text, Mesh& mesh, LargestIndex& largest) {
     if (corners > k_max_polygon_corners) {
       text.fail("f", "at most " + std::to_string(k_max_polygon_corners) + " corners are allowed");
     }
+    require_room(text, mesh.triangles.size() + 1, "triangles");
     mesh.triangles.push_back(triangle);
     triangle[1] = triangle[2];
   }
@@ -89,6 +90,7 @@ Mesh read_obj(const std::filesystem::path& file) {
   while (text.next_line()) {
     const std::string_view keyword = text.word();
     if (keyword == "v") {
+      require_room(text, mesh.vertices.size() + 1, "vertices");
       mesh.vertices.push_back(text.point());
     } else if (keyword == "f") {
       read_face(text, mesh, largest);

@@ -46,6 +46,8 @@ OffCounts read_header(TextReader& text) {
     text.fail("counts", counted(counts.vertices, "vertex row") + " and " + counted(counts.faces, "face") +
                             " are promised, but only " + counted(text.rest().size(), "byte") + " follow");
   }
+  require_room(text, counts.vertices, "vertices");
+  require_room(text, counts.faces, "triangles");
   return counts;
 }
 
@@ -75,6 +77,7 @@ Mesh read_off(const std::filesystem::path& file) {
     std::uint32_t second = vertex();
     for (std::int64_t k = 2; k < corners; ++k) {
       const std::uint32_t third = vertex();
+      require_room(text, mesh.triangles.size() + 1, "triangles");
       mesh.triangles.push_back({first, second, third});
       second = third;
     }

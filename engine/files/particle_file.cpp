@@ -9,7 +9,6 @@
 #include "files/text_reader.h"
 #include "files/valid_columns.h"
 #include "mallow/files.h"
-#include "mallow/simulation.h"
 
 namespace mallow {
 namespace {
@@ -55,11 +54,6 @@ std::int64_t read_step(const PlyReader& ply) {
 }
 
 }  // namespace
-
-ParticleFrame snapshot(const Simulation& simulation) {
-  return {simulation.positions_by_id(), simulation.velocities_by_id(), simulation.groups_by_id(),
-          simulation.time(), simulation.step_count()};
-}
 
 void write_particles(const std::filesystem::path& file, const ParticleFrame& frame) {
   require_valid(frame);

@@ -8,6 +8,8 @@ namespace {
 
 /// Of all elements together: no real file comes near, and names are compared one by one.
 constexpr std::size_t k_max_ply_properties = 1000;
+/// Comments too, which are kept.
+constexpr std::size_t k_max_ply_header_bytes = std::size_t{1} << 20;
 
 constexpr std::pair<std::string_view, PlyType> k_type_names[] = {
     {"char", PlyType::int8},      {"uchar", PlyType::uint8},    {"short", PlyType::int16},
@@ -110,6 +112,7 @@ void require_room_for_rows(const TextReader& text, const PlyHeader& header) {
                 "line " + std::to_string(element.line) + " promises " + counted(element.count, "row") +
                     " of at least " + counted(row, "byte") + ", but " + counted(left, "byte") + " are left");
     }
+    require_room(text, element.count, "rows of an element");
     left -= element.count * row;
   }
 }
@@ -132,12 +135,17 @@ const PlyElement* PlyHeader::find(std::string_view element) const {
 
 PlyHeader read_ply_header(TextReader& text) {
   PlyHeader header;
+  const std::size_t whole = text.rest().size();
   if (!text.next_line() || text.word() != "ply" || !text.word().empty()) {
     text.fail("", "this is not a PLY file: the first line must be 'ply'");
   }
   std::optional<PlyFormat> format;
   std::size_t declared = 0;
   while (text.next_line()) {
+    if (whole - text.rest().size() > k_max_ply_header_bytes) {
+      text.fail("", "the header is too long: at most " + std::to_string(k_max_ply_header_bytes) +
+                        " bytes are allowed");
+    }
     const std::string_view keyword = text.word();
     if (keyword == "comment") {
       header.comments.emplace_back(text.rest_of_line());

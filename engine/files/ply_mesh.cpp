@@ -51,6 +51,7 @@ void read_faces(PlyReader& ply, const PlyElement& element, std::uint64_t vertex_
     std::uint32_t second = vertex(1);
     for (std::size_t k = 2; k < polygon.size(); ++k) {
       const std::uint32_t third = vertex(k);
+      if (mesh.triangles.size() == k_max_rows) ply.fail(why_too_many(k_max_rows + 1, "triangles"));
       mesh.triangles.push_back({first, second, third});
       second = third;
     }

@@ -61,6 +61,7 @@ Body read_csv_points(const std::filesystem::path& file) {
       text.fail("", counted(cells, "value") + " in this row, but the header names " +
                         counted(columns.meaning.size(), "column"));
     }
+    require_room(text, body.positions.size() + 1, "points");
     body.positions.emplace_back(row[0], row[1], row[2]);
     if (columns.velocities) body.velocities.emplace_back(row[3], row[4], row[5]);
   }

@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <bit>
 #include <cctype>
 #include <cmath>
-#include <unordered_map>
+#include <numeric>
+#include <tuple>
+#include <vector>
 
 #include "files/byte_reader.h"
 #include "files/mesh_readers.h"
@@ -15,37 +18,40 @@ constexpr std::uint64_t k_header_bytes = 80;
 constexpr std::uint64_t k_preamble_bytes = k_header_bytes + 4;
 constexpr std::uint64_t k_triangle_bytes = 50;
 
-/// Gives corners with the same coordinates, to the bit, the same vertex.
-class CornerJoin {
+/// Corners of triangles, three each, that become vertices of a mesh.
+class Corners {
  public:
-  explicit CornerJoin(Mesh& mesh) : mesh_(mesh) {}
+  void reserve(std::size_t triangles) { places_.reserve(3 * triangles); }
+  void add(const Vec3& corner) { places_.emplace_back(corner + Vec3::Zero()); }  // -0 becomes 0
 
-  std::uint32_t vertex(const Vec3& corner) {
-    const Vec3 place = corner + Vec3::Zero();  // -0 becomes 0
-    const Bits bits{std::bit_cast<std::uint32_t>(place.x()), std::bit_cast<std::uint32_t>(place.y()),
-                    std::bit_cast<std::uint32_t>(place.z())};
-    const auto [known, is_new] =
-        vertices_.try_emplace(bits, static_cast<std::uint32_t>(mesh_.vertices.size()));
-    if (is_new) mesh_.vertices.push_back(place);
-    return known->second;
+  /// Corners with the same coordinates are one vertex; vertices stand in the order in which they first
+  /// appear. They meet by sorting: whoever writes a file can choose corners that collide in a hash table.
+  Mesh join() const {
+    std::vector<std::uint32_t> sorted(places_.size());
+    std::iota(sorted.begin(), sorted.end(), 0u);
+    std::sort(sorted.begin(), sorted.end(), [this](std::uint32_t a, std::uint32_t b) {
+      const Vec3 &p = places_[a], &q = places_[b];
+      return std::tie(p.x(), p.y(), p.z(), a) < std::tie(q.x(), q.y(), q.z(), b);
+    });
+    std::vector<std::uint32_t> first(places_.size());  // by corner: the first one at its place
+    for (std::size_t k = 0; k < sorted.size(); ++k) {
+      const bool same = k > 0 && places_[sorted[k]] == places_[sorted[k - 1]];
+      first[sorted[k]] = same ? first[sorted[k - 1]] : sorted[k];
+    }
+    Mesh mesh;
+    mesh.triangles.resize(places_.size() / 3);
+    std::vector<std::uint32_t>& vertex = sorted;  // by corner, from here on
+    for (std::uint32_t c = 0; c < vertex.size(); ++c) {
+      const bool is_new = first[c] == c;
+      vertex[c] = is_new ? static_cast<std::uint32_t>(mesh.vertices.size()) : vertex[first[c]];
+      if (is_new) mesh.vertices.push_back(places_[c]);
+      mesh.triangles[c / 3][c % 3] = vertex[c];
+    }
+    return mesh;
   }
 
  private:
-  using Bits = std::array<std::uint32_t, 3>;
-  struct Hash {
-    std::size_t operator()(const Bits& bits) const {
-      std::uint64_t hash = 0;
-      // Multiply by 2^64 over the golden ratio and fold, so that all bits count.
-      for (const std::uint32_t word : bits) {
-        hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 32;
-      }
-      return hash;
-    }
-  };
-
-  Mesh& mesh_;
-  std::unordered_map<Bits, std::uint32_t, Hash> vertices_;
+  std::vector<Vec3> places_;
 };
 
 std::string triangle_and_corner(std::size_t triangle, std::size_t corner) {
@@ -53,9 +59,8 @@ std::string triangle_and_corner(std::size_t triangle, std::size_t corner) {
 }
 
 Mesh read_binary(const std::filesystem::path& file, ByteReader bytes, std::size_t triangles) {
-  Mesh mesh;
-  CornerJoin join(mesh);
-  mesh.triangles.resize(triangles);
+  Corners corners;
+  corners.reserve(triangles);
   constexpr std::uint64_t k_normal_bytes = 12, k_attribute_bytes = 2;
   for (std::size_t t = 0; t < triangles; ++t) {
     bytes.skip(k_normal_bytes);
@@ -69,11 +74,11 @@ Mesh read_binary(const std::filesystem::path& file, ByteReader bytes, std::size_
                               .field = triangle_and_corner(t, k),
                               .message = "its coordinates are not finite numbers"});
       }
-      mesh.triangles[t][k] = join.vertex(corner);
+      corners.add(corner);
     }
     bytes.skip(k_attribute_bytes);
   }
-  return mesh;
+  return corners.join();
 }
 
 bool same_word(std::string_view word, std::string_view lower_case) {
@@ -88,35 +93,32 @@ void require_line(TextReader& text, const char* keyword) {
   if (!same_word(word, keyword)) text.fail("", in_quotes(word) + " is not allowed here: " + keyword);
 }
 
-void read_facet(TextReader& text, Mesh& mesh, CornerJoin& join) {
+void read_facet(TextReader& text, Corners& corners) {
   require_line(text, "outer");
-  std::array<std::uint32_t, 3> triangle{};
-  for (std::uint32_t& corner : triangle) {
+  for (int k = 0; k < 3; ++k) {
     require_line(text, "vertex");
-    corner = join.vertex(text.point());
+    corners.add(text.point());
   }
   require_line(text, "endloop");
   require_line(text, "endfacet");
-  mesh.triangles.push_back(triangle);
 }
 
 Mesh read_ascii(const std::filesystem::path& file, std::string_view content) {
   TextReader text(file, content);
-  Mesh mesh;
-  CornerJoin join(mesh);
+  Corners corners;
   bool inside = false;
   while (text.next_filled_line()) {
     const std::string_view word = text.word();
     if (same_word(word, inside ? "endsolid" : "solid")) {
       inside = !inside;
     } else if (inside && same_word(word, "facet")) {
-      read_facet(text, mesh, join);
+      read_facet(text, corners);
     } else {
       text.fail("", in_quotes(word) + " is not allowed here: " + (inside ? "facet or endsolid" : "solid"));
     }
   }
   if (inside) text.fail("", "the file ends before endsolid");
-  return mesh;
+  return corners.join();
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "files/byte_reader.h"
 #include "mallow/errors.h"
 
 namespace mallow {
@@ -128,6 +129,10 @@ void TextReader::fail(std::string field, std::string message) const {
                         .column = column,
                         .field = std::move(field),
                         .message = std::move(message)});
+}
+
+void require_room(const TextReader& text, std::uint64_t count, const char* nouns) {
+  if (count > k_max_rows) text.fail("", why_too_many(count, nouns));
 }
 
 }  // namespace mallow

@@ -67,4 +67,7 @@ class TextReader {
   int line_number_ = 0;
 };
 
+/// Throws IoError at this place where there are more rows than a file may have.
+void require_room(const TextReader& text, std::uint64_t count, const char* nouns);
+
 }  // namespace mallow

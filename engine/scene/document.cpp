@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <optional>
 #include <tuple>
+
+#include "scene/document_scan.h"
 
 // Compiled into this file, so that programs that link mallow::scene need no toml++ of their own.
 #undef TOML_HEADER_ONLY
@@ -27,45 +28,7 @@ Place place_of(const toml::source_region& region) {
   return {.line = static_cast<int>(region.begin.line), .column = static_cast<int>(region.begin.column)};
 }
 
-/// Where the first character beyond ASCII stands outside of comments and strings of one line, if there is
-/// one. No scene needs one there, and the test for white space of toml++ 3.3 is undefined for most of them.
-std::optional<Place> first_stray_character(std::string_view text) {
-  Place place{.line = 1, .column = 0};
-  constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
-  if (text.starts_with(k_byte_order_mark)) text.remove_prefix(k_byte_order_mark.size());
-  std::string_view closing;  // of the string or comment that is being read; empty outside of both
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    const auto byte = static_cast<unsigned char>(c);
-    const bool continues_character = (byte & 0xC0) == 0x80;
-    if (!continues_character) ++place.column;
-    if (byte >= 0x80 && closing.size() != 1) return place;
-    const bool escapes = closing.starts_with('"');
-    if (escapes && c == '\\' && i + 1 < text.size() && (text[i + 1] == '"' || text[i + 1] == '\\')) {
-      ++i;
-      ++place.column;
-    } else if (!closing.empty() && text.substr(i, closing.size()) == closing) {
-      i += closing.size() - 1;
-      place.column += static_cast<int>(closing.size()) - 1;
-      closing = {};
-    } else if (closing.empty() && c == '#') {
-      closing = "\n";
-    } else if (closing.empty() && (c == '"' || c == '\'')) {
-      const std::string_view quotes = c == '"' ? "\"\"\"" : "'''";
-      closing = text.substr(i, 3) == quotes ? quotes : quotes.substr(0, 1);
-      i += closing.size() - 1;
-      place.column += static_cast<int>(closing.size()) - 1;
-    }
-    if (text[i] == '\n') {
-      if (closing.size() == 1) closing = {};  // a string of one line that was never closed
-      ++place.line;
-      place.column = 0;
-    }
-  }
-  return std::nullopt;
-}
-
-/// toml++ limits nesting to 256 levels, so this recursion is bounded.
+/// find_fault() limits the nesting of values and of keys, so this recursion is bounded.
 Node convert(const toml::node& from) {
   Node to{.place = place_of(from.source()), .value = DateTime{}};
   if (const auto* flag = from.as_boolean()) {
@@ -125,9 +88,7 @@ Node* find(Node& node, std::string_view key) {
 }
 
 Node parse_document(const std::string& text, const std::string& file) {
-  if (const auto place = first_stray_character(text))
-    throw_at(*place, file,
-             "a character beyond ASCII is not allowed: outside of comments and strings of one line");
+  if (auto fault = find_fault(text)) throw_at(fault->place, file, std::move(fault->message));
   try {
     return convert(toml::parse(text, file));
   } catch (const toml::parse_error& error) {
@@ -180,7 +141,7 @@ std::string toml_string(std::string_view text) {
 
 void Problems::add(const Place& place, std::string field, std::string message) {
   ++count_;
-  if (problems_.size() == k_most_reported) return;
+  if (full()) return;
   const bool in_file = place.given_by.empty();
   problems_.push_back({.file = in_file ? file_ : place.given_by,
                        .line = in_file ? place.line : 0,

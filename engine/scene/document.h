@@ -70,6 +70,8 @@ class Problems {
   explicit Problems(std::string file) : file_(std::move(file)) {}
   void add(const Place& place, std::string field, std::string message);
   std::size_t count() const { return count_; }
+  /// Whether what is added from now on is only counted: then nobody needs to know what was meant.
+  bool full() const { return problems_.size() == k_most_reported; }
   /// Throws ConfigError with all of them, if there are any.
   void finish();
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "scene/nearest_name.h"
+#include "scene/scene_fields.h"
 
 namespace mallow::scene_file {
 namespace {
@@ -70,6 +71,10 @@ class ValueReader {
     if (std::any_of(given->begin(), given->end(),
                     [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
       return complain(allowed(field_) + " without control characters");
+    const std::size_t most =
+        std::holds_alternative<std::filesystem::path*>(field_.target) ? k_max_path_bytes : k_max_name_bytes;
+    if (given->size() > most)
+      return complain(allowed(field_) + " of at most " + std::to_string(most) + " bytes");
     *text = *given;
   }
 
@@ -205,7 +210,8 @@ void read_fields(const Node& table, const std::string& path, const FieldTable& f
     if (field != fields.end())
       std::visit(ValueReader(entry.node, join_path(path, entry.key), *field, problems), field->target);
     else if (std::find(also.begin(), also.end(), entry.key) == also.end())
-      problems.add(entry.place, path, "unknown key '" + entry.key + "'" + suggestion(entry.key, known));
+      problems.add(entry.place, path,
+                   "unknown key '" + entry.key + "'" + (problems.full() ? "" : suggestion(entry.key, known)));
   }
   for (const Field& field : fields)
     if (field.required() && !find(table, field.name))

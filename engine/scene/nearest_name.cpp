@@ -27,17 +27,22 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string suggestion(std::string_view name, std::span<const std::string> known) {
   if (known.empty()) return {};
-  // Longer names are no names anyone mistyped; the bound keeps the distance cheap on hostile input.
-  constexpr std::size_t k_longest_name = 128;
-  if (name.size() <= k_longest_name) {
-    const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-      return edit_distance(name, a) < edit_distance(name, b);
-    });
-    // A third of the letters may be wrong, but two in any case (two that changed places count two) unless
-    // that is most of the name.
-    const std::size_t allowed = std::max(std::min<std::size_t>(2, nearest->size() / 2), nearest->size() / 3);
-    if (edit_distance(name, *nearest) <= allowed) return "; did you mean '" + *nearest + "'?";
+  // Longer names are no names anyone mistyped. Both bounds keep hostile input cheap: a scene may have 10,000
+  // names and as many that are not among them.
+  constexpr std::size_t k_longest_name = 64, k_most_compared = 100;
+  const std::string* nearest = nullptr;
+  std::size_t least = 0;
+  for (const std::string& candidate : known.first(std::min(known.size(), k_most_compared))) {
+    if (std::max(name.size(), candidate.size()) > k_longest_name) continue;
+    const std::size_t distance = edit_distance(name, candidate);
+    if (nearest && distance >= least) continue;
+    nearest = &candidate;
+    least = distance;
   }
+  // A third of the letters may be wrong, but two in any case (two that changed places count two) unless that
+  // is most of the name.
+  if (nearest && least <= std::max(std::min<std::size_t>(2, nearest->size() / 2), nearest->size() / 3))
+    return "; did you mean '" + *nearest + "'?";
   constexpr std::size_t k_most_listed = 20;
   std::string text = known.size() == 1 ? "; the only one known is " : "; known are ";
   const std::size_t listed = std::min(known.size(), k_most_listed);

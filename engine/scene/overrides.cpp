@@ -17,9 +17,11 @@ struct Segment {
 
 /// "body[0].box.count[2]" as body, 0, box, count, 2; nothing where that is no path.
 std::optional<std::vector<Segment>> parse_path(std::string_view text) {
+  constexpr std::size_t k_most_segments = 16;  // more than any scene has, and what follows them is recursive
   std::vector<Segment> segments;
   bool key_expected = true;
   while (!text.empty() || key_expected) {
+    if (segments.size() > k_most_segments) return std::nullopt;
     if (key_expected) {
       const std::size_t length = std::min(text.find_first_of(".[]"), text.size());
       if (length == 0) return std::nullopt;

@@ -109,10 +109,17 @@ Simulation build(const Scene& scene, int threads) {
       ids.push_back(simulation.add_group(scene.materials[group.material].material, group.name));
     });
   problems.finish();
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+  std::size_t particles = 0;
+  for (std::size_t i = 0; i < scene.bodies.size() && particles <= k_most_particles; ++i) {
     const SceneBody& body = scene.bodies[i];
     collect(problems, body.line, element_path("body", i) + '.' + key_of(body.source), [&] {
-      simulation.add_body(mallow::sample(body, scene.file, config.threads), ids[groups.of_body[i]]);
+      const Body points = mallow::sample(body, scene.file, config.threads);
+      particles += points.positions.size();
+      if (particles > k_most_particles)
+        throw ConfigError({}, "is one body too many: with it there are " + std::to_string(particles) +
+                                  " particles, and at most " + std::to_string(k_most_particles) +
+                                  " are allowed");
+      simulation.add_body(points, ids[groups.of_body[i]]);
     });
   }
   for (std::size_t i = 0; i < scene.colliders.size(); ++i)

@@ -51,10 +51,14 @@ inline const char* key_of(const Primitive& primitive) {
   return primitive_kinds()[primitive.index()].key;
 }
 
-/// Particles of one body, at most: what 32-bit ids and the memory of one machine leave room for.
+/// Particles of one body and of all together, at most: what 32-bit ids and the memory of one machine leave
+/// room for.
 inline constexpr int k_most_particles = 100'000'000;
 /// Bodies, materials, colliders and pins of a scene, at most of each.
 inline constexpr std::size_t k_most_entries = 10'000;
+/// Bytes of a name and of a path: they come back in messages, of which one scene may cause a thousand.
+inline constexpr std::size_t k_max_name_bytes = 256;
+inline constexpr std::size_t k_max_path_bytes = 4096;
 /// Groups of a scene, at most: as many as a Simulation takes.
 inline constexpr std::size_t k_most_groups = 256;
 /// Particles of a body written as implicit = "moai", those of [TK] Fig. 5(a).

@@ -15,11 +15,21 @@ namespace mallow {
 namespace scene_file {
 namespace {
 
+/// How many particles a body says it has; where it says their spacing, or leaves it to a file, at least 1.
+struct DeclaredParticles {
+  double operator()(const Lattice& lattice) const {
+    return 1.0 * lattice.count[0] * lattice.count[1] * lattice.count[2];
+  }
+  double operator()(const PointsSource&) const { return 1; }
+  double operator()(const auto& source) const { return source.sampling.count.value_or(1); }
+};
+
 /// Turns a document into a scene and collects what is wrong with it.
 class SceneReader {
  public:
-  SceneReader(const Node& root, const std::filesystem::path& file, Problems& problems)
-      : root_(root), folder_(file.parent_path()), problems_(problems) {
+  SceneReader(const Node& root, const std::filesystem::path& file, const SceneReadOptions& options,
+              Problems& problems)
+      : root_(root), files_(file, options.allow_outside_paths), problems_(problems) {
     scene_.file = file;
   }
 
@@ -37,6 +47,7 @@ class SceneReader {
     read_section("render", fields(scene_.render));
     check_materials();
     check_groups();
+    check_particles();
     return std::move(scene_);
   }
 
@@ -64,6 +75,7 @@ class SceneReader {
       return problems_.add(node->place, key,
                            not_allowed(describe(*node), "a list of " + std::to_string(at_least) + " to " +
                                                             std::to_string(k_most_entries)));
+    lists_[key] = list;
     for (std::size_t i = 0; i < list->size(); ++i) (this->*read_element)((*list)[i], element_path(key, i));
   }
 
@@ -75,7 +87,7 @@ class SceneReader {
     SceneBody& body = scene_.bodies.emplace_back();
     body.line = node.place.line;
     read_fields(node, path, fields(body), source_keys(), problems_);
-    read_source(node, path, folder_, body.source, problems_);
+    read_source(node, path, files_, body.source, problems_);
   }
 
   void read_collider(const Node& node, const std::string& path) {
@@ -120,7 +132,7 @@ class SceneReader {
         used[material->second] = true;
       else
         problems_.add(place_of("body", i, "material"), element_path("body", i) + ".material",
-                      "unknown material '" + name + "'" + suggestion(name, known));
+                      "unknown material '" + name + "'" + (problems_.full() ? "" : suggestion(name, known)));
     }
     if (scene_.bodies.empty()) return;
     for (const auto& [name, i] : index_of)
@@ -151,17 +163,35 @@ class SceneReader {
     }
   }
 
+  /// Bodies that say how many particles they have do not have too many together; of the others build() finds
+  /// out.
+  void check_particles() {
+    double particles = 0;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      const double own = std::visit(DeclaredParticles{}, scene_.bodies[i].source);
+      // A body that is too large by itself has been told so.
+      if (own > k_most_particles) return;
+      particles += own;
+      if (particles <= k_most_particles) continue;
+      return problems_.add(place_of("body", i, ""), element_path("body", i),
+                           "is one body too many: with it there are more than " +
+                               std::to_string(k_most_particles) + " particles in the scene");
+    }
+  }
+
   /// Of a value in a list that was read, or of its table where it is not given.
   const Place& place_of(const char* list, std::size_t index, const char* key) const {
-    const Node& table = (*find(root_, list)->get_if<Array>())[index];
+    const Node& table = (*lists_.at(list))[index];
     const Node* value = find(table, key);
     return value ? value->place : table.place;
   }
 
   const Node& root_;
-  std::filesystem::path folder_;
+  SceneFiles files_;
   Problems& problems_;
   Scene scene_;
+  /// Those that were read. Looked up in the document for every problem, they would cost its length each time.
+  std::map<std::string_view, const Array*> lists_;
 };
 
 /// Throws ConfigError where the file cannot be read or is larger than any scene.
@@ -188,17 +218,18 @@ std::string read_text(const std::filesystem::path& file) {
 }  // namespace
 }  // namespace scene_file
 
-Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  return parse_scene(scene_file::read_text(file), file, overrides);
+Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides,
+                 const SceneReadOptions& options) {
+  return parse_scene(scene_file::read_text(file), file, overrides, options);
 }
 
 Scene parse_scene(const std::string& text, const std::filesystem::path& file,
-                  std::span<const std::string> overrides) {
+                  std::span<const std::string> overrides, const SceneReadOptions& options) {
   using namespace scene_file;
   Node root = parse_document(text, file.string());
   Problems problems(file.string());
   for (const std::string& override_text : overrides) apply_override(root, override_text, problems);
-  Scene scene = SceneReader(root, file, problems).read();
+  Scene scene = SceneReader(root, file, options, problems).read();
   problems.finish();
   return scene;
 }

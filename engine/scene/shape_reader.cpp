@@ -68,9 +68,9 @@ const Entry* only_one(const Node& node, const std::string& path, const std::vect
 /// Checks of one value against another, or against what is on the disk.
 class ShapeCheck {
  public:
-  ShapeCheck(const Node& table, const std::string& path, const std::filesystem::path& folder,
-             Problems& problems)
-      : table_(table), path_(path), folder_(folder), problems_(problems) {}
+  /// files: those that the shape may name; nullptr where it names none.
+  ShapeCheck(const Node& table, const std::string& path, const SceneFiles* files, Problems& problems)
+      : table_(table), path_(path), files_(files), problems_(problems) {}
 
   void operator()(const Lattice& lattice) const {
     double particles = 1;
@@ -134,7 +134,14 @@ class ShapeCheck {
   }
 
   void check_file(const std::filesystem::path& name) const {
-    const std::filesystem::path file = folder_ / name;
+    // Whoever types a name may well mean another place; the scene's author may not. What lies there is not
+    // said.
+    const bool typed = !place_of("file").given_by.empty();
+    if (!typed && !files_->may_name(name))
+      return complain("file", toml_string(name.string()),
+                      "a file below " + files_->root().string() +
+                          ", unless paths outside are allowed (--allow-outside-paths)");
+    const std::filesystem::path file = files_->full_name(name);
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
     if (std::filesystem::is_regular_file(status)) return;
@@ -154,14 +161,14 @@ class ShapeCheck {
 
   const Node& table_;
   const std::string& path_;
-  const std::filesystem::path& folder_;
+  const SceneFiles* files_;
   Problems& problems_;
 };
 
 Primitive read_primitive(const Entry& entry, const std::string& path, Problems& problems) {
   Primitive primitive = kind_of(primitive_kinds(), entry.key);
   if (read_whole(entry.node, path, fields(primitive), {}, problems))
-    std::visit(ShapeCheck(entry.node, path, {}, problems), primitive);
+    std::visit(ShapeCheck(entry.node, path, nullptr, problems), primitive);
   return primitive;
 }
 
@@ -199,12 +206,12 @@ const std::vector<std::string>& shape_keys() {
   return keys;
 }
 
-void read_source(const Node& body, const std::string& body_path, const std::filesystem::path& folder,
-                 BodySource& source, Problems& problems) {
+void read_source(const Node& body, const std::string& body_path, const SceneFiles& files, BodySource& source,
+                 Problems& problems) {
   const Entry* entry = only_one(body, body_path, source_keys(), problems);
   if (!entry) return;
   const std::string path = join_path(body_path, entry->key);
-  const ShapeCheck check(entry->node, path, folder, problems);
+  const ShapeCheck check(entry->node, path, &files, problems);
   source = kind_of(source_kinds(), entry->key);
   ImplicitSource* implicit = std::get_if<ImplicitSource>(&source);
   if (const std::string* name = entry->node.get_if<std::string>(); implicit && name) {

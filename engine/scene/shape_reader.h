@@ -1,11 +1,11 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "scene/document.h"
 #include "scene/scene_fields.h"
+#include "scene/scene_files.h"
 
 /// The parts of bodies and colliders that say what shape they have: one key of several, with a table of its
 /// own.
@@ -14,9 +14,9 @@ namespace mallow::scene_file {
 const std::vector<std::string>& source_keys();  ///< of a body
 const std::vector<std::string>& shape_keys();   ///< of a collider
 
-/// body: the table of a [[body]]; folder: what file names in it are relative to.
-void read_source(const Node& body, const std::string& path, const std::filesystem::path& folder,
-                 BodySource& source, Problems& problems);
+/// body: the table of a [[body]]; files: those that it may name.
+void read_source(const Node& body, const std::string& path, const SceneFiles& files, BodySource& source,
+                 Problems& problems);
 /// table: that of a [[collider]].
 void read_shape(const Node& table, const std::string& path, Collider& collider, Problems& problems);
 

@@ -80,10 +80,29 @@ TEST_F(cli_cache, scene_of_the_cache_runs_from_where_it_is) {
   ASSERT_EQ(run_mallow(first).exit_code, 0);
   std::vector<std::string> second = {"run", at("deep/er/out/scene.toml"), "--out", at("out")};
   second.insert(second.end(), what.begin(), what.end());
+  // The points lie outside of the cache's folder, which a scene may name only where that is allowed.
+  const Outcome refused = run_mallow(second);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("body[0].points.file: \"../../../points.csv\" is not allowed: a file below"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_NE(refused.err.find("--allow-outside-paths"), std::string::npos) << refused.err;
+  second.emplace_back("--allow-outside-paths");
   const Outcome outcome = run_mallow(second);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(read_json(at("deep/er/out/report.json")).at("state_hash"),
             read_json(at("out/report.json")).at("state_hash"));
+}
+
+TEST_F(cli_cache, with_a_report_that_is_none_is_refused) {
+  ASSERT_EQ(run({"--out", at("out"), "--no-surface"}).exit_code, 0);
+  for (const std::string& report :
+       {std::string("{"), std::string(1'000'000, '['), std::string("{\"groups\": 3}")}) {
+    write("out/report.json", report);
+    const Outcome outcome = run_mallow({"surface", at("out")});
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find("report.json: "), std::string::npos) << outcome.err;
+  }
 }
 
 TEST_F(cli_cache, a_folder_in_use_is_left_alone) {

@@ -117,6 +117,12 @@ INSTANTIATE_TEST_SUITE_P(
                 5, "'x' is given twice"},
         Hostile{"negative_count.ply", "ply\nformat ascii 1.0\nelement vertex -1\n", 3, "'-1' is not allowed"},
         Hostile{"no_end.ply", "ply\nformat ascii 1.0\nelement vertex 1\n", 3, "ends before end_header"},
+        Hostile{"long_header.ply",
+                "ply\nformat ascii 1.0\ncomment " + std::string(600'000, 'a') + "\ncomment " +
+                    std::string(600'000, 'a') + "\n",
+                4, "the header is too long: at most 1048576 bytes"},
+        Hostile{"escape.ply", "ply\nformat ascii 1.0\nelement \x1b[31m 0\nend_header\n", 0,
+                "there is: ?[31m"},
         Hostile{"huge.ply", huge_binary_ply("4000000000"), 9,
                 "line 3 promises 4000000000 rows of at least 12 bytes, but 64 bytes are left"},
         Hostile{"overflow.ply", huge_binary_ply("9223372036854775807"), 9,
@@ -219,6 +225,17 @@ TEST(hostile_file, one_beyond_the_size_limit_is_refused_unread) {
   std::filesystem::resize_file(file, k_max_file_bytes + 1);  // sparse: takes no room
   EXPECT_EQ(io_problem([&] { read_mesh(file); }).message,
             "2147483648 bytes are not allowed: at most 2147483647");
+}
+
+TEST(hostile_file, one_with_more_rows_than_the_limit_is_refused_before_they_take_memory) {
+  const TemporaryFolder folder;
+  const auto file = folder.file(
+      "many.ply",
+      "ply\nformat binary_little_endian 1.0\nelement vertex 100000001\nproperty uchar x\nproperty uchar y\n"
+      "property uchar z\nelement face 0\n" +
+          k_face_list + "end_header\n");
+  std::filesystem::resize_file(file, 301'000'000);  // sparse: takes no room
+  EXPECT_EQ(io_problem([&] { read_mesh(file); }).message, "at most 100000000 rows of an element are allowed");
 }
 
 TEST(hostile_file, one_without_permission_is_refused_with_the_reason) {

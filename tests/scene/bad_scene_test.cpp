@@ -1,3 +1,6 @@
+#include <chrono>
+
+#include "files/text_reader.h"
 #include "scene/scene_fixture.h"
 
 namespace mallow {
@@ -265,6 +268,83 @@ TEST_F(bad_scene, limits_the_size_of_what_is_read) {
   EXPECT_EQ(problems(many),
             std::vector<std::string>{
                 "scene.toml:5:1: body: an array of 10001 is not allowed: a list of 1 to 10000"});
+}
+
+TEST_F(bad_scene, limits_what_is_within_what) {
+  const auto keys = [](std::size_t count) {
+    std::string text = "a";
+    for (std::size_t i = 1; i < count; ++i) text += ".a";
+    return text;
+  };
+  const std::string too_many_keys = "keys within keys are not allowed here: at most 9";
+  // So many that what goes into them by recursion would leave no stack.
+  for (const std::size_t count : {std::size_t{10}, std::size_t{400'000}}) {
+    EXPECT_EQ(problems(keys(count) + " = 1\n"),
+              std::vector<std::string>{"scene.toml:1:18: " + too_many_keys});
+    EXPECT_EQ(problems("[" + keys(count) + "]\n"),
+              std::vector<std::string>{"scene.toml:1:19: " + too_many_keys});
+    // The last quotes belong to the string, which ends with the three that stand before the comma.
+    EXPECT_EQ(problems("x = { k = \"\"\"k\"\"\"\"\", " + keys(count) + " = 1 }\n"),
+              std::vector<std::string>{"scene.toml:1:39: " + too_many_keys});
+    EXPECT_EQ(problems("x = " + std::string(7 + count, '[')),
+              std::vector<std::string>{
+                  "scene.toml:1:21: tables and lists within each other are not allowed here: at most 16"});
+  }
+  EXPECT_EQ(
+      problems(keys(9) + " = 1\n").back(),
+      "scene.toml:1:1: unknown key 'a'; known are solver, material, body, collider, pin, surface, run and "
+      "render");
+  EXPECT_EQ(problems("a = '" + std::string(k_max_line_bytes, 'a') + "'\n"),
+            std::vector<std::string>{"scene.toml:1:1048578: the line is too long: at most 1048576 bytes are "
+                                     "allowed"});
+  std::string many = "a = [";
+  for (int i = 0; i < 1'000'000; ++i) many += i % 1000 == 0 ? "0,\n" : "0,";
+  EXPECT_EQ(problems(many + "]\n").back().substr(0, 40), "scene.toml:1001:1996: the file has too m");
+}
+
+TEST_F(bad_scene, limits_names_and_paths) {
+  const std::string name(257, 'n'), path(4097, 'p');
+  const auto found =
+      problems("[solver]\nsupport_radius = 2.0\n[[material]]\nname = \"" + name +
+               "\"\n[[body]]\nmaterial = \"" + name + "\"\nmesh = { file = \"" + path + "\", count = 9 }\n");
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_TRUE(found[0].ends_with(" (a string) is not allowed: a string of at most 256 bytes")) << found[0];
+  EXPECT_TRUE(found[2].ends_with(" is not allowed: the name of a file, a string of at most 4096 bytes"))
+      << found[2];
+}
+
+TEST_F(bad_scene, has_at_most_100_million_particles) {
+  const std::string body =
+      "[[body]]\nmaterial = \"jelly\"\nbox = { count = [1000, 1000, 50], spacing = 1.0 }\n";
+  EXPECT_EQ(problems(k_small_scene + body), std::vector<std::string>{});
+  EXPECT_EQ(
+      problems(k_small_scene + body + body),
+      std::vector<std::string>{"scene.toml:11:1: body[2]: is one body too many: with it there are more than "
+                               "100000000 particles in the scene"});
+}
+
+/// Each of these once took minutes, or gigabytes, or both.
+TEST_F(bad_scene, costs_little_however_much_is_wrong) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::string solver = "[solver]\nsupport_radius = 2.0\n";
+  const std::string box = "box = { count = [2, 2, 2], spacing = 1.0 }\n";
+  std::string unknown = solver;
+  for (int i = 0; i < 10'000; ++i)
+    unknown += "[[material]]\nname = \"" + std::string(50, 'm') + std::to_string(i) + "\"\n";
+  for (int i = 0; i < 10'000; ++i)
+    unknown += "[[body]]\nmaterial = \"" + std::string(50, 'n') + std::to_string(i) + "\"\n" + box;
+  EXPECT_EQ(problems(unknown).size(), 1001u);
+
+  std::string before;
+  for (int i = 0; i < 200'000; ++i) before += "key_" + std::to_string(i) + " = 1\n";
+  before += solver + "[[material]]\nname = \"jelly\"\n";
+  for (int i = 0; i < 10'000; ++i) before += "[[body]]\nmaterial = \"x\"\n" + box;
+  EXPECT_EQ(problems(before).size(), 1001u);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+}
+
+TEST_F(bad_scene, writes_no_control_characters_to_a_terminal) {
+  EXPECT_EQ(problems("\"\\u001b[31m\" = 1\n").back().substr(0, 37), "scene.toml:1:1: unknown key '?[31m'; ");
 }
 
 TEST_F(bad_scene, has_at_most_256_groups) {

@@ -27,7 +27,8 @@ void check_overrides(std::span<const std::string> overrides, const std::string& 
 CachedRun open_cached_run(const CachedRunOptions& options, const std::string& section) {
   check_overrides(options.overrides, section);
   Cache cache = Cache::open(options.folder);
-  Scene scene = read_scene(cache.scene_file(), options.overrides);
+  // A cache stands anywhere, its scene's files where they were; from here on none of them is read.
+  Scene scene = read_scene(cache.scene_file(), options.overrides, {.allow_outside_paths = true});
   nlohmann::ordered_json report = read_report(cache.report_file());
   std::vector<float> spacings = group_spacings(report, cache.report_file());
   if (spacings.size() != group_materials(scene).size()) {

@@ -44,7 +44,7 @@ CheckpointedRun load(const fs::path& file, const Cache& cache, int threads) try 
   const SavedState state = read_checkpoint(file);
   RunReport report;
   report.set_progress(nlohmann::ordered_json::parse(require_chunk(state, k_progress)));
-  return {parse_scene(require_chunk(state, k_scene), cache.scene_file()),
+  return {parse_scene(require_chunk(state, k_scene), cache.scene_file(), {}, {.allow_outside_paths = true}),
           read_plan(require_chunk(state, k_plan)), std::move(report), Simulation::restore(state, threads)};
 } catch (const ConfigError& error) {
   throw IoError({file.string(), 0, 0, "", error.what()});

@@ -131,6 +131,7 @@ Run resume(const RunOptions& options, int threads) {
   CheckpointedRun saved = load_newest_checkpoint(cache, threads);
   SceneOptions now = options.scene;
   if (now.file.empty()) now.file = cache.scene_file().string();
+  now.allow_outside_paths = true;  // what it names is not read: the particles are there
   take_changes(cache.moved_here(read_scene(now)), saved.scene);
   if (options.frames) saved.scene.run.frames = *options.frames;
 

@@ -1,8 +1,10 @@
 #include "mallow/run_report.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <fstream>
+#include <system_error>
 
 #include "mallow/errors.h"
 #include "mallow/files.h"
@@ -144,8 +146,19 @@ std::string hash_text(std::uint64_t hash) {
 nlohmann::ordered_json read_report(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) throw IoError({file.string(), 0, 0, "", "cannot be read"});
+  // A report has 4 levels, and as a rule some kilobytes; it is written again by recursion.
+  constexpr int k_most_levels = 16;
+  constexpr std::uintmax_t k_most_bytes = std::uintmax_t{256} << 20;
+  std::error_code unknown_size;
+  if (std::filesystem::file_size(file, unknown_size) > k_most_bytes && !unknown_size)
+    throw IoError({file.string(), 0, 0, "", "is too large for a report: at most 256 MiB are allowed"});
+  const auto limit = [&](int depth, nlohmann::ordered_json::parse_event_t, nlohmann::ordered_json&) {
+    if (depth > k_most_levels)
+      throw IoError({file.string(), 0, 0, "", "has lists within lists: at most 16 levels are allowed"});
+    return true;
+  };
   try {
-    return nlohmann::ordered_json::parse(stream);
+    return nlohmann::ordered_json::parse(stream, limit);
   } catch (const nlohmann::ordered_json::exception& error) {
     throw IoError({file.string(), 0, 0, "", error.what()});
   }

@@ -16,10 +16,15 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
       .add_option("--quality", options.quality,
                   "Turn the scene's settings between speed and accuracy: realtime, balanced, accurate")
       ->transform(CLI::CheckedTransformer(names));
+  command.add_flag(
+      "--allow-outside-paths", options.allow_outside_paths,
+      "Meshes and points that the scene names may lie outside of its folder; give it for scenes that you "
+      "trust");
 }
 
 Scene read_scene(const SceneOptions& options) {
-  const Scene scene = mallow::read_scene(options.file, options.overrides);
+  const Scene scene = mallow::read_scene(options.file, options.overrides,
+                                         {.allow_outside_paths = options.allow_outside_paths});
   return options.quality ? with_quality(scene, *options.quality) : scene;
 }
 

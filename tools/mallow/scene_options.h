@@ -14,8 +14,9 @@ struct SceneOptions {
   std::string file;
   std::vector<std::string> overrides;
   std::optional<Quality> quality;  ///< turns what file and overrides say
+  bool allow_outside_paths = false;
 };
-/// SCENE, --set and --quality.
+/// SCENE, --set, --quality and --allow-outside-paths.
 void add_scene_options(CLI::App& command, SceneOptions& options);
 Scene read_scene(const SceneOptions& options);
 

@@ -13,9 +13,29 @@
 #include "mallow/mesh.h"
 #include "mallow/saved_state.h"
 
-/// Files of meshes, particles and checkpoints: target mallow::scene. Readers check every count against the
-/// bytes that are left before they allocate, and throw IoError that names file, line (of text), field, value
-/// and what is allowed.
+/// Files of meshes, particles and checkpoints: target mallow::scene. Files may come from strangers. Readers
+/// check every count against the bytes that are left before they allocate, and throw IoError that names file, line (of
+/// text), field, value and what is allowed. They open only the file that they are given, and refuse what is
+/// beyond:
+///
+///   file                                   2 GiB - 1 byte, a regular file (scene: 16 MiB)
+///   line of text                           1 MiB
+///   vertices, triangles, points            100,000,000 each
+///   corners of a polygon                   1,048,576
+///   header of a PLY                        1 MiB, 1000 elements and properties
+///   memory                                 the file, and 12 bytes for each vertex, normal, velocity,
+///                                          triangle and corner of an STL, twice that while they grow: 10 GB
+///
+/// and for scenes (mallow/scene.h)
+///
+///   tables and lists within each other     16
+///   keys within keys (a.b.c)               9
+///   values                                 1,000,000, which take 500 MB at the most
+///   names; paths                           256 bytes; 4096 bytes
+///   materials, bodies, colliders, pins     10,000 each; 256 groups
+///   particles                              100,000,000 in all
+///   paths of meshes and points             in the scene's folder, see SceneReadOptions
+///   problems that are listed               1000
 namespace mallow {
 
 class Simulation;

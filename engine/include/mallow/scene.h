@@ -89,12 +89,21 @@ struct Scene {
   RenderConfig render;
 };
 
+/// How a scene is read.
+struct SceneReadOptions {
+  /// The files that it names may lie anywhere. Left out: in its folder or below, or below the nearest folder
+  /// above it that holds a file .mallow-root, once `..` and links are followed. Names in overrides always
+  /// may.
+  bool allow_outside_paths = false;
+};
+
 /// Reads a scene. Each override is "section.key=value" ("solver.time_step=0.1", "material[0].alpha=0.5") with
 /// the value in TOML. Throws ConfigError with all problems at once, each with file, line and column.
-Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {},
+                 const SceneReadOptions& options = {});
 /// The same of a text that is there already; `file` is what messages name and what paths are relative to.
 Scene parse_scene(const std::string& text, const std::filesystem::path& file,
-                  std::span<const std::string> overrides = {});
+                  std::span<const std::string> overrides = {}, const SceneReadOptions& options = {});
 /// The scene as a TOML document with every value in it, defaults too; read_scene() gives the same scene back.
 std::string print_scene(const Scene& scene);
 /// Every key a scene file may hold: one line each with default, range, unit and meaning.
