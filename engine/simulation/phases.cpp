@@ -106,6 +106,11 @@ void call_force(Simulation::State& state) {
   a.resize(n);
   for (std::size_t axis = 0; axis < 3; ++axis) std::fill_n(a.axis(axis), n, 0.0f);
   const VectorColumn &x = state.seen_positions(), &v = state.store.velocity;
+  struct Calling {
+    bool& flag;
+    explicit Calling(bool& f) : flag(f) { flag = true; }
+    ~Calling() { flag = false; }
+  } const calling(state.in_force_callback);
   state.force({state.time, state.store.id.span(), {x.x(), n, x.stride()}, {v.x(), n, v.stride()}},
               {a.x(), n, a.stride()});
 }

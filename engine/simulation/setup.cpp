@@ -112,6 +112,11 @@ void describe_groups(Simulation::State& state) {
   sph.grid.spacing = static_cast<float>(std::cbrt(volume / static_cast<double>(state.store.size())));
 }
 
+void Simulation::State::refuse_in_callback() const {
+  if (in_force_callback)
+    throw ConfigError("force", "a callback may not change or step the simulation that calls it");
+}
+
 Simulation::Simulation(const SolverConfig& config) : state_(std::make_unique<State>()) {
   Checks checks;
   check(config, checks);
@@ -129,6 +134,7 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 GroupId Simulation::add_group(const Material& material, std::string name) {
+  state_->refuse_in_callback();
   Checks checks;
   check(material, checks);
   checks.finish();
@@ -148,6 +154,7 @@ GroupId Simulation::add_group(const Material& material, std::string name) {
 }
 
 void Simulation::add_body(const Body& body, GroupId id) {
+  state_->refuse_in_callback();
   State& s = *state_;
   Group& group = checked(s.groups, id);
   Checks checks;
@@ -188,6 +195,7 @@ GroupId Simulation::add_body(const Body& body, const Material& material, std::st
 }
 
 ColliderId Simulation::add_collider(const Collider& collider) {
+  state_->refuse_in_callback();
   Checks checks;
   check(collider, checks);
   checks.finish();
@@ -215,6 +223,7 @@ PinId Simulation::pin(const Aabb& region, const Vec3& velocity) {
 }
 
 PinId Simulation::pin(std::span<const ParticleId> ids, const Vec3& velocity) {
+  state_->refuse_in_callback();
   State& s = *state_;
   Checks checks;
   checks.vector("pin.velocity", velocity);
@@ -234,11 +243,13 @@ PinId Simulation::pin(std::span<const ParticleId> ids, const Vec3& velocity) {
 }
 
 void Simulation::set_force(ForceCallback callback) {
+  state_->refuse_in_callback();
   state_->force = std::move(callback);
   if (!state_->force) state_->user_acceleration.release();
 }
 
 void Simulation::set_alpha(GroupId id, const AlphaSchedule& alpha) {
+  state_->refuse_in_callback();
   Group& group = checked(state_->groups, id);
   Checks checks;
   check(alpha, checks);
@@ -263,6 +274,7 @@ void Simulation::set_alpha(GroupId id, const AlphaSchedule& alpha) {
 }
 
 void Simulation::set_velocity(ColliderId id, const Vec3& velocity) {
+  state_->refuse_in_callback();
   Checks checks;
   checks.vector("collider.velocity", velocity);
   if (static_cast<std::size_t>(id) >= state_->colliders.size())
@@ -273,6 +285,7 @@ void Simulation::set_velocity(ColliderId id, const Vec3& velocity) {
 }
 
 void Simulation::set_velocity(PinId id, const Vec3& velocity) {
+  state_->refuse_in_callback();
   Checks checks;
   checks.vector("pin.velocity", velocity);
   if (static_cast<std::size_t>(id) >= state_->pin_velocities.size())
@@ -282,6 +295,7 @@ void Simulation::set_velocity(PinId id, const Vec3& velocity) {
 }
 
 void Simulation::prepare() {
+  state_->refuse_in_callback();
   State& s = *state_;
   if (s.prepared) return;
   Checks checks;

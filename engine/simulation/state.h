@@ -81,6 +81,10 @@ struct Simulation::State {
   /// The colliders that contact reads.
   std::span<Collider> contact_colliders() { return is_far() ? near_colliders : colliders; }
 
+  bool in_force_callback = false;
+  /// Throws ConfigError in a force callback, which sees a step half done: nothing may change then.
+  void refuse_in_callback() const;
+
   /// Some acceleration of SPH counts: pairs within a group that is not purely elastic, or between groups.
   bool needs_sph() const;
   const VectorColumn* cross_group() const {

@@ -67,12 +67,14 @@ struct ForceInput {
   VectorView positions;   ///< [m]
   VectorView velocities;  ///< [m/s]
 };
-/// Adds accelerations [m/s²] to what it is given; called once a step, before anything else moves.
+/// Adds accelerations [m/s²] to what it is given; called once a step, before anything else moves. It may not
+/// change or step the simulation that calls it: that throws ConfigError. What it throws ends the step, and the
+/// state stays what it was before it.
 using ForceCallback = std::function<void(const ForceInput&, VectorSpan accelerations)>;
 
 /// A scene in motion: SPH and shape matching blended by alpha [TK]. Results depend on the binary and on what
 /// was added, never on the number of threads. One thread may use an object at a time; different objects are
-/// independent.
+/// independent. One that was moved from may only be assigned to or destroyed.
 class Simulation {
  public:
   /// Throws ConfigError with every value that is out of range.

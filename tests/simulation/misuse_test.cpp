@@ -1,0 +1,135 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "mallow/mallow.h"
+
+namespace mallow {
+namespace {
+
+Simulation scene(int threads = 2) {
+  SolverConfig config;
+  config.support_radius = 2.0f;
+  config.update_interval = 10;
+  config.threads = threads;
+  Simulation s(config);
+  s.add_body(sample(Lattice{.count = {6, 6, 6}, .corner = {0, 0, 1}}),
+             Material{.alpha = 0.5f, .update_threshold = 0.1f});
+  s.add_collider({.shape = Plane{}});
+  return s;
+}
+
+/// What a ConfigError thrown by `act` says; empty where none was thrown.
+std::string refusal(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(misuse, an_empty_simulation_cannot_be_stepped_and_can_be_filled_later) {
+  Simulation s({.support_radius = 2.0f});
+  EXPECT_NE(refusal([&] { s.step(); }).find("no particles"), std::string::npos);
+  const GroupId group = s.add_group({});
+  EXPECT_NE(refusal([&] { s.step(); }).find("has no particles"), std::string::npos);
+  s.add_body(sample(Lattice{.count = {2, 2, 2}}), group);
+  s.step();
+  EXPECT_EQ(s.step_count(), 1);
+}
+
+TEST(misuse, names_that_do_not_exist_are_refused) {
+  Simulation s = scene();
+  const std::uint64_t before = s.state_hash();
+  EXPECT_NE(refusal([&] { s.set_alpha(GroupId{1}, 0.1f); }).find("no group 1"), std::string::npos);
+  EXPECT_NE(refusal([&] { s.add_body(sample(Lattice{}), GroupId{7}); }).find("no group 7"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { s.rows(GroupId{1}); }).find("no group 1"), std::string::npos);
+  EXPECT_NE(refusal([&] {
+              s.set_velocity(ColliderId{1}, {0, 0, 0});
+            }).find("no collider 1"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { s.set_velocity(PinId{0}, {0, 0, 0}); }).find("no pin 0"), std::string::npos);
+  const std::vector<ParticleId> ids{0, 216};
+  EXPECT_NE(refusal([&] { s.pin(ids); }).find("no particle 216"), std::string::npos);
+  EXPECT_EQ(s.state_hash(), before);
+}
+
+TEST(misuse, a_force_callback_may_not_change_or_step_what_calls_it) {
+  Simulation s = scene(), undisturbed = scene();
+  std::vector<std::string> refusals;
+  s.set_force([&](const ForceInput&, VectorSpan) {
+    refusals = {refusal([&] { s.step(); }),
+                refusal([&] { s.prepare(); }),
+                refusal([&] {
+                  s.add_body(sample(Lattice{.corner = {50, 0, 0}}), GroupId{0});
+                }),
+                refusal([&] { s.add_group({}); }),
+                refusal([&] { s.add_collider({}); }),
+                refusal([&] { s.pin(std::vector<ParticleId>{0}); }),
+                refusal([&] { s.set_alpha(GroupId{0}, 1.0f); }),
+                refusal([&] {
+                  s.set_velocity(ColliderId{0}, {1, 0, 0});
+                }),
+                refusal([&] { s.set_force({}); })};
+  });
+  for (int k = 0; k < 15; ++k) {
+    s.step();
+    undisturbed.step();
+    ASSERT_EQ(refusals.size(), 9u);
+    for (const std::string& text : refusals)
+      EXPECT_NE(text.find("callback may not"), std::string::npos) << text;
+  }
+  EXPECT_EQ(s.state_hash(), undisturbed.state_hash());
+  s.set_alpha(GroupId{0}, 1.0f);  // between steps it may
+}
+
+TEST(misuse, what_a_force_callback_throws_comes_through_and_the_state_stays) {
+  Simulation s = scene(), undisturbed = scene();
+  for (int k = 0; k < 5; ++k) {
+    s.step();
+    undisturbed.step();
+  }
+  s.set_force([](const ForceInput&, VectorSpan) { throw std::runtime_error("out of forces"); });
+  EXPECT_THROW(s.step(), std::runtime_error);
+  EXPECT_EQ(s.state_hash(), undisturbed.state_hash());
+  s.set_force({});
+  for (int k = 0; k < 10; ++k) {
+    s.step();
+    undisturbed.step();
+  }
+  EXPECT_EQ(s.state_hash(), undisturbed.state_hash());
+}
+
+TEST(misuse, two_simulations_on_two_threads_do_not_know_of_each_other) {
+  Simulation alone = scene();
+  for (int k = 0; k < 40; ++k) alone.step();
+  Simulation a = scene(), b = scene();
+  std::thread one([&] {
+    for (int k = 0; k < 40; ++k) a.step();
+  });
+  for (int k = 0; k < 40; ++k) b.step();
+  one.join();
+  EXPECT_EQ(a.state_hash(), alone.state_hash());
+  EXPECT_EQ(b.state_hash(), alone.state_hash());
+}
+
+TEST(misuse, a_simulation_that_was_moved_from_can_be_assigned_to) {
+  Simulation a = scene(), undisturbed = scene();
+  a.step();
+  Simulation b = std::move(a);
+  undisturbed.step();
+  EXPECT_EQ(b.state_hash(), undisturbed.state_hash());
+  a = scene();
+  a.step();
+  EXPECT_EQ(a.state_hash(), undisturbed.state_hash());
+  b = std::move(a);
+  EXPECT_EQ(b.state_hash(), undisturbed.state_hash());
+}
+
+}  // namespace
+}  // namespace mallow
