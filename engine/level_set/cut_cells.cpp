@@ -1,5 +1,7 @@
 #include "level_set/cut_cells.h"
 
+#include <bit>
+
 #include "core/parallel.h"
 
 namespace mallow {
@@ -7,6 +9,17 @@ namespace {
 
 constexpr std::size_t k_blocks_at_once = 8;
 constexpr int k_side = k_block_side;
+
+/// By the nine voxels of a row, a bit each: voxels z and z + 1 in byte z.
+constexpr std::array<std::uint64_t, 512> k_pairs = [] {
+  std::array<std::uint64_t, 512> pairs{};
+  for (std::size_t row = 0; row < pairs.size(); ++row) {
+    std::array<std::uint8_t, k_side> bytes{};
+    for (std::size_t z = 0; z < bytes.size(); ++z) bytes[z] = static_cast<std::uint8_t>(row >> z & 3);
+    pairs[row] = std::bit_cast<std::uint64_t>(bytes);
+  }
+  return pairs;
+}();
 
 }  // namespace
 
@@ -74,9 +87,8 @@ void CutCells::find_corners(const SurfaceField& field, std::size_t at) {
         continue;
       }
       // Corners 0 and 1 are voxels z and z + 1 of row (x, y), and so on.
-      for (int z = 0; z < k_side; ++z)
-        to[z] = static_cast<std::uint8_t>((a >> z & 3) | (b >> z & 3) << 2 | (c >> z & 3) << 4 |
-                                          (d >> z & 3) << 6);
+      const std::uint64_t corners = k_pairs[a] | k_pairs[b] << 2 | k_pairs[c] << 4 | k_pairs[d] << 6;
+      std::memcpy(to, &corners, sizeof corners);
     }
   }
 }
