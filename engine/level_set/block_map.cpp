@@ -91,12 +91,33 @@ void BlockMap::number() {
   }
 }
 
-std::uint32_t BlockMap::find(const Coord& block) const {
-  if (cubes_.empty()) return k_no_block;
-  const Cube& c = cubes_[slot_of(key_of(block.x() >> 2, block.y() >> 2, block.z() >> 2))];
+const BlockMap::Cube& BlockMap::cube_of(const Coord& block) const {
+  return cubes_[slot_of(key_of(block.x() >> 2, block.y() >> 2, block.z() >> 2))];
+}
+
+std::uint32_t BlockMap::number_in(const Cube& cube, const Coord& block) {
   const int bit = (block.x() & 3) << 4 | (block.y() & 3) << 2 | (block.z() & 3);
-  if (!(c.blocks >> bit & 1)) return k_no_block;
-  return c.first + static_cast<std::uint32_t>(std::popcount(c.blocks & ((std::uint64_t{1} << bit) - 1)));
+  if (!(cube.blocks >> bit & 1)) return k_no_block;
+  const std::uint64_t before = cube.blocks & ((std::uint64_t{1} << bit) - 1);
+  return cube.first + static_cast<std::uint32_t>(std::popcount(before));
+}
+
+std::array<std::uint32_t, 27> BlockMap::find_around(const Coord& block) const {
+  std::array<std::uint32_t, 27> around;
+  around.fill(k_no_block);
+  if (cubes_.empty()) return around;
+  std::size_t to = 0;
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      const Cube* cube = nullptr;
+      for (int z = -1; z <= 1; ++z, ++to) {
+        const Coord at = block + Coord(x, y, z);
+        if (!cube || at.z() % k_cube_side == 0) cube = &cube_of(at);
+        around[to] = number_in(*cube, at);
+      }
+    }
+  }
+  return around;
 }
 
 std::size_t BlockMap::bytes() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,7 +25,8 @@ class BlockMap {
   void insert(const Coord& block) { insert(block, block); }
   /// Numbers the blocks and lists them.
   void number();
-  std::uint32_t find(const Coord& block) const;
+  /// The numbers of the 27 blocks around a block, itself included, x slowest.
+  std::array<std::uint32_t, 27> find_around(const Coord& block) const;
   /// Blocks there are, numbered or not.
   std::size_t size() const { return size_; }
   std::span<const Coord> blocks() const { return blocks_; }
@@ -40,6 +42,8 @@ class BlockMap {
   };
 
   std::size_t slot_of(std::uint64_t key) const;
+  const Cube& cube_of(const Coord& block) const;
+  static std::uint32_t number_in(const Cube& cube, const Coord& block);
   Cube& cube(std::uint64_t key);
 
   std::vector<Cube> cubes_;  ///< open addressing; a power of two, at most half full

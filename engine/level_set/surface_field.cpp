@@ -79,11 +79,7 @@ void find_neighbors(const BlockMap& blocks, int threads,
                     std::vector<std::array<std::uint32_t, 27>>& neighbors) {
   neighbors.resize(blocks.size());
   parallel_for(threads, blocks.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b)
-      for (int x = -1; x <= 1; ++x)
-        for (int y = -1; y <= 1; ++y)
-          for (int z = -1; z <= 1; ++z)
-            neighbors[b][neighbor_slot(x, y, z)] = blocks.find(blocks.blocks()[b] + BlockMap::Coord(x, y, z));
+    for (std::size_t b = begin; b < end; ++b) neighbors[b] = blocks.find_around(blocks.blocks()[b]);
   });
 }
 
@@ -348,20 +344,30 @@ void SurfaceField::sum_at_nodes(int threads) {
 void SurfaceField::collect_nodes(std::uint32_t block, float* nodes) const {
   const int side = k_block_side / node_step_, before = node_step_ == 4 ? 1 : 0;
   const std::size_t n = lattice_count(node_step_);
-  constexpr int k_side = static_cast<int>(k_nodes);
   constexpr std::size_t k_all = k_nodes * k_nodes * k_nodes;
+  static constexpr float k_none[k_sums * k_block_voxels / 8] = {};  // of blocks that no particle reaches
+  const float* sums[27];
+  for (std::size_t slot = 0; slot < 27; ++slot) {
+    const std::uint32_t at = neighbors_[block][slot];
+    const int z = static_cast<int>(slot % 3) - 1, y = static_cast<int>(slot / 3 % 3) - 1,
+              x = static_cast<int>(slot / 9) - 1;
+    const bool read = std::min({x, y, z}) >= -before;
+    sums[slot] = at == k_no_block || !read ? k_none : node_sums_.data() + node_place_[at];
+  }
+  // The block that a node is in along an axis, and which of its nodes it is.
+  int in_block[k_nodes], in_nodes[k_nodes];
+  for (int k = 0; k < static_cast<int>(k_nodes); ++k) {
+    const int node = k - before;
+    in_block[k] = node < 0 ? -1 : node / side;
+    in_nodes[k] = node - in_block[k] * side;
+  }
   std::size_t to = 0;
-  for (int x = -before; x < k_side - before; ++x) {
-    for (int y = -before; y < k_side - before; ++y) {
-      for (int z = -before; z < k_side - before; ++z, ++to) {
-        // The block that a node is in, and which of its nodes it is.
-        const auto block_at = [side](int node) { return node < 0 ? -1 : node / side; };
-        const int bx = block_at(x), by = block_at(y), bz = block_at(z);
-        const std::uint32_t at = neighbors_[block][neighbor_slot(bx, by, bz)];
-        const auto node =
-            static_cast<std::size_t>(((x - bx * side) * side + y - by * side) * side + z - bz * side);
-        for (std::size_t s = 0; s < k_sums; ++s)
-          nodes[s * k_all + to] = at == k_no_block ? 0.0f : node_sums_[node_place_[at] + s * n + node];
+  for (std::size_t x = 0; x < k_nodes; ++x) {
+    for (std::size_t y = 0; y < k_nodes; ++y) {
+      for (std::size_t z = 0; z < k_nodes; ++z, ++to) {
+        const float* const from = sums[neighbor_slot(in_block[x], in_block[y], in_block[z])] +
+                                  (in_nodes[x] * side + in_nodes[y]) * side + in_nodes[z];
+        for (std::size_t s = 0; s < k_sums; ++s) nodes[s * k_all + to] = from[s * n];
       }
     }
   }
