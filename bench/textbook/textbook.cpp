@@ -154,7 +154,7 @@ void Textbook::choose_time_step(Step& step) const {
   throw StepError("particle " + std::to_string(fastest) + " would move at " +
                       std::to_string(step.max_velocity) + " m/s, for which no step above a thousandth of " +
                       "solver.time_step is short enough",
-                  static_cast<std::uint32_t>(fastest));
+                  static_cast<std::uint32_t>(fastest), Phase::time_step);
 }
 
 // Sections 4 and 5 of the model [TK eq. 10, 11, 13].

@@ -19,12 +19,27 @@ constexpr double k_along = 0.5;
 constexpr std::size_t k_cell_block = 8192;
 constexpr std::size_t k_column_block = 512;
 
+/// The box of the points that are finite, or no room at 0. Others are for the caller to refuse; no box around
+/// them would have an end.
+Aabb finite_bounds(const VectorColumn& x, std::size_t begin, std::size_t end) {
+  Aabb box{Vec3::Zero(), Vec3::Zero()};
+  bool any = false;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Vec3 point = x.get(i);
+    if (!point.allFinite()) continue;
+    box = any ? Aabb{box.min.cwiseMin(point), box.max.cwiseMax(point)} : Aabb{point, point};
+    any = true;
+  }
+  return box;
+}
+
 /// Chooses the cells and the covered box. Where points lie too thinly for cells of their spacing, cells are
 /// made longer, then larger, up to the radius; where a few strays make the box too large even so, it shrinks
 /// around the mean until its cells are affordable.
 void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, float radius, int threads,
                   CellGrid& grid) {
-  const Aabb box = bounds_of(x, begin, end, threads, grid.partial_bounds);
+  Aabb box = bounds_of(x, begin, end, threads, grid.partial_bounds);
+  if (!box.min.allFinite() || !box.max.allFinite()) box = finite_bounds(x, begin, end);
   const auto n = static_cast<double>(end - begin);
   const double spacing = static_cast<double>(grid.spacing > 0 ? grid.spacing : 0.5f * radius);
   double across = k_across * spacing, along = k_along * spacing;
@@ -38,7 +53,8 @@ void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, flo
   while (too_many() && across < static_cast<double>(radius)) along = across *= 2;
   if (too_many()) {
     Eigen::Vector3d mean(0, 0, 0);
-    for (std::size_t i = begin; i < end; ++i) mean += x.get(i).cast<double>();
+    for (std::size_t i = begin; i < end; ++i)
+      if (x.get(i).allFinite()) mean += x.get(i).cast<double>();
     mean /= n;
     while (too_many()) {
       Eigen::Index widest = 0;
@@ -70,9 +86,11 @@ struct CellIndex {
     for (std::size_t a = 0; a < 3; ++a) last[a] = static_cast<float>(grid.dims[a] - 1);
   }
   std::uint32_t operator()(float x, float y, float z) const {
-    // Clamped before it is rounded down: a coordinate far outside would not fit an integer.
+    // Clamped before it is rounded down: a coordinate far outside would not fit an integer. In this order what
+    // is not a number becomes 0.
     const auto coordinate = [&](float value, std::size_t a, float inverse) {
-      return static_cast<int>(std::clamp((value - origin[static_cast<int>(a)]) * inverse, 0.0f, last[a]));
+      const float cell = (value - origin[static_cast<int>(a)]) * inverse;
+      return static_cast<int>(std::max(0.0f, std::min(cell, last[a])));
     };
     const std::size_t column =
         column_of(dims, coordinate(y, 1, inverse_across), coordinate(z, 2, inverse_across));

@@ -1,6 +1,7 @@
 #include "neighbors/kept_lists.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.h"
 
@@ -64,6 +65,7 @@ bool keep_lists(const VectorColumn& positions, float radius, float slack, int th
   const double limit = static_cast<double>(radius) * (0.5 * static_cast<double>(slack) - k_rounding);
   if (!kept.any || !(limit > 0)) return false;
   const Motion mean = gather(positions, threads, grid, kept);
+  if (!std::isfinite(mean[0] + mean[1] + mean[2])) return false;
   return farthest(mean, threads, grid, kept) <= limit * limit;
 }
 

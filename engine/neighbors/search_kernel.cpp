@@ -40,7 +40,8 @@ Bounds box_of(const SearchInput& in, std::size_t cluster) noexcept {
 /// Cell of a coordinate that is given from the origin on.
 int cell_of(const SearchInput& in, int axis, float from_origin) {
   const float cell = from_origin * in.inverse_edge[axis], last = static_cast<float>(in.dims[axis] - 1);
-  return static_cast<int>(cell < 0.0f ? 0.0f : cell > last ? last : cell);
+  // What is not a number becomes 0.
+  return static_cast<int>(cell > 0.0f ? (cell > last ? last : cell) : 0.0f);
 }
 
 /// Squared distance along an axis between a box and a cell. Cells at the border also hold what lies beyond.

@@ -140,7 +140,8 @@ LaneBytes solve_lanes(const ShapeInput& in, std::size_t j, int iterations, float
   const LaneMask good = newton(a, moment[0] + moment[1] + moment[2], iterations, turned);
   for (int k = 0; k < 4; ++k) store(good ? turned[k] : q[k], rotation[k] + j);
   rotation_matrices(turned, r);
-  const Lanes inverse = 1.0f / load(in.region_weight + j);
+  // Plus 0, or what is not a number where the weight is infinite and the quotient would hide it.
+  const Lanes weight = load(in.region_weight + j), inverse = 1.0f / weight + (weight - weight);
   for (int i = 0; i < 3; ++i) {
     const float* const g = in.frame_rotation + 3 * i;
     const Lanes x = r[3 * i] - g[0], y = r[3 * i + 1] - g[1], z = r[3 * i + 2] - g[2];

@@ -7,6 +7,7 @@ namespace mallow {
 
 /// Floats of a row: twelve sums and padding, one cache line, so that a neighbour costs one load and one add.
 inline constexpr std::size_t k_row = 16;
+inline constexpr std::size_t k_row_sums = 12;
 /// Consecutive rows.
 struct Run {
   std::uint32_t first, count;

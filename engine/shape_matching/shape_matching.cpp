@@ -1,5 +1,7 @@
 #include "shape_matching/shape_matching.h"
 
+#include <limits>
+
 #include "core/parallel.h"
 #include "core/polar_rotation.h"
 #include "shape_matching/moment_kernels.h"
@@ -78,18 +80,24 @@ void solve_undecided(const ShapeInput& in, std::size_t begin, std::size_t end, S
         static_cast<double>(shape.rotation[3][j]), static_cast<double>(shape.rotation[0][j]),
         static_cast<double>(shape.rotation[1][j]), static_cast<double>(shape.rotation[2][j]));
     const double scale = static_cast<double>(shape.moment[0][j] + shape.moment[1][j] + shape.moment[2][j]);
+    if (!a.allFinite() || !last.coeffs().allFinite()) {
+      // The rotation stays, for a later step; the goals show that this one has none.
+      row[9] = std::numeric_limits<float>::quiet_NaN();
+      continue;
+    }
     const Eigen::Quaterniond rotation = polar_rotation(a, last.normalized(), scale);
     for (std::size_t k = 0; k < 4; ++k)
       shape.rotation[k][j] = static_cast<float>(rotation.coeffs()[static_cast<Eigen::Index>(k)]);
     const Eigen::Matrix3d r = rotation.toRotationMatrix();
     const Vec3 center = shape.center.get(j);
+    const float weight = shape.region_weight[j];
     for (int i = 0; i < 3; ++i) {
       Vec3 difference;
       for (int k = 0; k < 3; ++k) {
         difference[k] = static_cast<float>(r(i, k) - static_cast<double>(in.frame_rotation[3 * i + k]));
         row[3 * i + k] = difference[k];
       }
-      row[9 + i] = row[9 + i] / shape.region_weight[j] - difference.dot(center);
+      row[9 + i] = row[9 + i] / weight + (weight - weight) - difference.dot(center);
     }
   }
 }

@@ -51,6 +51,10 @@ struct ShapeMatching {
   std::vector<std::array<double, 12>> partial;
   std::vector<std::size_t> partial_count;
 
+  /// A particle of region j: the owner, or with a stride above 1 the first that the region's list names.
+  std::size_t first_row(std::size_t region) const {
+    return region_stride == 1 ? region : regions.entries[regions.begin[region]] % regions.rows;
+  }
   const TableLists& by_particle() const { return region_stride == 1 ? regions : memberships; }
   std::size_t bytes() const;
 };

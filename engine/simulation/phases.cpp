@@ -2,6 +2,7 @@
 #include <limits>
 #include <sstream>
 
+#include "simulation/damage.h"
 #include "simulation/state.h"
 
 namespace mallow {
@@ -30,24 +31,41 @@ TimeStepLimits limits(const Simulation::State& state) {
   return limits;
 }
 
-[[noreturn]] void refuse_step(const Simulation::State& state, double time_step, double velocity,
-                              std::uint32_t row) {
-  const std::uint32_t id = state.store.id[row];
+/// "step 3: particle 42 at (1 2 3) "
+std::ostringstream describe(const Simulation::State& state, std::uint32_t row) {
   std::ostringstream text;
-  text << "step " << state.step << ": particle " << id << " at ("
+  text << "step " << state.step << ": particle " << state.store.id[row] << " at ("
        << state.far(state.store.position.get(row)).transpose() << ") ";
-  if (!std::isfinite(velocity)) {
-    text << "would get a velocity that is not finite; lower solver.time_step (now " << state.config.time_step
-         << ") or material.pressure_coefficient";
-  } else {
-    text << "would move at " << velocity << " m/s and needs a step of " << time_step
-         << " s, below solver.time_step/1000 = "
-         << k_shortest_step * static_cast<double>(state.config.time_step)
-         << " s; lower material.pressure_coefficient or viscosity, raise solver.support_radius, or lower "
-            "solver.time_step (now "
-         << state.config.time_step << ")";
-  }
-  throw StepError(text.str(), id);
+  return text;
+}
+
+[[noreturn]] void refuse(const Simulation::State& state, const Damage& damage) {
+  std::ostringstream text = describe(state, damage.row);
+  text << "has a number that is not finite: " << damage.column << ", of phase " << name(damage.phase)
+       << "; lower solver.time_step (now " << state.config.time_step << ") or material.pressure_coefficient";
+  throw StepError(text.str(), state.store.id[damage.row], damage.phase);
+}
+
+/// row: whose velocity or position would not be finite after `phase`, where nothing else is to blame.
+[[noreturn]] void refuse_damage(const Simulation::State& state, Phase phase, std::uint32_t row) {
+  refuse(state, find_damage(state, phase).value_or(Damage{phase, "velocity", row}));
+}
+
+void check_damage(const Simulation::State& state) {
+  if (const std::optional<Damage> damage = find_damage(state, Phase::reference_update))
+    refuse(state, *damage);
+}
+
+[[noreturn]] void refuse_short_step(const Simulation::State& state, double time_step, double velocity,
+                                    std::uint32_t row) {
+  std::ostringstream text = describe(state, row);
+  text << "would move at " << velocity << " m/s and needs a step of " << time_step
+       << " s, below solver.time_step/1000 = "
+       << k_shortest_step * static_cast<double>(state.config.time_step)
+       << " s; lower material.pressure_coefficient or viscosity, raise solver.support_radius, or lower "
+          "solver.time_step (now "
+       << state.config.time_step << ")";
+  throw StepError(text.str(), state.store.id[row], Phase::time_step);
 }
 
 }  // namespace
@@ -74,12 +92,15 @@ int update_references(Simulation::State& state) {
   const bool check = state.step > 0 && state.step % state.config.update_interval == 0;
   for (Group& group : state.groups) {
     const double threshold = static_cast<double>(group.material.update_threshold * (1.0f - group.alpha));
-    if (check && group.keeps_reference() && group.mean_external > threshold) {
+    const bool yields = check && group.keeps_reference() && group.mean_external > threshold;
+    const auto due = [&] { return group.matches_shape() && !group.shape.built; };
+    // A reference shape outlives the step: nothing that is not finite may get into it.
+    if (yields || due()) check_damage(state);
+    if (yields) {
       take_reference(state, group);
       ++updated;
     }
-    if (group.matches_shape() && !group.shape.built)
-      build_regions(state.threads, state.level, state.region_scratch, group.shape);
+    if (due()) build_regions(state.threads, state.level, state.region_scratch, group.shape);
   }
   return updated;
 }
@@ -124,8 +145,9 @@ float choose_time_step(Simulation::State& state, StepReport& report) {
   const double velocity =
       fastest.squared_velocity == -1 ? 0.0 : std::sqrt(static_cast<double>(fastest.squared_velocity));
   const double step = limited_time_step(limits(state), velocity);
-  if (!std::isfinite(velocity) || step < k_shortest_step * static_cast<double>(state.config.time_step))
-    refuse_step(state, step, velocity, fastest.row);
+  if (!std::isfinite(velocity)) refuse_damage(state, Phase::time_step, fastest.row);
+  if (step < k_shortest_step * static_cast<double>(state.config.time_step))
+    refuse_short_step(state, step, velocity, fastest.row);
   report.max_velocity = velocity;
   report.limited = static_cast<float>(step) < state.config.time_step;
   report.time_step = static_cast<double>(static_cast<float>(step));
@@ -157,10 +179,8 @@ void move_groups(Simulation::State& state, float time_step) {
     };
     const MotionSums sums =
         move_particles(input, state.threads, state.level, state.store, state.partial_motion);
-    if (sums.bad_row != SIZE_MAX) {
-      refuse_step(state, static_cast<double>(time_step), std::numeric_limits<double>::quiet_NaN(),
-                  static_cast<std::uint32_t>(sums.bad_row));
-    }
+    if (sums.bad_row != SIZE_MAX)
+      refuse_damage(state, Phase::motion, static_cast<std::uint32_t>(sums.bad_row));
     if (measure)
       group.mean_external = sums.unpinned > 0 ? sums.external / static_cast<double>(sums.unpinned) : 0.0;
   }

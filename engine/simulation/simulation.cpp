@@ -9,7 +9,7 @@ StepReport Simulation::step() {
   Sph& sph = s.sph;
   const VectorColumn& x = s.store.position;
   StepReport report;
-  PhaseTimer timer(report.seconds);
+  PhaseTimer timer(s, report.seconds);
 
   read_alphas(s);                                               // time -> alpha
   report.updated_references = update_references(s);             // |a_ext| -> x̄, regions       [TK 3.2, eq. 14]

@@ -81,6 +81,9 @@ struct Simulation::State {
   /// The colliders that contact reads.
   std::span<Collider> contact_colliders() { return is_far() ? near_colliders : colliders; }
 
+  /// Called behind every phase; tests damage columns there.
+  std::function<void(Phase)> after_phase;
+
   bool in_force_callback = false;
   /// Throws ConfigError in a force callback, which sees a step half done: nothing may change then.
   void refuse_in_callback() const;
@@ -122,8 +125,10 @@ void describe_groups(Simulation::State& state);
 /// Writes the wall time between laps into a report.
 class PhaseTimer {
  public:
-  explicit PhaseTimer(PhaseTimes& seconds) : seconds_(seconds), last_(Clock::now()) {}
+  PhaseTimer(const Simulation::State& state, PhaseTimes& seconds)
+      : state_(state), seconds_(seconds), last_(Clock::now()) {}
   void lap(Phase phase) {
+    if (state_.after_phase) state_.after_phase(phase);
     const Clock::time_point now = Clock::now();
     seconds_[static_cast<std::size_t>(phase)] += std::chrono::duration<double>(now - last_).count();
     last_ = now;
@@ -131,6 +136,7 @@ class PhaseTimer {
 
  private:
   using Clock = std::chrono::steady_clock;
+  const Simulation::State& state_;
   PhaseTimes& seconds_;
   Clock::time_point last_;
 };

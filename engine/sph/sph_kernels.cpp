@@ -136,6 +136,7 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
   const std::size_t first = in.cluster_start[cluster];
   const std::uint32_t* const list = in.indices + in.list_begin[cluster];
   const std::uint32_t n = in.list_count[cluster];
+  if (n == 0) return;  // not even themselves: their positions are no numbers
   const Floats3 x = load_vectors(in.position, first);
   const Floats own_pressure = load(pressures + first);
   Floats3 v = {};
@@ -200,7 +201,9 @@ void sum_clusters(const SphInput& in, std::size_t begin, std::size_t end, const 
   for (std::size_t cluster = begin; cluster < end; ++cluster) {
     Floats3 own = {}, other = {};
     sum_pairs<Formula, viscous, grouped>(in, cluster, pressure, volume, own, other);
-    const Floats scale = Formula::factor(in) / load(rho + in.cluster_start[cluster]);
+    const Floats density = load(rho + in.cluster_start[cluster]);
+    // Plus 0, or what is not a number where the density is infinite and the quotient would hide it.
+    const Floats scale = Formula::factor(in) / density + (density - density);
     write_by_row(in, cluster, scale, own, same);
     if (grouped) write_by_row(in, cluster, scale, other, cross);
   }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "mallow/report.h"
+
 namespace mallow {
 
 /// One thing that is wrong with an input: where it stands, and what would be right there.
@@ -47,15 +49,20 @@ class IoError : public Error {
   Problem problem_;
 };
 
-/// A step that cannot be taken. The simulation keeps the state before that step.
+/// A step that cannot be taken. The simulation keeps positions, velocities, time and reference shapes as they
+/// were before that step.
 class StepError : public Error {
  public:
-  StepError(const std::string& message, std::uint32_t particle_id);
-  /// The particle that asked for it.
+  StepError(const std::string& message, std::uint32_t particle_id, Phase phase);
+  /// The particle that asked for it, or whose row is the first that holds a number that is not finite.
   std::uint32_t particle_id() const { return particle_id_; }
+  /// Phase::time_step where Δt would be too short; else the phase that writes the first column, in the order
+  /// of phases, with a number that is not finite.
+  Phase phase() const { return phase_; }
 
  private:
   std::uint32_t particle_id_;
+  Phase phase_;
 };
 
 }  // namespace mallow

@@ -106,7 +106,7 @@ class Simulation {
   /// Throws ConfigError where there are no particles, or particles of different groups are closer than h/10.
   void prepare();
   /// One step of algorithm 3.3 of the paper. Throws StepError and keeps the state where Δt would fall below
-  /// Δt0/1000 or a number is no longer finite.
+  /// Δt0/1000 or a number is not finite: it names the particle and the phase.
   StepReport step();
 
   std::size_t particle_count() const;
@@ -151,6 +151,7 @@ class Simulation {
   struct State;  ///< internal
 
  private:
+  friend struct StateAccess;  // of tests
   std::unique_ptr<State> state_;
 };
 

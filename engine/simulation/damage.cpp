@@ -1,0 +1,103 @@
+#include "simulation/damage.h"
+
+#include <cmath>
+
+#include "simulation/state.h"
+
+namespace mallow {
+namespace {
+
+/// Looks through one column after the other and keeps what it finds first in the earliest phase.
+class Search {
+ public:
+  explicit Search(Phase last) : last_(last) {}
+
+  /// row_of: entry -> row.
+  template <class RowOf>
+  void column(Phase phase, const char* name, std::span<const float> values, const RowOf& row_of) {
+    if (phase > last_ || (found_ && found_->phase <= phase)) return;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (std::isfinite(values[i])) continue;
+      found_ = Damage{phase, name, static_cast<std::uint32_t>(row_of(i))};
+      return;
+    }
+  }
+  template <class RowOf>
+  void column(Phase phase, const char* name, const Column<float>& values, const RowOf& row_of) {
+    column(phase, name, values.span(), row_of);
+  }
+  template <class RowOf>
+  void column(Phase phase, const char* name, const VectorColumn& values, const RowOf& row_of) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      column(phase, name, std::span(values.axis(axis), values.size()), row_of);
+  }
+  const std::optional<Damage>& found() const { return found_; }
+
+ private:
+  Phase last_;
+  std::optional<Damage> found_;
+};
+
+std::size_t same_row(std::size_t row) {
+  return row;
+}
+
+/// What steps hand on to each other.
+std::optional<Damage> search_state(const Simulation::State& state) {
+  Search moving(Phase::motion), shapes(Phase::motion);
+  moving.column(Phase::motion, "position", state.store.position, same_row);
+  moving.column(Phase::motion, "velocity", state.store.velocity, same_row);
+  if (moving.found()) return moving.found();
+  for (const Group& group : state.groups) {
+    const ShapeMatching& shape = group.shape;
+    const auto particle = [&](std::size_t i) { return group.begin + i; };
+    const auto region = [&](std::size_t j) { return group.begin + shape.first_row(j); };
+    shapes.column(Phase::reference_update, "reference position", shape.reference, particle);
+    if (!shape.built) continue;
+    shapes.column(Phase::reference_update, "weight", shape.weight, particle);
+    shapes.column(Phase::reference_update, "weight of its region", shape.region_weight, region);
+    shapes.column(Phase::reference_update, "centre of its region", shape.center, region);
+    for (const Column<float>& moment : shape.moment)
+      shapes.column(Phase::reference_update, "moment of its region", moment, region);
+    for (const Column<float>& rotation : shape.rotation)
+      shapes.column(Phase::rotations, "rotation of its region", rotation, region);
+  }
+  return shapes.found();
+}
+
+void search_sph(const Simulation::State& state, Search& search) {
+  const Sph& sph = state.sph;
+  const auto sorted = [&](std::size_t place) { return sph.grid.order[place]; };
+  search.column(Phase::neighbors, "sorted position", sph.grid.sorted, sorted);
+  search.column(Phase::density, "density", sph.density, sorted);
+  search.column(Phase::density, "pressure", sph.pressure, sorted);
+  search.column(Phase::density, "volume", sph.volume, sorted);
+  if (sph.viscous) search.column(Phase::accelerations, "sorted velocity", sph.velocity, sorted);
+  search.column(Phase::accelerations, "acceleration by SPH", sph.acceleration, same_row);
+  if (sph.groups.size() > 1)
+    search.column(Phase::accelerations, "acceleration by other groups", sph.cross_group, same_row);
+}
+
+void search_goals(const Group& group, Search& search) {
+  const ShapeMatching& shape = group.shape;
+  // The padding of a row is nobody's.
+  for (std::size_t j = 0; j < shape.region_weight.size(); ++j)
+    search.column(Phase::region_sums, "sum of its region", shape.sums.span().subspan(j * k_row, k_row_sums),
+                  [&](std::size_t) { return group.begin + shape.first_row(j); });
+  search.column(Phase::goals, "pull", shape.pull, [&](std::size_t i) { return group.begin + i; });
+}
+
+}  // namespace
+
+std::optional<Damage> find_damage(const Simulation::State& state, Phase last) {
+  if (const std::optional<Damage> found = search_state(state)) return found;
+  Search search(last);
+  if (state.sph_ran) search_sph(state, search);
+  if (state.force)
+    search.column(Phase::time_step, "acceleration by the force callback", state.user_acceleration, same_row);
+  for (const Group& group : state.groups)
+    if (group.matches_shape()) search_goals(group, search);
+  return search.found();
+}
+
+}  // namespace mallow

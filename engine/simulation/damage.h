@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "mallow/simulation.h"
+
+namespace mallow {
+
+/// A number that is not finite.
+struct Damage {
+  Phase phase;         ///< that wrote it
+  const char* column;  ///< "pressure" and the like
+  std::uint32_t row;   ///< whose it is; a region's owner, or with a stride above 1 one of its particles
+};
+
+/// The first number that is not finite: in what a step starts from, else in the columns of phases up to
+/// `last` in their order, so that what was computed from another such number comes after it. Kernels do not
+/// look for them; they hand them on to where choose_time_step() or move_groups() cannot miss them.
+std::optional<Damage> find_damage(const Simulation::State& state, Phase last);
+
+}  // namespace mallow
