@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 
+#include "drift/drift_command.h"
 #include "figures/figures_command.h"
 #include "kernels/kernels_command.h"
 #include "mallow/program.h"
@@ -19,5 +20,6 @@ int main(int argc, char** argv) {
   add_kernels_command(app);
   add_figures_command(app);
   add_stability_command(app);
+  add_drift_command(app);
   return mallow::cli::run_program(app, argc, argv);
 }
