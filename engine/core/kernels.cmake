@@ -1,7 +1,7 @@
 # mallow_add_kernels(<source> [target]): compiles a kernel file once per instruction level into a target, mallow if none
 # is named; the level is chosen at run time (core/isa.h). On machines other than x86-64 there is one level, the
-# compiler's own.
-if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
+# compiler's own; fuzz targets, whose kernels take minutes to compile, do with that as well.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64" AND NOT MALLOW_FUZZ)
   set(MALLOW_X86_LEVELS ON)
 endif()
 

@@ -44,9 +44,9 @@ void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, flo
   const double spacing = static_cast<double>(grid.spacing > 0 ? grid.spacing : 0.5f * radius);
   double across = k_across * spacing, along = k_along * spacing;
   const double budget = std::max(k_min_cells, k_cells_per_point * n);
-  Eigen::Vector3d low = box.min.cast<double>(), high = box.max.cast<double>();
+  Eigen::Vector3d low = box.min.cast<double>(), size = box.max.cast<double>() - low;
   const auto cells = [&](int a) {
-    return std::max(1.0, std::floor((high[a] - low[a]) / (a == 0 ? along : across)) + 1.0);
+    return std::max(1.0, std::floor(size[a] / (a == 0 ? along : across)) + 1.0);
   };
   const auto too_many = [&] { return cells(0) * cells(1) * cells(2) > budget; };
   while (too_many() && along < across) along *= 2;
@@ -57,16 +57,17 @@ void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, flo
       if (x.get(i).allFinite()) mean += x.get(i).cast<double>();
     mean /= n;
     while (too_many()) {
+      // The size itself: of a box far from 0 low and high would not come any nearer than they are rounded.
       Eigen::Index widest = 0;
-      (high - low).maxCoeff(&widest);
+      size.maxCoeff(&widest);
+      size[widest] *= 0.8;
       low[widest] = mean[widest] + 0.8 * (low[widest] - mean[widest]);
-      high[widest] = mean[widest] + 0.8 * (high[widest] - mean[widest]);
     }
   }
   grid.origin = low.cast<float>();
   grid.along = static_cast<float>(along);
   grid.across = static_cast<float>(across);
-  grid.rounding = static_cast<float>(1e-6 * (high - low).maxCoeff() + 1e-5 * static_cast<double>(radius));
+  grid.rounding = static_cast<float>(1e-6 * size.maxCoeff() + 1e-5 * static_cast<double>(radius));
   for (int a = 0; a < 3; ++a) grid.dims[static_cast<std::size_t>(a)] = static_cast<int>(cells(a));
 }
 

@@ -26,14 +26,14 @@ void choose_columns(const VectorColumn& x, std::size_t begin, std::size_t end, f
   columns.across = {(columns.along + 1) % 3, (columns.along + 2) % 3};
   const double budget = std::max(k_min_columns, k_columns_per_point * static_cast<double>(end - begin));
   const auto w = static_cast<double>(width);
-  double low[2], high[2], mean[2];
+  double low[2], size[2], mean[2];
   for (int k = 0; k < 2; ++k) {
     const int axis = columns.across[static_cast<std::size_t>(k)];
     low[k] = static_cast<double>(box.min[axis]);
-    high[k] = static_cast<double>(box.max[axis]);
-    mean[k] = 0.5 * (low[k] + high[k]);
+    size[k] = static_cast<double>(box.max[axis]) - low[k];
+    mean[k] = low[k] + 0.5 * size[k];
   }
-  const auto count = [&](int k) { return std::floor((high[k] - low[k]) / w + 0.5) + 1.0; };
+  const auto count = [&](int k) { return std::floor(size[k] / w + 0.5) + 1.0; };
   if (count(0) * count(1) > budget) {
     for (int k = 0; k < 2; ++k) {
       const float* const values =
@@ -44,9 +44,10 @@ void choose_columns(const VectorColumn& x, std::size_t begin, std::size_t end, f
     }
   }
   while (count(0) * count(1) > budget) {
-    const int k = high[0] - low[0] > high[1] - low[1] ? 0 : 1;
+    // The size itself: far from 0 two ends would not come any nearer than they are rounded.
+    const int k = size[0] > size[1] ? 0 : 1;
+    size[k] *= 0.8;
     low[k] = mean[k] + 0.8 * (low[k] - mean[k]);
-    high[k] = mean[k] + 0.8 * (high[k] - mean[k]);
   }
   columns.inverse_width = static_cast<float>(1.0 / w);
   for (int k = 0; k < 2; ++k) {

@@ -7,11 +7,11 @@ namespace {
 constexpr std::size_t k_wide = 8;
 using Doubles = double __attribute__((vector_size(k_wide * sizeof(double))));
 using Floats = float __attribute__((vector_size(k_wide * sizeof(float))));
-using UnalignedFloats = float __attribute__((vector_size(k_wide * sizeof(float)), aligned(4), may_alias));
 
 /// Not returned: registers this wide are no part of the lower levels' calls.
 void load(const float* values, Doubles& lanes) {
-  const Floats floats = *reinterpret_cast<const UnalignedFloats*>(values);
+  Floats floats;
+  __builtin_memcpy(&floats, values, sizeof floats);
   lanes = __builtin_convertvector(floats, Doubles);
 }
 

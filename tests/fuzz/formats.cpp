@@ -10,6 +10,7 @@
 #include <system_error>
 #include <vector>
 
+#include "fuzz/checkpoints.h"
 #include "mallow/errors.h"
 #include "mallow/files.h"
 #include "mallow/scene.h"
@@ -90,7 +91,10 @@ constexpr Format k_formats[] = {{"obj", "input.obj", read_as_mesh},
                                 {"ply_points", "input.ply", read_as_points},
                                 {"particles", "input.ply", read_as_particles},
                                 {"scene", "input.toml", read_as_scene},
-                                {"overrides", "input.txt", read_as_overrides}};
+                                {"overrides", "input.txt", read_as_overrides, "--set"},
+                                {"checkpoint", "input", read_as_checkpoint},
+                                // Of its chunks, settings and particles there is no more to say than names.
+                                {"saved_state", "input", read_as_saved_state, ""}};
 
 }  // namespace
 
@@ -134,8 +138,7 @@ Verdict Input::read(std::string_view content) {
   } catch (const Error& error) {
     message_ = error.what();
   }
-  // An override is its own place.
-  const std::string place = format_.read == read_as_overrides ? "--set" : file_.string();
+  const std::string place = format_.place ? format_.place : file_.string();
   require(message_.find(place) != std::string::npos, "a message does not say what it is about");
   return Verdict::refused;
 }

@@ -15,6 +15,8 @@ struct Format {
   /// Reads a file through the public readers. Throws mallow::Error where it is refused, std::logic_error
   /// where it was read as something that no file may be read as.
   void (*read)(const std::filesystem::path& file);
+  /// What every message names where that is not the file.
+  const char* place = nullptr;
 };
 
 std::span<const Format> formats();

@@ -363,6 +363,24 @@ TEST(bodies, can_be_added_between_steps) {
   EXPECT_NEAR(s.positions_by_id()[64 + 64].x(), 40.5f, 1e-3);
 }
 
+// Boxes of cells around them once shrank without end: far from 0 their ends did not come nearer than rounding.
+TEST(step, is_taken_or_refused_however_far_apart_particles_are) {
+  for (const float far : {1e5f, 1e9f, 1e15f, 1e20f, 1e30f})
+    for (const float alpha : {0.0f, 0.5f, 1.0f}) {
+      Simulation s(config());
+      Body body = cube(3);
+      for (const float side : {-0.3f, 1.0f, 1.1f})
+        body.positions.push_back(far * Vec3(side, 0.5f * side, 2 * side));
+      s.add_body(body, Material{.alpha = alpha});
+      try {
+        for (int k = 0; k < 3; ++k) s.step();
+      } catch (const StepError& error) {
+        EXPECT_GE(far, 1e20f) << error.what();  // whose square is beyond single precision
+      }
+      for (const Vec3& x : s.positions_by_id()) ASSERT_TRUE(x.allFinite()) << far << ' ' << alpha;
+    }
+}
+
 TEST(errors, name_the_particle_and_keep_the_state_where_a_step_cannot_be_taken) {
   Simulation s(config());
   s.add_body(cube(5), Material{.alpha = 0.5f});
