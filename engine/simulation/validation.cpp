@@ -97,7 +97,7 @@ void check(const Material& material, Checks& checks) {
 // does so at 4.2. Where α is 0 and Δt_SM = Δt0, as in the paper, κ is 1.
 void check_stiffness(const SolverConfig& config, const Material& material, Checks& checks) {
   constexpr float k_most = 4;
-  if (!material.elastic_time_step) return;
+  if (!material.elastic_time_step || material.alpha.keys().empty()) return;
   const float least = (1 - material.alpha.lowest()) * config.time_step / k_most;
   if (*material.elastic_time_step >= least) return;
   std::ostringstream text;

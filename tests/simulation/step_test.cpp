@@ -363,7 +363,8 @@ TEST(bodies, can_be_added_between_steps) {
   EXPECT_NEAR(s.positions_by_id()[64 + 64].x(), 40.5f, 1e-3);
 }
 
-// Boxes of cells around them once shrank without end: far from 0 their ends did not come nearer than rounding.
+// Boxes of cells around them once shrank without end: far from 0 their ends did not come nearer than
+// rounding.
 TEST(step, is_taken_or_refused_however_far_apart_particles_are) {
   for (const float far : {1e5f, 1e9f, 1e15f, 1e20f, 1e30f})
     for (const float alpha : {0.0f, 0.5f, 1.0f}) {
@@ -469,6 +470,9 @@ TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
            {"solver.time_step: -1", "above 0", "solver.support_radius: nan"});
   Simulation s(config());
   contains(message_of([&] { s.prepare(); }), {"no particles"});
+  contains(
+      message_of([&] { s.add_group(Material{.alpha = std::vector<AlphaKey>{}, .elastic_time_step = 0.1f}); }),
+      {"material.alpha", "no keys"});
   contains(message_of([&] { s.add_group(Material{.alpha = 1.5f, .cohesion = 2}); }),
            {"material.alpha: 1.5", "material.cohesion: 2", "[0, 1]"});
   contains(message_of([&] { s.add_group(Material{.region_stride = 0}); }),
