@@ -65,6 +65,7 @@ bool keep_lists(const VectorColumn& positions, float radius, float slack, int th
   const double limit = static_cast<double>(radius) * (0.5 * static_cast<double>(slack) - k_rounding);
   if (!kept.any || !(limit > 0)) return false;
   const Motion mean = gather(positions, threads, grid, kept);
+  // The largest of numbers would pass over one that is none.
   if (!std::isfinite(mean[0] + mean[1] + mean[2])) return false;
   return farthest(mean, threads, grid, kept) <= limit * limit;
 }

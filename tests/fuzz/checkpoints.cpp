@@ -5,6 +5,9 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "mallow/files.h"
 #include "mallow/mallow.h"
@@ -57,8 +60,7 @@ void require_finite(const std::vector<Vec3>& vectors) {
     if (!v.allFinite()) throw std::logic_error("a step left numbers that are not finite");
 }
 
-}  // namespace
-
+/// Chunk after chunk: its size, its bytes.
 std::string plain(const SavedState& state) {
   std::string bytes;
   for (const Chunk& chunk : state.chunks) {
@@ -83,6 +85,20 @@ SavedState from_plain(std::string_view bytes) {
   return state;
 }
 
+/// They differ in what they hold, before the first step and after some.
+std::vector<SavedState> states() {
+  std::vector<SavedState> states;
+  for (const auto& build : {elastic, fluid, groups}) {
+    Simulation simulation = build();
+    states.push_back(simulation.save());
+    for (int step = 0; step < 3; ++step) simulation.step();
+    states.push_back(simulation.save());
+  }
+  return states;
+}
+
+}  // namespace
+
 void read_as_checkpoint(const std::filesystem::path& file) {
   read_checkpoint(file);
 }
@@ -97,17 +113,6 @@ void read_as_saved_state(const std::filesystem::path& file) {
   for (int step = 0; step < 3; ++step) simulation.step();
   require_finite(simulation.positions_by_id());
   require_finite(simulation.velocities_by_id());
-}
-
-std::vector<SavedState> states() {
-  std::vector<SavedState> states;
-  for (const auto& build : {elastic, fluid, groups}) {
-    Simulation simulation = build();
-    states.push_back(simulation.save());
-    for (int step = 0; step < 3; ++step) simulation.step();
-    states.push_back(simulation.save());
-  }
-  return states;
 }
 
 void write_checkpoint_seeds(const std::filesystem::path& folder) {

@@ -32,21 +32,23 @@ class replay : public testing::TestWithParam<Format> {};
 TEST_P(replay, reads_every_seed) {
   Input input(GetParam());
   fs::path seeds = fs::path(MALLOW_FUZZ_DIR) / "seeds";
-  if (!fs::exists(seeds / GetParam().name)) {
-    seeds = fs::path(testing::TempDir()) / "mallow_seeds";
+  const bool made = !fs::exists(seeds / GetParam().name);
+  if (made) {
+    // The two tests that make them run beside each other.
+    seeds = fs::path(testing::TempDir()) / (std::string("mallow_seeds_of_") + GetParam().name);
+    fs::remove_all(seeds);
     write_checkpoint_seeds(seeds);
   }
   const auto files = files_below(seeds / GetParam().name);
   EXPECT_GE(files.size(), 1u);
   for (const fs::path& file : files)
     EXPECT_EQ(input.read(content_of(file)), Verdict::read) << file << ": " << input.message();
+  if (made) fs::remove_all(seeds);
 }
 
 TEST_P(replay, reads_or_refuses_by_name_what_was_a_finding) {
   Input input(GetParam());
-  const fs::path folder = fs::path(MALLOW_FUZZ_DIR) / "regressions" / GetParam().name;
-  if (!fs::exists(folder)) GTEST_SKIP() << "SKIPPED: nothing was found in this format yet";
-  const auto files = files_below(folder);
+  const auto files = files_below(fs::path(MALLOW_FUZZ_DIR) / "regressions" / GetParam().name);
   EXPECT_GE(files.size(), 1u);
   for (const fs::path& file : files) EXPECT_NO_THROW(input.read(content_of(file))) << file;
 }
