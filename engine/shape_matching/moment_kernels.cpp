@@ -1,21 +1,25 @@
 // Sums in double: what the rigid frame of a group and the moments of its regions are found from.
 #include "shape_matching/moment_kernels.h"
 
+#include "core/lanes.h"
+
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
+/// Lanes of a sum: as many at every level, which takes them a register at a time. Wider than a register GCC 12
+/// keeps them in memory, at five times the cost.
 constexpr std::size_t k_wide = 8;
-using Doubles = double __attribute__((vector_size(k_wide * sizeof(double))));
-using Floats = float __attribute__((vector_size(k_wide * sizeof(float))));
+constexpr std::size_t k_doubles = k_width / 2;
+using Doubles = double __attribute__((vector_size(k_doubles * sizeof(double))));
+using Floats = float __attribute__((vector_size(k_doubles * sizeof(float))));
 
-/// Not returned: registers this wide are no part of the lower levels' calls.
-void load(const float* values, Doubles& lanes) {
+inline Doubles load_doubles(const float* values) {
   Floats floats;
   __builtin_memcpy(&floats, values, sizeof floats);
-  lanes = __builtin_convertvector(floats, Doubles);
+  return __builtin_convertvector(floats, Doubles);
 }
 
-double sum(const Doubles& lanes) {
+double sum(const double* lanes) {
   double total = 0;
   for (std::size_t l = 0; l < k_wide; ++l) total += lanes[l];
   return total;
@@ -23,30 +27,30 @@ double sum(const Doubles& lanes) {
 
 void frame_sums(ConstVectors position, ConstVectors reference, const double* origin, std::size_t begin,
                 std::size_t end, double* sums) noexcept {
-  const float* const positions[3] = {position.x, position.y, position.z};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const float* const x = positions[a];
-    Doubles xx = {}, xy = {}, xz = {}, first = {};
-    std::size_t i = begin;
-    for (; i + k_wide <= end; i += k_wide) {
-      Doubles d, rx, ry, rz;
-      load(x + i, d);
-      load(reference.x + i, rx);
-      load(reference.y + i, ry);
-      load(reference.z + i, rz);
-      d -= origin[a];
-      xx += d * rx;
-      xy += d * ry;
-      xz += d * rz;
-      first += d;
+  const std::size_t whole = begin + (end - begin) / k_wide * k_wide;
+  double lanes[12][k_wide];
+  for (std::size_t l = 0; l < k_wide; l += k_doubles) {
+    Doubles s[12] = {};
+    for (std::size_t i = begin + l; i < whole; i += k_wide) {
+      const Doubles x = load_doubles(position.x + i) - origin[0], y = load_doubles(position.y + i) - origin[1],
+                    z = load_doubles(position.z + i) - origin[2];
+      const Doubles rx = load_doubles(reference.x + i), ry = load_doubles(reference.y + i),
+                    rz = load_doubles(reference.z + i);
+      s[0] += x * rx, s[1] += x * ry, s[2] += x * rz;
+      s[3] += y * rx, s[4] += y * ry, s[5] += y * rz;
+      s[6] += z * rx, s[7] += z * ry, s[8] += z * rz;
+      s[9] += x, s[10] += y, s[11] += z;
     }
-    double* const row = sums + 3 * a;
-    row[0] = sum(xx), row[1] = sum(xy), row[2] = sum(xz), sums[9 + a] = sum(first);
-    for (; i < end; ++i) {
-      const double d = static_cast<double>(x[i]) - origin[a];
-      row[0] += d * static_cast<double>(reference.x[i]);
-      row[1] += d * static_cast<double>(reference.y[i]);
-      row[2] += d * static_cast<double>(reference.z[i]);
+    for (std::size_t k = 0; k < 12; ++k) __builtin_memcpy(lanes[k] + l, &s[k], sizeof s[k]);
+  }
+  for (std::size_t k = 0; k < 12; ++k) sums[k] = sum(lanes[k]);
+  for (std::size_t i = whole; i < end; ++i) {
+    const float* const positions[3] = {position.x + i, position.y + i, position.z + i};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double d = static_cast<double>(*positions[a]) - origin[a];
+      sums[3 * a] += d * static_cast<double>(reference.x[i]);
+      sums[3 * a + 1] += d * static_cast<double>(reference.y[i]);
+      sums[3 * a + 2] += d * static_cast<double>(reference.z[i]);
       sums[9 + a] += d;
     }
   }
@@ -66,26 +70,35 @@ void write_rows(ConstVectors reference, const float* weight, std::size_t begin, 
   }
 }
 
-using Part = double __attribute__((vector_size(4 * sizeof(double)), may_alias));
-constexpr std::size_t k_parts = k_moment_row / 4;
+/// Doubles of a row at a time: a register, of the levels whose registers divide the row.
+constexpr std::size_t k_part = k_doubles < 4 ? k_doubles : 4;
+constexpr std::size_t k_parts = k_moment_row / k_part;
+using Part = double __attribute__((vector_size(k_part * sizeof(double))));
+
+inline Part load_part(const double* values) {
+  Part part;
+  __builtin_memcpy(&part, values, sizeof part);
+  return part;
+}
 
 void sum_runs(const double* rows, const Run* runs, std::size_t count, double* out) noexcept {
   // Two sums in a fixed order hide the latency of the addition.
-  Part a[k_parts] = {}, b[k_parts] = {};
+  Part a[k_parts], b[k_parts];
+  for (std::size_t p = 0; p < k_parts; ++p) a[p] = b[p] = Part{};  // "= {}" GCC 12 takes for memory
   for (std::size_t r = 0; r < count; ++r) {
-    const Part* row = reinterpret_cast<const Part*>(rows + runs[r].first * k_moment_row);
+    const double* row = rows + runs[r].first * k_moment_row;
     std::uint32_t k = 0;
-    for (; k + 2 <= runs[r].count; k += 2, row += 2 * k_parts)
+    for (; k + 2 <= runs[r].count; k += 2, row += 2 * k_moment_row)
       for (std::size_t p = 0; p < k_parts; ++p) {
-        a[p] += row[p];
-        b[p] += row[k_parts + p];
+        a[p] += load_part(row + p * k_part);
+        b[p] += load_part(row + k_moment_row + p * k_part);
       }
     if (k < runs[r].count)
-      for (std::size_t p = 0; p < k_parts; ++p) a[p] += row[p];
+      for (std::size_t p = 0; p < k_parts; ++p) a[p] += load_part(row + p * k_part);
   }
   for (std::size_t p = 0; p < k_parts; ++p) {
     const Part both = a[p] + b[p];
-    for (std::size_t l = 0; l < 4; ++l) out[4 * p + l] = both[l];
+    __builtin_memcpy(out + p * k_part, &both, sizeof both);
   }
 }
 
