@@ -8,6 +8,9 @@
 namespace mallow::scene_file {
 namespace {
 
+/// What a string can stand behind. A parser that meets a quote elsewhere goes on as if it were none.
+constexpr std::string_view k_before_strings = " \t\n=,.[{";
+
 /// Goes through a text once, and knows of TOML only where strings and comments begin and end.
 class Scan {
  public:
@@ -50,6 +53,10 @@ class Scan {
     if (c == '#') {
       closing_ = "\n";
     } else if (c == '"' || c == '\'') {
+      if (at_ > 0 && k_before_strings.find(text_[at_ - 1]) == std::string_view::npos)
+        return fault(
+            "a quote is not allowed within a value or name: strings begin behind white space or one of = , . "
+            "[ {");
       const std::string_view quotes = c == '"' ? "\"\"\"" : "'''";
       closing_ = text_.substr(at_, 3) == quotes ? quotes : quotes.substr(0, 1);
       skip(closing_.size() - 1);

@@ -258,6 +258,14 @@ TEST_F(bad_scene, keeps_letters_beyond_ascii_to_comments_and_strings) {
   EXPECT_EQ(read("\xEF\xBB\xBF# σ\n" + text).materials[0].name, "gelée");
 }
 
+TEST_F(bad_scene, lets_a_string_begin_only_where_one_can) {
+  const std::string message =
+      "a quote is not allowed within a value or name: strings begin behind white space or one of = , . [ {";
+  EXPECT_EQ(problems("\na = 6\"σ\"\n"), std::vector<std::string>{"scene.toml:2:6: " + message});
+  EXPECT_EQ(problems("a = 'x''σ'"), std::vector<std::string>{"scene.toml:1:8: " + message});
+  EXPECT_EQ(problems("a\"σ\" = 1"), std::vector<std::string>{"scene.toml:1:2: " + message});
+}
+
 TEST_F(bad_scene, limits_the_size_of_what_is_read) {
   const auto large = problems("# " + std::string(std::size_t{17} << 20, 'x') + "\n");
   EXPECT_EQ(large,

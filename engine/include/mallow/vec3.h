@@ -4,7 +4,7 @@
 
 namespace mallow {
 
-/// A point or vector in space, single precision: x, y, z; metres or whatever length unit the scene uses.
+/// A point or vector in space, single precision: x, y, z [m, or the scene's unit]. `{}` leaves it unset.
 using Vec3 = Eigen::Vector3f;
 
 /// An axis-aligned box. Valid where min <= max in every component.
