@@ -9,7 +9,7 @@
 #include "table1/table1_command.h"
 #include "tradeoff/tradeoff_command.h"
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 throws where two options clash
   using namespace mallow::bench;
   CLI::App app("mallow-bench: what mallow costs and how right it is", "mallow-bench");
   app.set_version_flag("--version", MALLOW_VERSION);

@@ -44,7 +44,7 @@ std::span<const double> after_the_dent(const Curve& distance) {
 std::vector<Claim> judge_moai(std::span<const Recording> recordings) {
   const Recording& moai = recordings[0];
   const Curve& distance = moai["distance"];
-  const auto claim = [](std::string name, std::string sentence, std::string moment, double measured,
+  const auto claim = [](std::string name, std::string sentence, const std::string& moment, double measured,
                         double limit) {
     return Claim{
         .name = std::move(name),

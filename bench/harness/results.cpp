@@ -45,7 +45,7 @@ Json flattened(const Json& row) {
 std::string csv_cell(const Json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return value.dump();
-  const std::string text = value.get<std::string>();
+  std::string text = value.get<std::string>();
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -129,7 +129,7 @@ std::string markdown_table(const Json& rows, const std::vector<TableColumn>& col
       widths[c] = std::max(widths[c], line.back().size());
     }
   }
-  const auto padded = [](std::string text, std::size_t width, bool right) {
+  const auto padded = [](const std::string& text, std::size_t width, bool right) {
     const std::string space(width - text.size(), ' ');
     return right ? space + text : text + space;
   };

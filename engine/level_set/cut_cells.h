@@ -119,12 +119,11 @@ void CutCells::for_each_quad(std::size_t at, const Visit& visit) const {
           of = neighbors_[at][neighbor_slot(block.x(), block.y(), block.z())];
         }
         const auto c = static_cast<std::size_t>(there);
-        const int patch =
+        const std::uint32_t patch =
             k_cell_patches[cells_[of].patches[c]].of_edge[static_cast<std::size_t>(4 * axis + 2 * u + v)];
         // Where the edge leads inside, counter-clockwise is the other way round.
         const std::size_t corner = inside & 1 ? k : (4 - k) % 4;
-        quad[corner] = {cells_[of].first_vertex + cells_[of].vertex[c] + static_cast<std::uint32_t>(patch),
-                        of, c, block};
+        quad[corner] = {cells_[of].first_vertex + cells_[of].vertex[c] + patch, of, c, block};
       }
       visit(quad);
     }

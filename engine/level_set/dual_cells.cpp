@@ -51,13 +51,10 @@ constexpr CellPatches find_patches(unsigned inside, int joined) {
   std::array<std::int8_t, k_cell_edges> number{};
   number.fill(-1);
   for (std::size_t e = 0; e < k_cell_edges; ++e) {
-    if (patch[e] < 0) {
-      patches.of_edge[e] = -1;
-      continue;
-    }
+    if (patch[e] < 0) continue;
     std::int8_t& n = number[static_cast<std::size_t>(patch[e])];
     if (n < 0) n = patches.count++;
-    patches.of_edge[e] = n;
+    patches.of_edge[e] = static_cast<std::uint8_t>(n);
     patches.edges[static_cast<std::size_t>(n)] |= static_cast<std::uint16_t>(1u << e);
   }
   for (int face = 0; face < 6; ++face) {

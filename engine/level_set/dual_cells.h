@@ -22,8 +22,8 @@ constexpr EdgeCorners edge_corners(int edge) {
 /// The patches of surface in a cell: each cut edge belongs to one.
 struct CellPatches {
   std::int8_t count = 0;
-  std::array<std::int8_t, k_cell_edges> of_edge{};  ///< −1 where the edge is not cut
-  std::array<std::uint16_t, 4> edges{};             ///< of each patch, a bit each
+  std::array<std::uint8_t, k_cell_edges> of_edge{};  ///< of those that are cut
+  std::array<std::uint16_t, 4> edges{};              ///< of each patch, a bit each
   /// Face (2 axis + side) that one patch crosses twice, or −1. Two such cells with that face in common would
   /// share an edge of the mesh twice; there both take the patches 256 on instead.
   std::int8_t twice = -1;

@@ -68,7 +68,7 @@ points::PointDataGrid::Ptr point_grid(std::span<const Vec3> positions, std::span
   const points::PointAttributeVector<openvdb::Vec3s> columns(places);
   const auto order =
       openvdb::tools::createPointIndexGrid<openvdb::tools::PointIndexGrid>(columns, *transform);
-  const auto grid =
+  auto grid =
       points::createPointDataGrid<points::NullCodec, points::PointDataGrid>(*order, columns, *transform);
   grid->setName("particles");
   add_attribute(*grid, *order, "v", vectors(velocities));

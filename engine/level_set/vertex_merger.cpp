@@ -261,9 +261,11 @@ void VertexMerger::merge(const CutCells& cells, float tolerance, int threads,
 }
 
 std::size_t VertexMerger::bytes() const {
-  return sides_.capacity() * sizeof(CubeSides) + folds_.capacity() * sizeof folds_[0] +
-         into_.capacity() * sizeof(std::uint32_t) +
-         (places_.capacity() + normals_.capacity()) * sizeof places_[0];
+  std::size_t bytes = sides_.capacity() * sizeof(CubeSides) + into_.capacity() * sizeof(std::uint32_t) +
+                      (places_.capacity() + normals_.capacity()) * sizeof places_[0];
+  for (const std::vector<CellOfBlock>& folds : folds_)
+    bytes += sizeof(std::vector<CellOfBlock>) + folds.capacity() * sizeof(CellOfBlock);
+  return bytes;
 }
 
 }  // namespace mallow

@@ -14,6 +14,7 @@ namespace {
 template <class Variant>
 std::vector<std::string> keys_of(const std::vector<Kind<Variant>>& kinds) {
   std::vector<std::string> keys;
+  keys.reserve(kinds.size());
   for (const auto& kind : kinds) keys.emplace_back(kind.key);
   return keys;
 }

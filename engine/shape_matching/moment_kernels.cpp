@@ -6,8 +6,8 @@
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
-/// Lanes of a sum: as many at every level, which takes them a register at a time. Wider than a register GCC 12
-/// keeps them in memory, at five times the cost.
+/// Lanes of a sum: as many at every level, which takes them a register at a time. Wider than a register GCC
+/// 12 keeps them in memory, at five times the cost.
 constexpr std::size_t k_wide = 8;
 constexpr std::size_t k_doubles = k_width / 2;
 using Doubles = double __attribute__((vector_size(k_doubles * sizeof(double))));
@@ -32,7 +32,8 @@ void frame_sums(ConstVectors position, ConstVectors reference, const double* ori
   for (std::size_t l = 0; l < k_wide; l += k_doubles) {
     Doubles s[12] = {};
     for (std::size_t i = begin + l; i < whole; i += k_wide) {
-      const Doubles x = load_doubles(position.x + i) - origin[0], y = load_doubles(position.y + i) - origin[1],
+      const Doubles x = load_doubles(position.x + i) - origin[0],
+                    y = load_doubles(position.y + i) - origin[1],
                     z = load_doubles(position.z + i) - origin[2];
       const Doubles rx = load_doubles(reference.x + i), ry = load_doubles(reference.y + i),
                     rz = load_doubles(reference.z + i);

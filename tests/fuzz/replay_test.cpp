@@ -10,6 +10,11 @@
 #include "fuzz/formats.h"
 
 namespace mallow::fuzz {
+
+void PrintTo(const Format& format, std::ostream* out) {
+  *out << format.name;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -115,7 +115,7 @@ TEST(surface_kernel, no_particles_and_far_particles_are_outside) {
   const Cloud points(8, 4);
   Cloud far(1, 5);
   far.x[0] = 2.5f;
-  for (const std::size_t count : {0, 1}) {
+  for (const std::size_t count : {std::size_t{0}, std::size_t{1}}) {
     float sums[k_sums * 8], distances[8];
     k.sum_at_points(points.raw(), 8, far.raw(), count, sums);
     k.distances(k_shape, sums, 8, distances);

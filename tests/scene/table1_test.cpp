@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <ostream>
 
 #include "mallow/scene.h"
 
@@ -14,6 +15,7 @@ struct Row {
   float alpha, update_threshold;
   int voxels;
   bool exact;  ///< the scene is decoded to the digit
+  friend void PrintTo(const Row& row, std::ostream* out) { *out << row.scene; }
 };
 
 class Table1 : public testing::TestWithParam<Row> {};

@@ -149,8 +149,8 @@ TEST(regions, rigid_motion_gives_goal_equal_position) {
 TEST(regions, rigid_motion_gives_goal_equal_position_at_a_large_body) {
   std::vector<Vec3> bar;
   for (int z = 0; z < 400; ++z)
-    for (int k = 0; k < 9; ++k)
-      bar.push_back({static_cast<float>(k % 3), static_cast<float>(k / 3), static_cast<float>(z)});
+    for (int y = 0; y < 3; ++y)
+      for (int x = 0; x < 3; ++x) bar.push_back(Eigen::Vector3i(x, y, z).cast<float>());
   World world(bar, 2.5f);
   const Eigen::AngleAxisd turn(1.0, Eigen::Vector3d(1, 1, 0).normalized());
   world.transform([&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return turn * x; });
@@ -200,7 +200,8 @@ TEST(regions, of_a_stride_are_drawn_once_in_so_many_rows_and_in_no_column_of_a_l
       }
       EXPECT_EQ(drawn, 1);
     }
-    for (const int count : at_place) EXPECT_NEAR(count, 1000 / static_cast<int>(stride), 60) << stride;
+    const int expected = 1000 / static_cast<int>(stride);
+    for (const int count : at_place) EXPECT_NEAR(count, expected, 60) << stride;
   }
 }
 
@@ -278,7 +279,7 @@ TEST(rotation, is_the_polar_factor_of_every_region_to_single_precision) {
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Eigen::Matrix3d r = svd.matrixU() * svd.matrixV().transpose();
     if (r.determinant() < 0 || svd.singularValues()[1] < 1e-2 * svd.singularValues()[0]) continue;
-    const Eigen::Vector3d s = svd.singularValues();
+    const Eigen::Vector3d& s = svd.singularValues();
     // Rounding of A (a few 1e-7 of its size) turns the rotation by its share of the weakest pair of
     // directions.
     EXPECT_LT(Eigen::AngleAxisd(world.rotation(j).transpose() * r).angle(),

@@ -44,10 +44,12 @@ const bool mallow::test::k_counts_allocations = true;
 // operators new of libstdc++ and libc++, plain and aligned, end here as well.
 extern "C" {
 
+// NOLINTBEGIN(bugprone-reserved-identifier)
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
+// NOLINTEND(bugprone-reserved-identifier)
 
 void* malloc(std::size_t size) {
   mallow::test::note(size);

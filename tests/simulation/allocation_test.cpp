@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <new>
+#include <ostream>
 
 #include "allocation_counter.h"
 #include "mallow/mallow.h"
@@ -56,6 +57,9 @@ struct Setup {
   int threads;
   float alpha;
   float neighbor_slack;
+  friend void PrintTo(const Setup& setup, std::ostream* out) {
+    *out << setup.threads << " threads, alpha " << setup.alpha << ", slack " << setup.neighbor_slack;
+  }
 };
 
 /// Two groups that lie on each other in a box, with a pin, a force and a collider that moves. The box is
@@ -66,7 +70,7 @@ Simulation scene(const Setup& setup) {
                 .update_interval = 7,
                 .neighbor_slack = setup.neighbor_slack,
                 .threads = setup.threads});
-  const auto cube = [](int side, Vec3 corner) {
+  const auto cube = [](int side, const Vec3& corner) {
     return sample(Lattice{.count = {side, side, side}, .corner = corner, .jitter = 0.1f});
   };
   const Material material{.alpha = setup.alpha, .update_threshold = 1e6f, .viscosity = 0.5f};

@@ -22,7 +22,7 @@ SolverConfig config(float neighbor_slack = 0) {
   return c;
 }
 
-Body cube(int side, Vec3 corner) {
+Body cube(int side, const Vec3& corner) {
   return sample(Lattice{{side, side, side}, 1.0f, corner});
 }
 

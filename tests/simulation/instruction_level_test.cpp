@@ -14,7 +14,7 @@ Simulation scene(Formulation formulation, int threads, std::optional<Instruction
                 .formulation = formulation,
                 .threads = threads,
                 .instruction_level = level});
-  const auto cube = [](Vec3 corner) {
+  const auto cube = [](const Vec3& corner) {
     return sample(Lattice{.count = {9, 8, 7}, .corner = corner, .jitter = 0.1f});
   };
   s.add_body(cube({0, 0, 0.2f}), Material{.alpha = 0.6f, .update_threshold = 0.1f, .viscosity = 0.7f});

@@ -20,7 +20,7 @@ SolverConfig config(int threads = 2) {
   return c;
 }
 
-Body cube(int side, Vec3 corner = {0, 0, 0}) {
+Body cube(int side, const Vec3& corner = {0, 0, 0}) {
   return sample(Lattice{{side, side, side}, 1.0f, corner});
 }
 

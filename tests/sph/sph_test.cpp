@@ -83,8 +83,8 @@ struct World {
 
 TEST(density, of_a_full_lattice_is_the_rest_density) {
   VectorColumn x(11 * 11 * 11);
-  for (std::size_t i = 0; i < x.size(); ++i)
-    x.set(i, {static_cast<float>(i % 11), static_cast<float>(i / 11 % 11), static_cast<float>(i / 121)});
+  for (int i = 0; i < 11 * 11 * 11; ++i)
+    x.set(static_cast<std::size_t>(i), Eigen::Vector3i(i % 11, i / 11 % 11, i / 121).cast<float>());
   Sph sph;
   sph.support_radius = 2.9f;
   sph.factors = kernel_factors(2.9);

@@ -113,7 +113,7 @@ void Cache::check(const fs::path& folder, bool overwrite) try {
 
 Cache Cache::create(const fs::path& folder, bool overwrite) {
   check(folder, overwrite);
-  const Cache cache(folder);
+  Cache cache(folder);
   try {
     fs::create_directories(folder);
     check_writable(cache.scene_file());
@@ -133,7 +133,7 @@ Cache Cache::create(const fs::path& folder, bool overwrite) {
 }
 
 Cache Cache::open_to_resume(const fs::path& folder) {
-  const Cache cache(folder);
+  Cache cache(folder);
   if (!fs::is_regular_file(cache.scene_file()))
     throw IoError({folder.string(), 0, 0, "--resume",
                    "holds no run of mallow (no scene.toml); start one with: mallow run SCENE --out " +

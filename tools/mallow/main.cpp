@@ -10,7 +10,7 @@
 #include "mallow/scene.h"
 #include "mallow/surface_command.h"
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 throws where two options clash
   using namespace mallow::cli;
   CLI::App app("mallow: fast animation of viscoelastic materials", "mallow");
   app.set_version_flag("--version", MALLOW_VERSION);
