@@ -8,9 +8,6 @@
 namespace mallow::scene_file {
 namespace {
 
-/// What a string can stand behind. A parser that meets a quote elsewhere goes on as if it were none.
-constexpr std::string_view k_before_strings = " \t\n=,.[{";
-
 /// Goes through a text once, and knows of TOML only where strings and comments begin and end.
 class Scan {
  public:
@@ -24,8 +21,11 @@ class Scan {
       const auto byte = static_cast<unsigned char>(text_[at_]);
       const bool continues_character = (byte & 0xC0) == 0x80;
       if (!continues_character) ++place_.column;
-      if (byte >= 0x80 && closing_.size() != 1)
-        return fault("a character beyond ASCII is not allowed: outside of comments and strings of one line");
+      if (byte >= 0x80 && !(closing_.size() == 1 && letters_))
+        return fault(
+            "a character beyond ASCII is not allowed here, only in comments and in strings of one line "
+            "behind "
+            "white space");
       if (at_ - line_begin_ > k_max_line_bytes)
         return fault("the line is too long: at most " + std::to_string(k_max_line_bytes) +
                      " bytes are allowed");
@@ -52,13 +52,12 @@ class Scan {
     const char c = text_[at_];
     if (c == '#') {
       closing_ = "\n";
+      letters_ = true;
     } else if (c == '"' || c == '\'') {
-      if (at_ > 0 && k_before_strings.find(text_[at_ - 1]) == std::string_view::npos)
-        return fault(
-            "a quote is not allowed within a value or name: strings begin behind white space or one of = , . "
-            "[ {");
       const std::string_view quotes = c == '"' ? "\"\"\"" : "'''";
       closing_ = text_.substr(at_, 3) == quotes ? quotes : quotes.substr(0, 1);
+      // Behind anything else the parser may still be within a number, which it reads to the next white space.
+      letters_ = at_ == 0 || std::string_view(" \t\n,").find(text_[at_ - 1]) != std::string_view::npos;
       skip(closing_.size() - 1);
     } else if (c == '.') {
       if (++key_points_ > k_max_key_points)
@@ -114,6 +113,7 @@ class Scan {
   std::size_t at_ = 0;
   Place place_{.line = 1, .column = 0};
   std::string_view closing_{};  ///< of the string or comment that is being read; empty outside of both
+  bool letters_ = false;        ///< it may hold characters beyond ASCII
   std::size_t line_begin_ = 0;
   std::size_t nesting_ = 0;
   std::size_t key_points_ = 0;

@@ -23,8 +23,8 @@ struct DocumentFault {
 };
 
 /// The first thing in a text that a TOML parser must not get to see, if there is one: what goes beyond the
-/// limits above, a character beyond ASCII outside of comments and strings of one line, or a quote in the
-/// middle of a value.
+/// limits above, or a character beyond ASCII outside of comments and of strings of one line that stand behind
+/// white space, a comma or nothing.
 ///
 /// toml++ 3.3 limits the nesting of values but not that of keys ("a.a.a.a = 1"), and goes into all of it by
 /// recursion; its test for white space is undefined for most characters beyond ASCII, which no scene needs

@@ -7,27 +7,50 @@
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
+/// The first `count` <= k_width lanes from i on; no more may lie in memory.
+inline Lanes load(const float* column, std::size_t i, std::size_t count) {
+  return count == k_width ? load(column + i) : load_some(column + i, count);
+}
+inline LaneVec3 load(const ConstVectors& columns, std::size_t i, std::size_t count) {
+  return {load(columns.x, i, count), load(columns.y, i, count), load(columns.z, i, count)};
+}
+inline void store(const Lanes& lanes, std::size_t count, float* to) {
+  if (count == k_width)
+    store(lanes, to);
+  else
+    store_some(lanes, count, to);
+}
+
 /// u_i: what is left of a position when the group's rigid motion is taken out.
-void displacement(const ShapeInput& in, std::size_t i, float* u) {
+inline LaneVec3 displacement(const ShapeInput& in, const LaneVec3& position, const LaneVec3& reference) {
   const float* const r = in.frame_rotation;
-  const float x = in.reference.x[i], y = in.reference.y[i], z = in.reference.z[i];
-  u[0] = (in.position.x[i] - in.frame_translation[0]) - (r[0] * x + r[1] * y + r[2] * z);
-  u[1] = (in.position.y[i] - in.frame_translation[1]) - (r[3] * x + r[4] * y + r[5] * z);
-  u[2] = (in.position.z[i] - in.frame_translation[2]) - (r[6] * x + r[7] * y + r[8] * z);
+  const float* const t = in.frame_translation;
+  const Lanes x = reference.x, y = reference.y, z = reference.z;
+  return {(position.x - t[0]) - (r[0] * x + r[1] * y + r[2] * z),
+          (position.y - t[1]) - (r[3] * x + r[4] * y + r[5] * z),
+          (position.z - t[2]) - (r[6] * x + r[7] * y + r[8] * z)};
 }
 
 void write_rows(const ShapeInput& in, std::size_t begin, std::size_t end, float* rows) noexcept {
-  for (std::size_t i = begin; i < end; ++i) {
-    float* const row = rows + (i - begin) * k_row;
-    const float x = in.reference.x[i], y = in.reference.y[i], z = in.reference.z[i];
-    float u[3];
-    displacement(in, i, u);
-    for (int a = 0; a < 3; ++a) {
-      const float wu = in.weight[i] * u[a];
-      row[3 * a] = wu * x;
-      row[3 * a + 1] = wu * y;
-      row[3 * a + 2] = wu * z;
-      row[9 + a] = wu;
+  for (std::size_t i = begin; i < end; i += k_width, rows += k_width * k_row) {
+    const std::size_t count = end - i < k_width ? end - i : k_width;
+    const LaneVec3 reference = load(in.reference, i, count);
+    const LaneVec3 u = displacement(in, load(in.position, i, count), reference);
+    const Lanes w = load(in.weight, i, count);
+    const Lanes wu[3] = {w * u.x, w * u.y, w * u.z};
+    Lanes columns[k_row_sums];
+    for (std::size_t a = 0; a < 3; ++a) {
+      columns[3 * a] = wu[a] * reference.x;
+      columns[3 * a + 1] = wu[a] * reference.y;
+      columns[3 * a + 2] = wu[a] * reference.z;
+      columns[9 + a] = wu[a];
+    }
+    if (count == k_width) {
+      store_columns(columns, k_row_sums, k_row, rows);
+    } else {
+      alignas(64) float last[k_width * k_row] = {};
+      store_columns(columns, k_row_sums, k_row, last);
+      __builtin_memcpy(rows, last, count * k_row * sizeof(float));
     }
   }
 }
@@ -83,15 +106,18 @@ void sum_regions(const ShapeInput& in, std::size_t begin, std::size_t end, const
 
 void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float* table,
            Vectors pull) noexcept {
-  for (std::size_t i = begin; i < end; ++i) {
-    alignas(64) float s[k_row];
-    float u[3];
-    sum_rows(table, in.memberships, i, s);
-    displacement(in, i, u);
-    const float x = in.reference.x[i], y = in.reference.y[i], z = in.reference.z[i], w = in.weight[i];
-    pull.x[i] = w * (s[0] * x + s[1] * y + s[2] * z + s[9]) - u[0];
-    pull.y[i] = w * (s[3] * x + s[4] * y + s[5] * z + s[10]) - u[1];
-    pull.z[i] = w * (s[6] * x + s[7] * y + s[8] * z + s[11]) - u[2];
+  alignas(64) float rows[k_width * k_row] = {};
+  for (std::size_t i = begin; i < end; i += k_width) {
+    const std::size_t count = end - i < k_width ? end - i : k_width;
+    for (std::size_t l = 0; l < count; ++l) sum_rows(table, in.memberships, i + l, rows + l * k_row);
+    Lanes s[k_row_sums];
+    load_columns(rows, k_row, k_row_sums, s);
+    const LaneVec3 reference = load(in.reference, i, count);
+    const LaneVec3 u = displacement(in, load(in.position, i, count), reference);
+    const Lanes x = reference.x, y = reference.y, z = reference.z, w = load(in.weight, i, count);
+    store(w * (s[0] * x + s[1] * y + s[2] * z + s[9]) - u.x, count, pull.x + i);
+    store(w * (s[3] * x + s[4] * y + s[5] * z + s[10]) - u.y, count, pull.y + i);
+    store(w * (s[6] * x + s[7] * y + s[8] * z + s[11]) - u.z, count, pull.z + i);
   }
 }
 
