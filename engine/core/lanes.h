@@ -171,5 +171,33 @@ inline void store_columns(Lanes* columns, std::size_t count, std::size_t stride,
   }
 }
 
+/// k_width rows from one on, or the rest of a block. The rest is loaded float by float: what lies behind it
+/// may be another thread's, or nobody's.
+struct WholeRows {
+  static constexpr std::size_t count = k_width;
+  std::size_t row;
+  Lanes get(const float* column) const { return load(column + row); }
+  void put(const Lanes& lanes, float* column) const { store(lanes, column + row); }
+  unsigned valid(unsigned bits) const { return bits; }
+};
+struct LastRows {
+  std::size_t row, count;
+  Lanes get(const float* column) const { return load_some(column + row, count); }
+  void put(const Lanes& lanes, float* column) const { store_some(lanes, count, column + row); }
+  unsigned valid(unsigned bits) const { return bits & ((1u << count) - 1); }
+};
+
+/// Calls body(rows) for the rows [begin, end).
+template <class Body>
+void for_rows(std::size_t begin, std::size_t end, const Body& body) {
+  std::size_t i = begin;
+  for (; i + k_width <= end; i += k_width) body(WholeRows{i});
+  if (i < end) body(LastRows{i, end - i});
+}
+
+template <class Rows>
+LaneVec3 get(const Rows& rows, const ConstVectors& columns) {
+  return {rows.get(columns.x), rows.get(columns.y), rows.get(columns.z)};
+}
 }  // namespace
 }  // namespace mallow::MALLOW_LEVEL

@@ -24,8 +24,7 @@ class Scan {
       if (byte >= 0x80 && !(closing_.size() == 1 && letters_))
         return fault(
             "a character beyond ASCII is not allowed here, only in comments and in strings of one line "
-            "behind "
-            "white space");
+            "behind white space");
       if (at_ - line_begin_ > k_max_line_bytes)
         return fault("the line is too long: at most " + std::to_string(k_max_line_bytes) +
                      " bytes are allowed");

@@ -7,20 +7,6 @@
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
-/// The first `count` <= k_width lanes from i on; no more may lie in memory.
-inline Lanes load(const float* column, std::size_t i, std::size_t count) {
-  return count == k_width ? load(column + i) : load_some(column + i, count);
-}
-inline LaneVec3 load(const ConstVectors& columns, std::size_t i, std::size_t count) {
-  return {load(columns.x, i, count), load(columns.y, i, count), load(columns.z, i, count)};
-}
-inline void store(const Lanes& lanes, std::size_t count, float* to) {
-  if (count == k_width)
-    store(lanes, to);
-  else
-    store_some(lanes, count, to);
-}
-
 /// u_i: what is left of a position when the group's rigid motion is taken out.
 inline LaneVec3 displacement(const ShapeInput& in, const LaneVec3& position, const LaneVec3& reference) {
   const float* const r = in.frame_rotation;
@@ -32,11 +18,10 @@ inline LaneVec3 displacement(const ShapeInput& in, const LaneVec3& position, con
 }
 
 void write_rows(const ShapeInput& in, std::size_t begin, std::size_t end, float* rows) noexcept {
-  for (std::size_t i = begin; i < end; i += k_width, rows += k_width * k_row) {
-    const std::size_t count = end - i < k_width ? end - i : k_width;
-    const LaneVec3 reference = load(in.reference, i, count);
-    const LaneVec3 u = displacement(in, load(in.position, i, count), reference);
-    const Lanes w = load(in.weight, i, count);
+  for_rows(begin, end, [&](const auto& part) {
+    const LaneVec3 reference = get(part, in.reference);
+    const LaneVec3 u = displacement(in, get(part, in.position), reference);
+    const Lanes w = part.get(in.weight);
     const Lanes wu[3] = {w * u.x, w * u.y, w * u.z};
     Lanes columns[k_row_sums];
     for (std::size_t a = 0; a < 3; ++a) {
@@ -45,14 +30,15 @@ void write_rows(const ShapeInput& in, std::size_t begin, std::size_t end, float*
       columns[3 * a + 2] = wu[a] * reference.z;
       columns[9 + a] = wu[a];
     }
-    if (count == k_width) {
-      store_columns(columns, k_row_sums, k_row, rows);
+    float* const to = rows + (part.row - begin) * k_row;
+    if (part.count == k_width) {
+      store_columns(columns, k_row_sums, k_row, to);
     } else {
       alignas(64) float last[k_width * k_row] = {};
       store_columns(columns, k_row_sums, k_row, last);
-      __builtin_memcpy(rows, last, count * k_row * sizeof(float));
+      __builtin_memcpy(to, last, part.count * k_row * sizeof(float));
     }
-  }
+  });
 }
 
 /// Rows are added in the widest registers of the level by name: left to itself GCC 12 keeps half of the
@@ -107,18 +93,18 @@ void sum_regions(const ShapeInput& in, std::size_t begin, std::size_t end, const
 void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float* table,
            Vectors pull) noexcept {
   alignas(64) float rows[k_width * k_row] = {};
-  for (std::size_t i = begin; i < end; i += k_width) {
-    const std::size_t count = end - i < k_width ? end - i : k_width;
-    for (std::size_t l = 0; l < count; ++l) sum_rows(table, in.memberships, i + l, rows + l * k_row);
+  for_rows(begin, end, [&](const auto& part) {
+    for (std::size_t l = 0; l < part.count; ++l)
+      sum_rows(table, in.memberships, part.row + l, rows + l * k_row);
     Lanes s[k_row_sums];
     load_columns(rows, k_row, k_row_sums, s);
-    const LaneVec3 reference = load(in.reference, i, count);
-    const LaneVec3 u = displacement(in, load(in.position, i, count), reference);
-    const Lanes x = reference.x, y = reference.y, z = reference.z, w = load(in.weight, i, count);
-    store(w * (s[0] * x + s[1] * y + s[2] * z + s[9]) - u.x, count, pull.x + i);
-    store(w * (s[3] * x + s[4] * y + s[5] * z + s[10]) - u.y, count, pull.y + i);
-    store(w * (s[6] * x + s[7] * y + s[8] * z + s[11]) - u.z, count, pull.z + i);
-  }
+    const LaneVec3 reference = get(part, in.reference);
+    const LaneVec3 u = displacement(in, get(part, in.position), reference);
+    const Lanes x = reference.x, y = reference.y, z = reference.z, w = part.get(in.weight);
+    part.put(w * (s[0] * x + s[1] * y + s[2] * z + s[9]) - u.x, pull.x);
+    part.put(w * (s[3] * x + s[4] * y + s[5] * z + s[10]) - u.y, pull.y);
+    part.put(w * (s[6] * x + s[7] * y + s[8] * z + s[11]) - u.z, pull.z);
+  });
 }
 
 }  // namespace

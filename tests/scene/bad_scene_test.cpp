@@ -246,9 +246,8 @@ TEST_F(bad_scene, refuses_duplicate_keys_and_broken_toml_with_line_and_column) {
 
 TEST_F(bad_scene, keeps_letters_beyond_ascii_to_comments_and_strings) {
   const std::string message =
-      "a character beyond ASCII is not allowed here, only in comments and in strings of one line behind "
-      "white "
-      "space";
+      "a character beyond ASCII is not allowed here, only in comments and in strings of one line "
+      "behind white space";
   EXPECT_EQ(problems("# \"γ\n[solver] # 'ρ\nσ = 2.0\n"),
             std::vector<std::string>{"scene.toml:3:1: " + message});
   EXPECT_EQ(problems("a = \"γ\\\"γ\" γ"), std::vector<std::string>{"scene.toml:1:12: " + message});
