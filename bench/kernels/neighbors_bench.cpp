@@ -35,11 +35,13 @@ struct Search {
       points = reordered(points, places);
     }
     grid.spacing = scene.spacing;
-    build_grid(threads);
+    build_grid(threads, level);
     build_lists(threads, level);
     build_clusters(threads, level);
   }
-  void build_grid(int threads) { build_cell_grid(points, 0, points.size(), k_radius, threads, grid); }
+  void build_grid(int threads, InstructionLevel level) {
+    build_cell_grid(points, 0, points.size(), k_radius, threads, level, grid);
+  }
   void build_lists(int threads, InstructionLevel level) {
     build_neighbor_lists(grid, k_radius, threads, level, lists);
   }
@@ -61,13 +63,13 @@ void add_neighbors(const KernelVariants& variants, KernelSet& set) {
     for (const Order order : {Order::cells, Order::shuffled}) {
       const std::string label = scene.name + (order == Order::cells ? "_in_cell_order" : "_shuffled");
       for (const int threads : variants.threads) {
-        set.add({"cell_grid", label, threads, "", "particle"}, [=] {
-          const auto search = std::make_shared<Search>(scene, order, threads, best_instruction_level());
-          return Timed{.run = [=] { search->build_grid(threads); },
-                       .items = static_cast<double>(search->points.size()),
-                       .about = search->about()};
-        });
         for (const InstructionLevel level : variants.levels) {
+          set.add({"cell_grid", label, threads, name(level), "particle"}, [=] {
+            const auto search = std::make_shared<Search>(scene, order, threads, level);
+            return Timed{.run = [=] { search->build_grid(threads, level); },
+                         .items = static_cast<double>(search->points.size()),
+                         .about = search->about()};
+          });
           set.add({"cluster_lists", label, threads, name(level), "pair"}, [=] {
             const auto search = std::make_shared<Search>(scene, order, threads, level);
             return Timed{.run = [=] { search->build_clusters(threads, level); },

@@ -16,9 +16,11 @@ Aabb bounds_of(const VectorColumn& points, std::size_t begin, std::size_t end, i
         for (std::size_t a = 0; a < 3; ++a) {
           const float* const values = points.axis(a) + begin;
           float low = HUGE_VALF, high = -HUGE_VALF;
+          // In any order: the smallest and the largest of numbers are the same. What is none is passed over.
+#pragma omp simd reduction(min : low) reduction(max : high)
           for (std::size_t i = first; i < last; ++i) {
-            low = std::min(low, values[i]);
-            high = std::max(high, values[i]);
+            low = values[i] < low ? values[i] : low;
+            high = values[i] > high ? values[i] : high;
           }
           box.min[static_cast<int>(a)] = low;
           box.max[static_cast<int>(a)] = high;

@@ -28,10 +28,10 @@ void ParticleCells::sort(std::span<const Vec3> positions, float spacing, float r
   parallel_for(threads, positions.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) positions_.set(i, positions[i]);
   });
-  build_cell_grid(positions_, 0, positions.size(), radius, threads, grid_);
+  build_cell_grid(positions_, 0, positions.size(), radius, threads, best_instruction_level(), grid_);
   particle_.clear();
   if (!thin_crowds()) return;
-  build_cell_grid(positions_, 0, positions_.size(), radius, threads, grid_);
+  build_cell_grid(positions_, 0, positions_.size(), radius, threads, best_instruction_level(), grid_);
 }
 
 void ParticleCells::move(VectorColumn& positions, int threads) {
@@ -39,7 +39,7 @@ void ParticleCells::move(VectorColumn& positions, int threads) {
   for (std::size_t place = 0; place < count(); ++place) particles[place] = particle(place);
   particle_.swap(particles);
   positions_.swap(positions);
-  build_cell_grid(positions_, 0, positions_.size(), radius_, threads, grid_);
+  build_cell_grid(positions_, 0, positions_.size(), radius_, threads, best_instruction_level(), grid_);
 }
 
 /// Leaves a few particles of those that share a place in crowded cells; tells whether there are any such.

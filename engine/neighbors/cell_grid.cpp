@@ -18,6 +18,8 @@ constexpr double k_along = 0.5;
 /// Cells, and columns, that one thread handles at a time.
 constexpr std::size_t k_cell_block = 8192;
 constexpr std::size_t k_column_block = 512;
+/// Points that one thread counts in less time than several take to hand each other their counts.
+constexpr std::size_t k_least_chunk = 16384;
 
 /// The box of the points that are finite, or no room at 0. Others are for the caller to refuse; no box around
 /// them would have an end.
@@ -70,35 +72,6 @@ void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, flo
   grid.rounding = static_cast<float>(1e-6 * size.maxCoeff() + 1e-5 * static_cast<double>(radius));
   for (int a = 0; a < 3; ++a) grid.dims[static_cast<std::size_t>(a)] = static_cast<int>(cells(a));
 }
-
-/// Monotone in each coordinate, so that what lies between two coordinates lies in the cells between theirs,
-/// also where they are clamped.
-struct CellIndex {
-  Vec3 origin;
-  float inverse_along, inverse_across;
-  float last[3];
-  int dims[3];
-
-  explicit CellIndex(const CellGrid& grid)
-      : origin(grid.origin),
-        inverse_along(1.0f / grid.along),
-        inverse_across(1.0f / grid.across),
-        dims{grid.dims[0], grid.dims[1], grid.dims[2]} {
-    for (std::size_t a = 0; a < 3; ++a) last[a] = static_cast<float>(grid.dims[a] - 1);
-  }
-  std::uint32_t operator()(float x, float y, float z) const {
-    // Clamped before it is rounded down: a coordinate far outside would not fit an integer. In this order what
-    // is not a number becomes 0.
-    const auto coordinate = [&](float value, std::size_t a, float inverse) {
-      const float cell = (value - origin[static_cast<int>(a)]) * inverse;
-      return static_cast<int>(std::max(0.0f, std::min(cell, last[a])));
-    };
-    const std::size_t column =
-        column_of(dims, coordinate(y, 1, inverse_across), coordinate(z, 2, inverse_across));
-    return static_cast<std::uint32_t>(column * static_cast<std::size_t>(dims[0])) +
-           static_cast<std::uint32_t>(coordinate(x, 0, inverse_along));
-  }
-};
 
 /// Counts of chunk after chunk become places: cell by cell, and chunk by chunk within a cell.
 void scan_counts(std::size_t cells, std::size_t chunks, int threads, CellGrid& grid) {
@@ -163,7 +136,7 @@ void cut_clusters(int threads, CellGrid& grid) {
 }  // namespace
 
 void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size_t end, float radius,
-                     int threads, CellGrid& grid) {
+                     int threads, InstructionLevel level, CellGrid& grid) {
   const std::size_t n = end - begin;
   choose_cells(positions, begin, end, radius, threads, grid);
   const std::size_t cells = static_cast<std::size_t>(grid.dims[0]) * grid.columns();
@@ -173,38 +146,45 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
   grid.cell_start.resize_with_room(cells + 1);
   const ConstVectors x{positions.x() + begin, positions.y() + begin, positions.z() + begin};
 
-  // Each thread counts and scatters one chunk of the points, in order: the sort is stable whatever the chunks
-  // are. More chunks than these would count more cells than points.
-  const std::size_t chunks = std::clamp<std::size_t>(4 * n / cells, 1, static_cast<std::size_t>(threads));
+  const SearchInput input = search_input(grid, radius);
+  const SearchKernels& kernels = MALLOW_SELECT(level, search_kernels);
+  parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
+    kernels.cells_of(input, x, first, last, grid.cell_of.data());
+  });
+
+  // A thread counts and sorts a chunk of the points, in order: the sort is stable whatever the chunks are.
+  const std::size_t chunks = std::clamp<std::size_t>(std::min(4 * n / cells, n / k_least_chunk), 1,
+                                                     static_cast<std::size_t>(threads));
   const std::size_t chunk = (n + chunks - 1) / chunks;
   grid.counts.resize_with_room(chunks * cells);
-  const CellIndex cell_index(grid);
+  const auto counts_of = [&](std::size_t point) { return grid.counts.data() + point / chunk * cells; };
   parallel_for(
       threads, n,
       [&](std::size_t first, std::size_t last) {
-        std::uint32_t* counts = grid.counts.data() + first / chunk * cells;
+        std::uint32_t* const counts = counts_of(first);
         std::fill_n(counts, cells, 0u);
-        for (std::size_t i = first; i < last; ++i) {
-          const std::uint32_t cell = cell_index(x.x[i], x.y[i], x.z[i]);
-          grid.cell_of[i] = cell;
-          ++counts[cell];
-        }
+        for (std::size_t i = first; i < last; ++i) ++counts[grid.cell_of[i]];
       },
       chunk);
   scan_counts(cells, (n + chunk - 1) / chunk, threads, grid);
   parallel_for(
       threads, n,
       [&](std::size_t first, std::size_t last) {
-        std::uint32_t* next = grid.counts.data() + first / chunk * cells;
-        for (std::size_t i = first; i < last; ++i) {
-          const std::uint32_t place = next[grid.cell_of[i]]++;
-          grid.order[place] = static_cast<std::uint32_t>(i);
-          grid.sorted.x()[place] = x.x[i];
-          grid.sorted.y()[place] = x.y[i];
-          grid.sorted.z()[place] = x.z[i];
-        }
+        std::uint32_t* const next = counts_of(first);
+        for (std::size_t i = first; i < last; ++i)
+          grid.order[next[grid.cell_of[i]]++] = static_cast<std::uint32_t>(i);
       },
       chunk);
+  const Vectors sorted = raw(grid.sorted);
+  const std::uint32_t* const order = grid.order.data();
+  parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
+    for (std::size_t place = first; place < last; ++place) {
+      const std::size_t i = order[place];
+      sorted.x[place] = x.x[i];
+      sorted.y[place] = x.y[i];
+      sorted.z[place] = x.z[i];
+    }
+  });
   cut_clusters(threads, grid);
 }
 

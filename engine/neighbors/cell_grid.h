@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/isa.h"
 
 namespace mallow {
 
@@ -47,6 +48,6 @@ struct CellGrid {
 /// Count, scan, scatter: a stable sort, the same for any number of threads. positions: finite. radius: > 0,
 /// the largest that will be searched for.
 void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size_t end, float radius,
-                     int threads, CellGrid& grid);
+                     int threads, InstructionLevel level, CellGrid& grid);
 
 }  // namespace mallow

@@ -22,6 +22,30 @@ MALLOW_INLINE Floats smallest(Floats v) {
   return v < by_one ? v : by_one;
 }
 
+/// What `place` along an axis counts to, before it is rounded down. Clamped before: a coordinate far outside
+/// would not fit an integer.
+MALLOW_INLINE Floats clamped_cell(const SearchInput& in, int axis, const Floats& place) {
+  const Floats cell = (place - in.origin[axis]) * in.inverse_edge[axis];
+  return larger(smaller(all(static_cast<float>(in.dims[axis] - 1)), cell), Floats{});
+}
+
+void cells_of(const SearchInput& in, ConstVectors points, std::size_t begin, std::size_t end,
+              std::uint32_t* cells) noexcept {
+  // As column_of, but for eight; only the last strip may be narrower.
+  const int last_strip = (in.dims[1] - 1) / k_strip * k_strip, narrower = k_strip - (in.dims[1] - last_strip);
+  const Floats last = all(static_cast<float>(last_strip));
+  for (std::size_t i = begin; i < end; i += k_cluster) {
+    const Floats y_cell = clamped_cell(in, 1, load(points.y + i));
+    const Ints x = __builtin_convertvector(clamped_cell(in, 0, load(points.x + i)), Ints);
+    const Ints y = __builtin_convertvector(y_cell, Ints);
+    const Ints z = __builtin_convertvector(clamped_cell(in, 2, load(points.z + i)), Ints);
+    const Ints width = k_strip - (~is_larger(last, y_cell) & narrower);
+    const Ints column = (y & -k_strip) * in.dims[2] + z * width + (y & (k_strip - 1));
+    const Ints cell = column * in.dims[0] + x;
+    __builtin_memcpy(cells + i, &cell, (end - i < k_cluster ? end - i : k_cluster) * sizeof(int));
+  }
+}
+
 Bounds box_of(const SearchInput& in, std::size_t cluster) noexcept {
   const std::size_t first = in.cluster_start[cluster];
   const Ints in_cluster = k_count < static_cast<int>(in.cluster_start[cluster + 1] - first);
@@ -167,6 +191,6 @@ std::size_t near_point(const SearchInput& in, std::size_t point, std::size_t n, 
 }  // namespace
 
 extern const SearchKernels search_kernels;
-const SearchKernels search_kernels = {box_of, find_runs, near_cluster, near_point};
+const SearchKernels search_kernels = {cells_of, box_of, find_runs, near_cluster, near_point};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -54,7 +54,7 @@ void refuse_overlaps(const Simulation::State& state) {
   for (const Group& group : state.groups) spacing = std::max(spacing, group.spacing);
   CellGrid grid;
   NeighborLists lists;
-  build_cell_grid(state.store.position, 0, state.store.size(), spacing, state.threads, grid);
+  build_cell_grid(state.store.position, 0, state.store.size(), spacing, state.threads, state.level, grid);
   build_neighbor_lists(grid, k_overlap * spacing, state.threads, state.level, lists);
   const auto group_of = [&](std::uint32_t row) -> const Group& {
     return *std::find_if(state.groups.begin(), state.groups.end(),

@@ -21,7 +21,7 @@ std::vector<Vec3> by_id(const ParticleStore& store, const VectorColumn& column) 
 double count_neighbors(const Simulation::State& s, const Group& group) {
   CellGrid grid;
   NeighborLists lists;
-  build_cell_grid(s.store.position, group.begin, group.end, group.shape.region_radius, s.threads, grid);
+  build_cell_grid(s.store.position, group.begin, group.end, group.shape.region_radius, s.threads, s.level, grid);
   build_neighbor_lists(grid, group.shape.region_radius, s.threads, s.level, lists);
   return lists.average();
 }

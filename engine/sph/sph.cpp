@@ -43,7 +43,7 @@ bool find_neighbors(const VectorColumn& positions, int threads, InstructionLevel
   if (keeps && keep_lists(positions, sph.support_radius, sph.neighbor_slack, threads, sph.grid, sph.kept))
     return false;
   const float radius = sph.support_radius * (1.0f + sph.neighbor_slack);
-  build_cell_grid(positions, 0, n, radius, threads, sph.grid);
+  build_cell_grid(positions, 0, n, radius, threads, level, sph.grid);
   build_cluster_lists(sph.grid, radius, threads, level, sph.lists);
   if (keeps) remember_search(sph.grid, sph.kept);
   if (sph.groups.size() == 1) return true;
