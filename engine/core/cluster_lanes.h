@@ -91,17 +91,26 @@ MALLOW_INLINE Ints is_equal(const Ints& a, int b) {
 MALLOW_INLINE Floats where(const Ints& mask, const Floats& value) {
   return reinterpret_cast<Floats>(reinterpret_cast<Ints>(value) & mask);
 }
+/// Bit l is that of lane l.
+MALLOW_INLINE unsigned bits(const Ints& mask) {
+#if defined(__AVX__)
+  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
+#elif defined(__SSE__)
+  const Halves parts = halves(reinterpret_cast<Floats>(mask));
+  return static_cast<unsigned>(_mm_movemask_ps(parts.low) | _mm_movemask_ps(parts.high) << 4);
+#else
+  unsigned result = 0;
+  for (std::size_t l = 0; l < k_cluster; ++l) result |= (mask[l] != 0 ? 1u : 0u) << l;
+  return result;
+#endif
+}
 /// Whether the mask is set in any lane.
 MALLOW_INLINE bool any(const Ints& mask) {
-#if defined(__AVX__)
-  return _mm256_movemask_ps(reinterpret_cast<__m256>(mask)) != 0;
-#elif defined(__SSE__)
+#if defined(__SSE__) && !defined(__AVX__)
   const Halves parts = halves(reinterpret_cast<Floats>(mask));
   return _mm_movemask_ps(_mm_or_ps(parts.low, parts.high)) != 0;
 #else
-  long long parts[sizeof mask / sizeof(long long)];
-  __builtin_memcpy(parts, &mask, sizeof parts);
-  return (parts[0] | parts[1] | parts[2] | parts[3]) != 0;
+  return bits(mask) != 0;
 #endif
 }
 MALLOW_INLINE Floats square_root(const Floats& value) {

@@ -131,12 +131,12 @@ constexpr LaneTable k_lane_table = lane_table();
 /// Writes the values of the lanes where the mask is, in order, and returns how many; may write k_cluster.
 MALLOW_INLINE std::size_t compress(const Ints& mask, const Ints& values, std::uint32_t* out) {
 #ifdef __AVX2__
-  const int bits = _mm256_movemask_ps(reinterpret_cast<__m256>(mask));
+  const unsigned set = bits(mask);
   const __m256i lanes =
-      _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(k_lane_table.lane[bits])));
+      _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(k_lane_table.lane[set])));
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
                       _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(values), lanes));
-  return static_cast<std::size_t>(__builtin_popcount(static_cast<unsigned>(bits)));
+  return static_cast<std::size_t>(__builtin_popcount(set));
 #else
   // Always written, kept only where the mask is: no branch to predict.
   std::size_t n = 0;

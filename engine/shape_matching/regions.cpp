@@ -219,7 +219,7 @@ void build_regions(int threads, InstructionLevel level, RegionScratch& scratch, 
   const bool every = shape.region_stride == 1;
   const MomentKernels& kernels = MALLOW_SELECT(level, moment_kernels);
   order_by_columns(shape.reference, 0, n, column_width(shape), threads, scratch.columns);
-  find_runs(scratch.columns, shape.region_radius, threads, scratch.near);
+  find_runs(scratch.columns, shape.region_radius, threads, level, scratch.near);
   scratch.owners.resize(0);
   if (!every) choose_owners(static_cast<std::uint32_t>(shape.region_stride), threads, scratch);
   const std::size_t regions = every ? n : scratch.owners.size();

@@ -94,14 +94,16 @@ TEST(run_lists, equal_brute_force_in_any_order_of_rows) {
     order_by_columns(points.x, 0, points.x.size(), points.spacing, 2, columns);
     const VectorColumn sorted = std::move(columns.sorted);
     for (const VectorColumn* x : {&points.x, &sorted}) {
-      RunLists lists;
       ColumnOrder order;
       order_by_columns(*x, 0, x->size(), points.spacing, 2, order);
-      find_runs(order, points.radius, 2, lists);
-      for (std::size_t i = 0; i < x->size(); ++i) {
-        const auto expected = literal_near(*x, i, points.radius);
-        ASSERT_EQ(rows_of(lists.of(i)), expected);
-        ASSERT_EQ(lists.members[i], expected.size());
+      for (const InstructionLevel level : levels()) {
+        RunLists lists;
+        find_runs(order, points.radius, 2, level, lists);
+        for (std::size_t i = 0; i < x->size(); ++i) {
+          const auto expected = literal_near(*x, i, points.radius);
+          ASSERT_EQ(rows_of(lists.of(i)), expected);
+          ASSERT_EQ(lists.members[i], expected.size());
+        }
       }
     }
   }
@@ -114,7 +116,7 @@ RunLists lists_in_column_order(const Points& points, int threads) {
   const VectorColumn x = std::move(columns.sorted);
   order_by_columns(x, 0, x.size(), points.spacing, threads, columns);
   RunLists lists;
-  find_runs(columns, points.radius, threads, lists);
+  find_runs(columns, points.radius, threads, best_instruction_level(), lists);
   return lists;
 }
 
