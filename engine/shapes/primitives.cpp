@@ -5,10 +5,18 @@
 #include <limits>
 #include <variant>
 
+#include "shapes/norm_range.h"
+
 namespace mallow {
 namespace {
 
 constexpr float k_no_length = std::numeric_limits<float>::min();
+
+/// |v|, also where a float does not hold the square of it.
+float norm(const Vec3& v) {
+  const float square = v.squaredNorm();
+  return square > k_least_square && square < k_greatest_square ? std::sqrt(square) : v.stableNorm();
+}
 
 /// Seen from the other side: what was inside is outside.
 SurfacePoint turned(const SurfacePoint& point) {
@@ -25,7 +33,7 @@ SurfacePoint nearest(const Plane& plane, const Vec3& x) {
 
 SurfacePoint nearest(const Sphere& sphere, const Vec3& x) {
   const Vec3 offset = x - sphere.center;
-  const float length = offset.stableNorm();
+  const float length = norm(offset);
   const Vec3 normal = length > k_no_length ? Vec3(offset / length) : Vec3::UnitZ();
   const SurfacePoint point{length - sphere.radius, normal};
   return sphere.inside ? turned(point) : point;
@@ -35,7 +43,7 @@ SurfacePoint nearest(const Box& box, const Vec3& x) {
   const Vec3 below = box.min - x;
   const Vec3 above = x - box.max;
   const Vec3 outside = above.cwiseMax(0.0f) - below.cwiseMax(0.0f);
-  const float length = outside.stableNorm();
+  const float length = norm(outside);
   SurfacePoint point;
   if (length > k_no_length) {
     point = {length, outside / length};
