@@ -32,6 +32,17 @@ struct LaneVec3 {
   Lanes x, y, z;
 };
 
+inline Lanes smaller(const Lanes& a, const Lanes& b) {
+  return b < a ? b : a;
+}
+inline Lanes larger(const Lanes& a, const Lanes& b) {
+  return b > a ? b : a;
+}
+/// Sums of three are taken as x + (y + z), as Eigen takes them.
+inline Lanes squared(const LaneVec3& v) {
+  return v.x * v.x + (v.y * v.y + v.z * v.z);
+}
+
 inline Lanes load(const float* from) {
   Lanes lanes;
   __builtin_memcpy(&lanes, from, sizeof lanes);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/parallel.h"
 
@@ -12,7 +11,7 @@ namespace {
 
 /// Distances here and those of `nearest` are rounded differently, by a few 1e-7 of the coordinates.
 constexpr float k_rounding = 1e-5f;
-/// Parts of a union that are remembered as near; where more are, contact asks the whole union.
+/// Parts of a union that are remembered as near; where more are, rows are resolved one by one.
 constexpr std::size_t k_near_parts = 32;
 
 Obstacle obstacle(const Plane& plane) {
@@ -56,39 +55,49 @@ float largest_coordinate(const Obstacle& o, const BlockBounds& bounds) {
 class NearRows {
  public:
   NearRows(const ContactBlock& block, const Collider& collider, const ContactStep& step,
-           const MotionKernels& kernels, const VectorColumn& velocity)
+           const ContactKernels& kernels, const VectorColumn& velocity)
       : block_(block), collider_(collider), step_(step), kernels_(kernels), velocity_(velocity) {
     greatest_reach_ = step.contact_offset +
                       step.time_step * (std::sqrt(block.bounds.squared_speed) + collider.velocity.norm());
     if (const Union* const shapes = std::get_if<Union>(&collider.shape)) {
-      for (const Primitive& part : shapes->parts)
-        if (std::visit([&](const auto& shape) { return mark(shape); }, part)) remember(part);
+      for (const Primitive& part : shapes->parts) std::visit([&](const auto& shape) { mark(shape); }, part);
     } else {
       std::visit([&](const auto& shape) { mark(shape); }, collider.shape);
     }
   }
   bool any() const { return any_; }
-  bool contains(std::size_t row) const { return flags_[row - block_.begin] != 0; }
 
-  SurfacePoint nearest_surface(const Vec3& x) const {
-    if (!std::holds_alternative<Union>(collider_.shape) || count_ > k_near_parts)
-      return std::visit([&](const auto& shape) { return nearest(shape, x); }, collider_.shape);
-    SurfacePoint best{std::numeric_limits<float>::infinity(), Vec3::UnitZ()};
-    for (std::size_t k = 0; k < count_; ++k) {
-      const SurfacePoint point = std::visit([&](const auto& shape) { return nearest(shape, x); }, *parts_[k]);
-      if (point.distance < best.distance) best = point;
+  /// v of these rows becomes what it is after contact; `fastest` the largest |v|² of them, where it is less.
+  void resolve(VectorColumn& velocity, float& fastest) const {
+    std::array<std::uint32_t, k_block> rows, left;
+    std::size_t count = 0;
+    for (std::size_t i = block_.begin; i < block_.end; ++i) {
+      // Always written, kept only if near: no branch to predict.
+      rows[count] = static_cast<std::uint32_t>(i);
+      count += flags_[i - block_.begin] != 0 && !(block_.pin && block_.pin[i] != 0);
     }
-    return best;
+    if (count_ <= k_near_parts) {
+      const Vec3& u = collider_.velocity;
+      count = kernels_.resolve(
+          {parts_.data(), count_, {u[0], u[1], u[2]}, collider_.restitution, collider_.friction}, step_,
+          raw(block_.position), rows.data(), count, raw(velocity), fastest, left.data());
+      rows = left;
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec3 v = resolve_contact(collider_, step_, block_.position.get(rows[k]), velocity.get(rows[k]));
+      velocity.set(rows[k], v);
+      fastest = std::max(fastest, v.squaredNorm());
+    }
   }
 
  private:
-  bool mark(const Union&) { return false; }
+  void mark(const Union&) {}
   template <class Shape>
-  bool mark(const Shape& shape) {
+  void mark(const Shape& shape) {
     const Obstacle o = obstacle(shape);
     const float slack = k_rounding * (largest_coordinate(o, block_.bounds) + greatest_reach_);
     // What is not a number is not far, either.
-    if (least_distance(o, block_.bounds) > greatest_reach_ + slack) return false;
+    if (least_distance(o, block_.bounds) > greatest_reach_ + slack) return;
     if (!any_) {
       any_ = true;
       std::fill_n(flags_.begin(), block_.end - block_.begin, std::uint8_t{0});
@@ -96,22 +105,19 @@ class NearRows {
                      block_.begin, block_.end, reach_.data());
     }
     kernels_.mark(o, raw(block_.position), slack, block_.begin, block_.end, reach_.data(), flags_.data());
-    return true;
-  }
-  void remember(const Primitive& part) {
-    if (count_ < k_near_parts) parts_[count_] = &part;
+    if (count_ < k_near_parts) parts_[count_] = o;
     ++count_;
   }
 
   const ContactBlock& block_;
   const Collider& collider_;
   const ContactStep& step_;
-  const MotionKernels& kernels_;
+  const ContactKernels& kernels_;
   const VectorColumn& velocity_;
   float greatest_reach_;
   bool any_ = false;
   std::size_t count_ = 0;
-  std::array<const Primitive*, k_near_parts> parts_;
+  std::array<Obstacle, k_near_parts> parts_;
   std::array<std::uint8_t, k_block> flags_;
   alignas(64) std::array<float, k_block> reach_;
 };
@@ -119,18 +125,11 @@ class NearRows {
 }  // namespace
 
 void resolve_contacts(const ContactBlock& rows, std::span<const Collider> colliders, const ContactStep& step,
-                      const MotionKernels& kernels, VectorColumn& velocity) {
+                      const ContactKernels& kernels, VectorColumn& velocity) {
   ContactBlock block = rows;
   for (const Collider& collider : colliders) {
     const NearRows near(block, collider, step, kernels, velocity);
-    if (!near.any()) continue;
-    for (std::size_t i = block.begin; i < block.end; ++i) {
-      if (!near.contains(i) || (block.pin && block.pin[i] != 0)) continue;
-      const SurfacePoint surface = near.nearest_surface(block.position.get(i));
-      const Vec3 v = resolve_contact(collider, surface, step, velocity.get(i));
-      velocity.set(i, v);
-      block.bounds.squared_speed = std::max(block.bounds.squared_speed, v.squaredNorm());
-    }
+    if (near.any()) near.resolve(velocity, block.bounds.squared_speed);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/column.h"
 #include "motion/contact.h"
+#include "motion/contact_kernels.h"
 #include "motion/motion_kernels.h"
 
 namespace mallow {
@@ -20,6 +21,6 @@ struct ContactBlock {
 /// asked only of rows within reach of the collider, and only for those parts of a union within reach of the
 /// block: a surface farther than contact_offset + Δt |v − u| leaves v alone, for |n| = 1. [model 5]
 void resolve_contacts(const ContactBlock& block, std::span<const Collider> colliders, const ContactStep& step,
-                      const MotionKernels& kernels, VectorColumn& velocity);
+                      const ContactKernels& kernels, VectorColumn& velocity);
 
 }  // namespace mallow

@@ -1,15 +1,9 @@
 #pragma once
 
 #include "mallow/collider.h"
+#include "motion/contact_kernels.h"
 
 namespace mallow {
-
-/// How near and how fast a contact is resolved in one step.
-struct ContactStep {
-  float time_step;       ///< Δt [s]
-  float max_push;        ///< σ/(10 Δt0): speed at which a deep overlap is pushed out at the most [m/s]
-  float contact_offset;  ///< gap at which a particle touches [m]
-};
 
 /// The velocity after contact of a particle that would move with v and is nearest to `surface` of the
 /// collider. [model 5]

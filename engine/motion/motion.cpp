@@ -67,8 +67,9 @@ std::size_t first_bad_row(const ParticleStore& store, std::size_t begin, std::si
 }
 
 /// The particles [begin, end) of the store; only reads and writes their own rows.
-MotionSums move_block(const MotionInput& in, const ForcesInput& forces, const MotionKernels& kernels,
+MotionSums move_block(const MotionInput& in, const ForcesInput& forces, InstructionLevel level,
                       std::size_t begin, std::size_t end, ParticleStore& store) {
+  const MotionKernels& kernels = MALLOW_SELECT(level, motion_kernels);
   MotionSums sums{.unpinned = end - begin};
   const BlockBounds bounds = kernels.blend(forces, begin, end, raw(store.next_velocity));
   if (forces.pin) {
@@ -83,8 +84,8 @@ MotionSums move_block(const MotionInput& in, const ForcesInput& forces, const Mo
     for (std::size_t a = 0; a < 3; ++a)
       std::copy_n(store.next_velocity.axis(a) + begin, end - begin, free[a].data());
   if (!in.colliders.empty())
-    resolve_contacts({begin, end, store.position, forces.pin, bounds}, in.colliders, in.contact, kernels,
-                     store.next_velocity);
+    resolve_contacts({begin, end, store.position, forces.pin, bounds}, in.colliders, in.contact,
+                     MALLOW_SELECT(level, contact_kernels), store.next_velocity);
   const ConstVectors velocity = raw(std::as_const(store.next_velocity));
   if (in.measure_external)
     sums.external =
@@ -98,12 +99,11 @@ MotionSums move_block(const MotionInput& in, const ForcesInput& forces, const Mo
 
 MotionSums move_particles(const MotionInput& in, int threads, InstructionLevel level, ParticleStore& store,
                           std::vector<MotionSums>& partial) {
-  const MotionKernels& kernels = MALLOW_SELECT(level, motion_kernels);
   const ForcesInput input = forces(in, store);
   return parallel_reduce(
       threads, in.end - in.begin, partial, MotionSums{},
       [&](std::size_t begin, std::size_t end) {
-        return move_block(in, input, kernels, in.begin + begin, in.begin + end, store);
+        return move_block(in, input, level, in.begin + begin, in.begin + end, store);
       },
       [](MotionSums a, const MotionSums& b) {
         a.external += b.external;

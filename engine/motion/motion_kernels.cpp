@@ -1,6 +1,5 @@
-// Blend and positions of model section 4 [TK eq. 10, 11, 13], V of section 3 [TK eq. 12], and the distances
-// that tell whom contact may concern. Each lane is a particle. Sums of three are taken as x + (y + z), as
-// Eigen takes them.
+// Blend and positions of model section 4 [TK eq. 10, 11, 13] and V of section 3 [TK eq. 12]. Each lane is a
+// particle.
 #include "motion/motion_kernels.h"
 
 #include "core/lanes.h"
@@ -15,15 +14,6 @@ void add(const LaneVec3& term, LaneVec3& sum) {
 }
 void add(const Lanes& factor, const LaneVec3& term, LaneVec3& sum) {
   add({factor * term.x, factor * term.y, factor * term.z}, sum);
-}
-Lanes squared(const LaneVec3& v) {
-  return v.x * v.x + (v.y * v.y + v.z * v.z);
-}
-Lanes smaller(const Lanes& a, const Lanes& b) {
-  return b < a ? b : a;
-}
-Lanes larger(const Lanes& a, const Lanes& b) {
-  return b > a ? b : a;
 }
 float smallest(const Lanes& lanes) {
   float result = lanes[0];
@@ -70,53 +60,6 @@ BlockBounds blend(const ForcesInput& in, std::size_t begin, std::size_t end, Vec
   return {{smallest(min.x), smallest(min.y), smallest(min.z)},
           {largest(max.x), largest(max.y), largest(max.z)},
           largest(fastest)};
-}
-
-void reach(ConstVectors velocity, const float* surface_velocity, float time_step, float offset,
-           std::size_t begin, std::size_t end, float* reach) noexcept {
-  for_rows(begin, end, [&](auto rows) {
-    LaneVec3 w = get(rows, velocity);
-    w.x -= surface_velocity[0];
-    w.y -= surface_velocity[1];
-    w.z -= surface_velocity[2];
-    const Lanes distance = offset + time_step * square_root(squared(w));
-    rows.row -= begin;
-    rows.put(distance, reach);
-  });
-}
-
-// What of x is beyond a range, on either side.
-Lanes beyond(const Lanes& x, float low, float high) {
-  return larger(larger(low - x, x - high), Lanes{});
-}
-
-// Squares are compared, so that there is no root; "not farther" holds for what is not a number, too.
-LaneMask is_near(const Obstacle& o, const LaneVec3& x, const Lanes& reach) {
-  const Lanes squared_reach = reach * reach;
-  if (o.kind == Obstacle::plane) return ~((o.a[0] * x.x + (o.a[1] * x.y + o.a[2] * x.z)) - o.b[0] > reach);
-  if (o.kind == Obstacle::sphere) {
-    const Lanes distance = squared({x.x - o.a[0], x.y - o.a[1], x.z - o.a[2]});
-    const Lanes limit = o.inside ? o.b[0] - reach : o.b[0] + reach;
-    return o.inside ? ~((distance < limit * limit) & (limit > 0.0f)) : ~(distance > limit * limit);
-  }
-  if (!o.inside) {
-    const LaneVec3 outside = {beyond(x.x, o.a[0], o.b[0]), beyond(x.y, o.a[1], o.b[1]),
-                              beyond(x.z, o.a[2], o.b[2])};
-    return ~(squared(outside) > squared_reach);
-  }
-  const auto depth = [](const Lanes& y, float low, float high) { return smaller(y - low, high - y); };
-  return ~((depth(x.x, o.a[0], o.b[0]) > reach) & (depth(x.y, o.a[1], o.b[1]) > reach) &
-           (depth(x.z, o.a[2], o.b[2]) > reach));
-}
-
-void mark(const Obstacle& obstacle, ConstVectors position, float slack, std::size_t begin, std::size_t end,
-          const float* reach, std::uint8_t* flags) noexcept {
-  for_rows(begin, end, [&](auto rows) {
-    const LaneVec3 x = get(rows, position);
-    rows.row -= begin;
-    unsigned near = rows.valid(bits(is_near(obstacle, x, rows.get(reach) + slack)));
-    for (; near != 0; near &= near - 1) flags[rows.row + static_cast<unsigned>(__builtin_ctz(near))] |= 1;
-  });
 }
 
 bool advance(const ForcesInput& in, std::size_t begin, std::size_t end, ConstVectors velocity,
@@ -174,6 +117,6 @@ float fastest(const ForcesInput& in, std::size_t begin, std::size_t end) noexcep
 }  // namespace
 
 extern const MotionKernels motion_kernels;
-const MotionKernels motion_kernels = {blend, reach, mark, advance, external, fastest};
+const MotionKernels motion_kernels = {blend, advance, external, fastest};
 
 }  // namespace mallow::MALLOW_LEVEL

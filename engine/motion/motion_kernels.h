@@ -34,25 +34,10 @@ struct BlockBounds {
   float squared_speed;   ///< largest |v|² [m²/s²]
 };
 
-/// One primitive of an obstacle. What is inside keeps particles in.
-struct Obstacle {
-  enum Kind { plane, sphere, box } kind;
-  bool inside;
-  float a[3];  ///< unit normal, centre, least corner
-  float b[3];  ///< offset, radius (in b[0]), greatest corner
-};
-
-/// All but contact itself of model section 4, and which particles contact cannot concern (model 5). They
-/// write to no row outside [begin, end).
+/// All of model section 4 but contact (motion/contact_kernels.h). They write to no row outside [begin, end).
 struct MotionKernels {
   /// v' before contact of free particles and of pinned ones alike, and what it says of the rows.
   BlockBounds (*blend)(const ForcesInput&, std::size_t begin, std::size_t end, Vectors velocity) noexcept;
-  /// reach[k] = offset + Δt |v − u| of row begin + k: no surface that is farther is touched.
-  void (*reach)(ConstVectors velocity, const float* surface_velocity, float time_step, float offset,
-                std::size_t begin, std::size_t end, float* reach) noexcept;
-  /// flags[k] |= 1 unless row begin + k is farther than reach[k] + slack from the obstacle.
-  void (*mark)(const Obstacle&, ConstVectors position, float slack, std::size_t begin, std::size_t end,
-               const float* reach, std::uint8_t* flags) noexcept;
   /// x' = x + Δt v'. Returns whether all that is new is finite.
   bool (*advance)(const ForcesInput&, std::size_t begin, std::size_t end, ConstVectors velocity,
                   Vectors position) noexcept;

@@ -229,6 +229,31 @@ TEST(move_particles, equals_the_recurrence_far_from_the_origin) {
   EXPECT_GT(world.expect_literal(), 10u);
 }
 
+// Centres, and gaps whose squares a float does not hold, are resolved one by one.
+TEST(move_particles, equals_the_recurrence_at_distances_out_of_range) {
+  const Vec3 corner(1, 2, 3);
+  World world;
+  for (std::size_t i = 0; i < k_rows; ++i) {
+    const float tiny = std::ldexp(1.0f, -static_cast<int>(i % 120) - 20);
+    world.store.position.set(i, i % 3 == 0   ? corner
+                                : i % 3 == 1 ? Vec3(tiny, -tiny, 0)
+                                             : Vec3(-tiny, 0, 0.5f * tiny));
+  }
+  for (const auto& shape : std::vector<std::variant<Plane, Sphere, Box, Union>>{
+           Sphere{corner, 0.5f},
+           Sphere{{0, 0, 0}, 1e-3f},
+           Sphere{{0, 0, 0}, 2, true},
+           Sphere{{3e17f, 0, 0}, 3e17f},
+           Sphere{{0, -2e16f, 0}, 2e16f, true},
+           Box{{-3, -3, -3}, {0, 0, 0}},
+           Box{{0, 0, 0}, {1, 2, 3}},
+           Union{{Box{{-3, -3, -3}, {0, 0, 0}}, Sphere{{0, 0, 0}, 1e-3f}, Sphere{corner, 0.1f}}},
+       }) {
+    world.collide({{.shape = shape, .velocity = {0.3f, 0, 0.2f}, .friction = 0.3f}});
+    EXPECT_GT(world.expect_literal(), 5u);
+  }
+}
+
 TEST(move_particles, leaves_all_other_rows_alone) {
   World world;
   const Vec3 mark(7, 8, 9);

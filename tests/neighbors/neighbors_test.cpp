@@ -189,7 +189,8 @@ TEST(neighbors, cell_order_is_stable_at_every_level_and_thread_count) {
   CellGrid one, other;
   build_cell_grid(x, 0, points.size(), 0.5f, 1, InstructionLevel::baseline, one);
   for (std::size_t c = 0; c + 1 < one.cell_start.size(); ++c)
-    EXPECT_TRUE(std::is_sorted(one.order.begin() + one.cell_start[c], one.order.begin() + one.cell_start[c + 1]));
+    EXPECT_TRUE(
+        std::is_sorted(one.order.begin() + one.cell_start[c], one.order.begin() + one.cell_start[c + 1]));
   for (const InstructionLevel level : levels())
     for (const int threads : {1, 2, 3, 7}) {
       build_cell_grid(x, 0, points.size(), 0.5f, threads, level, other);
