@@ -21,7 +21,15 @@ int thread_count(int requested);
 /// done takes from the ranges of others.
 class SharedBlocks {
  public:
-  SharedBlocks(std::size_t threads, std::size_t blocks) : ranges_(std::min(threads, k_max_ranges)) {
+  /// More threads share ranges: they take no memory, and neighbours of a block stay few cores away.
+  static constexpr std::size_t k_max_ranges = 64;
+  static std::size_t ranges(int threads) { return std::min(static_cast<std::size_t>(threads), k_max_ranges); }
+  /// The range that a block is in.
+  static std::size_t range_of(std::size_t block, std::size_t ranges, std::size_t blocks) {
+    return ((block + 1) * ranges - 1) / blocks;
+  }
+
+  SharedBlocks(int threads, std::size_t blocks) : ranges_(ranges(threads)) {
     for (std::size_t r = 0; r < ranges_; ++r) {
       next_[r].block.store(r * blocks / ranges_, std::memory_order_relaxed);
       next_[r].end = (r + 1) * blocks / ranges_;
@@ -41,8 +49,6 @@ class SharedBlocks {
   }
 
  private:
-  /// More threads share ranges: they take no memory, and neighbours of a block stay few cores away.
-  static constexpr std::size_t k_max_ranges = 64;
   struct alignas(64) Range {
     std::atomic<std::size_t> block;
     std::size_t end;
@@ -61,7 +67,7 @@ void parallel_for(int threads, std::size_t n, const Body& body, std::size_t bloc
     for (std::size_t b = 0; b < blocks; ++b) run(b);
     return;
   }
-  SharedBlocks shared(static_cast<std::size_t>(threads), blocks);
+  SharedBlocks shared(threads, blocks);
 #pragma omp parallel num_threads(threads)
   shared.work(static_cast<std::size_t>(omp_get_thread_num()), run);
 }

@@ -1,6 +1,7 @@
 #include "neighbors/neighbor_lists.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <limits>
 
@@ -16,8 +17,8 @@ constexpr std::size_t k_clusters_per_block = 32;
 /// Entries of a block that a thread has room for from the start: several times as many as usual, as nobody
 /// knows when it will first meet a crowded one, and steps are not to allocate.
 constexpr std::size_t k_block_entries = 1024 * k_clusters_per_block;
-/// Entries that 32-bit places can name.
-constexpr std::size_t k_max_entries = std::numeric_limits<std::uint32_t>::max();
+/// Entries that 32-bit places can name with a tenth to spare.
+constexpr std::size_t k_max_entries = std::numeric_limits<std::uint32_t>::max() / std::size_t{11} * 10;
 
 /// What a thread needs for the lists of one block.
 struct Scratch {
@@ -87,26 +88,84 @@ struct Searcher {
   }
 };
 
+/// Hands out room for lists. A thread starts on the same range of blocks in every step, and a range has a share
+/// of its own: what a thread writes is where it wrote before, in its cache and not in another's.
+class Shares {
+ public:
+  explicit Shares(const std::vector<std::size_t>& ends) : count_(ends.size()) {
+    for (std::size_t r = 0; r < count_; ++r) {
+      shares_[r].next.store(r > 0 ? ends[r - 1] : 0, std::memory_order_relaxed);
+      shares_[r].needed.store(0, std::memory_order_relaxed);
+      shares_[r].end = ends[r];
+    }
+  }
+  static constexpr std::size_t k_no_room = SIZE_MAX;
+  /// Room for `size` entries of a range, if need be of another's share. What finds a share too short closes it.
+  std::size_t place(std::size_t range, std::size_t size) {
+    shares_[range].needed.fetch_add(size, std::memory_order_relaxed);
+    for (std::size_t k = 0; k < count_; ++k) {
+      Share& share = shares_[(range + k) % count_];
+      const std::size_t place = share.next.fetch_add(size, std::memory_order_relaxed);
+      if (place + size <= share.end) return place;
+    }
+    return k_no_room;
+  }
+  std::size_t needed() const {
+    std::size_t sum = 0;
+    for (std::size_t r = 0; r < count_; ++r) sum += shares_[r].needed;
+    return sum;
+  }
+  /// Divides `size` entries as they are needed now.
+  void divide(std::size_t size, std::vector<std::size_t>& ends) const {
+    const double each = static_cast<double>(size) / static_cast<double>(std::max<std::size_t>(1, needed()));
+    double end = 0;
+    for (std::size_t r = 0; r < count_; ++r) {
+      end += each * static_cast<double>(shares_[r].needed);
+      ends[r] = std::min(size, static_cast<std::size_t>(end));
+    }
+    ends.back() = size;
+  }
+
+ private:
+  struct alignas(64) Share {
+    std::atomic<std::size_t> next, needed;
+    std::size_t end;
+  };
+  std::size_t count_;
+  std::array<Share, SharedBlocks::k_max_ranges> shares_;
+};
+
 /// Searches all clusters; a block's lists get a place of their own in `indices`. row(cluster): the first list
 /// of a cluster. search(cluster, scratch) appends its lists and sets their counts.
 template <class Row, class Search>
 void build_lists(std::size_t clusters, int threads, NeighborLists& lists, const Row& row,
                  const Search& search) {
+  const std::size_t ranges = SharedBlocks::ranges(threads);
+  const std::size_t blocks = (clusters + k_clusters_per_block - 1) / k_clusters_per_block;
+  if (lists.share_end.size() != ranges) {
+    lists.share_end.resize(ranges);
+    for (std::size_t r = 0; r < ranges; ++r) lists.share_end[r] = (r + 1) * lists.indices.size() / ranges;
+  }
   for (;;) {
-    std::atomic<std::size_t> used{0};  // entries handed out, also beyond capacity
+    Shares shares(lists.share_end);
+    std::atomic<bool> all_placed = true;
     parallel_for(
         threads, clusters,
         [&](std::size_t first, std::size_t last) {
           thread_local Scratch scratch;
           scratch.size = 0;
+          const std::size_t range = SharedBlocks::range_of(first / k_clusters_per_block, ranges, blocks);
           for (std::size_t cluster = first; cluster < last; ++cluster) {
             search(cluster, scratch);
-            if (used.load(std::memory_order_relaxed) + scratch.size <= k_max_entries) continue;
-            used.fetch_add(scratch.size, std::memory_order_relaxed);  // far too many: only count on
+            if (scratch.size <= k_max_entries) continue;
+            shares.place(range, scratch.size);  // far too many: only count on
             scratch.size = 0;
           }
-          const std::size_t place = used.fetch_add(scratch.size, std::memory_order_relaxed);
-          if (place + scratch.size > lists.indices.size()) return;
+          const std::size_t place = shares.place(range, scratch.size);
+          if (place == Shares::k_no_room) {
+            all_placed.store(false, std::memory_order_relaxed);
+            return;
+          }
           std::copy_n(scratch.found.data(), scratch.size, lists.indices.data() + place);
           std::size_t next = place;
           for (std::size_t i = row(first); i < row(last); ++i) {
@@ -115,14 +174,18 @@ void build_lists(std::size_t clusters, int threads, NeighborLists& lists, const 
           }
         },
         k_clusters_per_block);
-    if (used > k_max_entries)
-      throw ConfigError("support_radius", "the neighbour lists would need " + std::to_string(used) +
-                                              " entries; at most 4294967295 fit: choose a smaller radius");
-    lists.total = used;
-    if (used <= lists.indices.size()) return;
-    // A tenth more than needed now, so that a body under compression does not grow the lists at every step.
-    lists.indices.resize(0);
-    lists.indices.resize(used + used / 10);
+    lists.total = shares.needed();
+    if (lists.total > k_max_entries)
+      throw ConfigError("support_radius", "the neighbour lists would need " + std::to_string(lists.total) +
+                                              " entries; at most " + std::to_string(k_max_entries) +
+                                              " fit: choose a smaller radius");
+    if (!all_placed) {
+      // A tenth more than needed now, so that a body under compression does not grow the lists at every step.
+      lists.indices.resize(0);
+      lists.indices.resize(lists.total + lists.total / 10 + ranges);
+    }
+    shares.divide(lists.indices.size(), lists.share_end);
+    if (all_placed) return;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/column.h"
 #include "core/isa.h"
@@ -18,6 +19,8 @@ struct NeighborLists {
   Column<std::uint32_t> count;    ///< how long it is
   Column<std::uint32_t> indices;  ///< the lists, with unused space between blocks
   std::size_t total = 0;          ///< sum of all counts
+  /// Per range of blocks that a thread starts on: where its share of `indices` ends.
+  std::vector<std::size_t> share_end;
 
   std::span<const std::uint32_t> of(std::size_t i) const { return {indices.data() + begin[i], count[i]}; }
   double average() const {
