@@ -74,6 +74,15 @@ MALLOW_INLINE Ints is_larger(const Floats& a, const Floats& b) {
   return a > b;
 #endif
 }
+/// Where a number is at most another.
+MALLOW_INLINE Ints is_at_most(const Floats& a, const Floats& b) {
+#if defined(__SSE__) && !defined(__AVX__)
+  const Halves x = halves(a), y = halves(b);
+  return reinterpret_cast<Ints>(joined({_mm_cmple_ps(x.low, y.low), _mm_cmple_ps(x.high, y.high)}));
+#else
+  return a <= b;
+#endif
+}
 /// Where a number is another one.
 MALLOW_INLINE Ints is_equal(const Ints& a, int b) {
 #if defined(__SSE__) && !defined(__AVX__)

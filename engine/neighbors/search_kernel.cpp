@@ -86,6 +86,35 @@ CellRange cells_within(const SearchInput& in, int axis, const Bounds& from_origi
           cell_of(in, axis, from_origin.high[axis] + reach)};
 }
 
+/// Eight columns of a slice, next to each other in y: cells [first, last] of each may be in reach of a box.
+struct ColumnCells {
+  int first[k_cluster], last[k_cluster];
+  unsigned in_reach;  ///< bit k: of column k any are
+};
+
+/// squared_y: of the squared reach, what the distance to the slice leaves. No branch asks for a distance:
+/// they could not be foreseen.
+MALLOW_INLINE ColumnCells columns_within(const SearchInput& in, const Bounds& from_origin, int y,
+                                         float squared_y) {
+  const Floats zero = {}, place = __builtin_convertvector(k_count + y, Floats), low = place * in.edge[1];
+  const Floats last_y = all(static_cast<float>(in.dims[1] - 1)),
+               last_x = all(static_cast<float>(in.dims[0] - 1));
+  const Floats below = where(is_larger(place, zero), low - from_origin.high[1]);
+  const Floats above = where(is_larger(last_y, place), from_origin.low[1] - (low + in.edge[1]));
+  const Floats distance = larger(larger(below, above), zero);
+  const Floats squared_x = squared_y - distance * distance;
+  const Floats chord = square_root(larger(squared_x, zero));
+  const auto cells = [&](const Floats& x) {
+    return __builtin_convertvector(larger(smaller(last_x, x * in.inverse_edge[0]), zero), Ints);
+  };
+  const Ints first = cells(from_origin.low[0] - chord), last = cells(from_origin.high[0] + chord);
+  ColumnCells columns;
+  __builtin_memcpy(columns.first, &first, sizeof first);
+  __builtin_memcpy(columns.last, &last, sizeof last);
+  columns.in_reach = ~bits(is_larger(zero, squared_x));
+  return columns;
+}
+
 std::size_t find_runs(const SearchInput& in, const Bounds& box, PlaceRun* runs) noexcept {
   Bounds from_origin;
   for (int a = 0; a < 3; ++a) {
@@ -95,57 +124,78 @@ std::size_t find_runs(const SearchInput& in, const Bounds& box, PlaceRun* runs) 
   const float squared_reach = in.reach * in.reach;
   const auto nx = static_cast<std::size_t>(in.dims[0]);
   const CellRange slices = cells_within(in, 2, from_origin, in.reach);
+  const CellRange rows = cells_within(in, 1, from_origin, in.reach);
+  constexpr int k_columns = static_cast<int>(k_cluster);
   std::size_t count = 0;
   for (int z = slices.first; z <= slices.last; ++z) {
     const float squared_y = squared_reach - squared_distance(in, 2, from_origin, z);
-    if (squared_y < 0) continue;
-    const CellRange rows = cells_within(in, 1, from_origin, __builtin_sqrtf(squared_y));
-    for (int y = rows.first; y <= rows.last; ++y) {
-      const std::uint32_t* const column = in.cell_start + column_of(in.dims, y, z) * nx;
-      const float squared_x = squared_y - squared_distance(in, 1, from_origin, y);
-      // The last bit of a root may have let in a row beyond the reach.
-      const CellRange cells =
-          cells_within(in, 0, from_origin, squared_x > 0 ? __builtin_sqrtf(squared_x) : 0);
-      runs[count] = {column[cells.first], column[cells.last + 1]};
-      count += runs[count].begin < runs[count].end;
+    for (int y = rows.first; y <= rows.last; y += k_columns) {
+      const ColumnCells cells = columns_within(in, from_origin, y, squared_y);
+      const int n = rows.last - y < k_columns ? rows.last - y + 1 : k_columns;
+      for (int k = 0; k < n; ++k) {
+        const std::uint32_t* const column = in.cell_start + column_of(in.dims, y + k, z) * nx;
+        // Always written, kept only if there are points.
+        runs[count] = {column[cells.first[k]], column[cells.last[k] + 1]};
+        count += (cells.in_reach >> k & 1u) & (runs[count].begin < runs[count].end ? 1u : 0u);
+      }
     }
   }
   return count;
 }
 
-#ifdef __AVX2__
-/// Per mask of eight lanes the lanes that are set, in order.
+#ifdef __SSSE3__
+/// Per mask of `lanes` lanes those that are set, in order; each as the places of `bytes` bytes.
+template <unsigned lanes, unsigned bytes>
 struct LaneTable {
-  unsigned char lane[256][k_cluster];
+  alignas(16) unsigned char places[1u << lanes][lanes * bytes];
 };
-constexpr LaneTable lane_table() {
-  LaneTable table{};
-  for (unsigned mask = 0; mask < 256; ++mask)
-    for (unsigned l = 0, n = 0; l < k_cluster; ++l)
-      if (mask >> l & 1) table.lane[mask][n++] = static_cast<unsigned char>(l);
+template <unsigned lanes, unsigned bytes>
+constexpr LaneTable<lanes, bytes> lane_table() {
+  LaneTable<lanes, bytes> table{};
+  for (unsigned mask = 0; mask < 1u << lanes; ++mask)
+    for (unsigned l = 0, n = 0; l < lanes; ++l)
+      if (mask >> l & 1)
+        for (unsigned b = 0; b < bytes; ++b)
+          table.places[mask][n++] = static_cast<unsigned char>(bytes * l + b);
   return table;
 }
-constexpr LaneTable k_lane_table = lane_table();
+#ifdef __AVX2__
+constexpr LaneTable<8, 1> k_lane_table = lane_table<8, 1>();
+#else
+constexpr LaneTable<4, 4> k_lane_table = lane_table<4, 4>();
+#endif
 #endif
 
-/// Writes the values of the lanes where the mask is, in order, and returns how many; may write k_cluster.
-MALLOW_INLINE std::size_t compress(const Ints& mask, const Ints& values, std::uint32_t* out) {
+/// Of the mask the bits of the first `count` lanes.
+MALLOW_INLINE unsigned bits_of(const Ints& mask, std::size_t count) {
+  return bits(mask) & ((1u << (count < k_cluster ? count : k_cluster)) - 1);
+}
+
+/// Writes the values of the lanes whose bit is set, in order, and returns how many; may write k_cluster.
+MALLOW_INLINE std::size_t compress(unsigned set, const Ints& values, std::uint32_t* out) {
 #ifdef __AVX2__
-  const unsigned set = bits(mask);
   const __m256i lanes =
-      _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(k_lane_table.lane[set])));
+      _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(k_lane_table.places[set])));
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
                       _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(values), lanes));
-  return static_cast<std::size_t>(__builtin_popcount(set));
+#elif defined(__SSSE3__)
+  const auto packed = [](const __m128i& four, unsigned part) {
+    return _mm_shuffle_epi8(four,
+                            _mm_load_si128(reinterpret_cast<const __m128i*>(k_lane_table.places[part])));
+  };
+  __m128i low, high;
+  __builtin_memcpy(&low, &values, sizeof low);
+  __builtin_memcpy(&high, reinterpret_cast<const char*>(&values) + sizeof low, sizeof high);
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(out), packed(low, set & 15));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(out + __builtin_popcount(set & 15)), packed(high, set >> 4));
 #else
-  // Always written, kept only where the mask is: no branch to predict.
-  std::size_t n = 0;
+  // Always written, kept only where the bit is: no branch to predict.
   for (std::size_t l = 0; l < k_cluster; ++l) {
-    out[n] = static_cast<std::uint32_t>(values[l]);
-    n -= static_cast<std::size_t>(mask[l]);
+    *out = static_cast<std::uint32_t>(values[l]);
+    out += set >> l & 1;
   }
-  return n;
 #endif
+  return static_cast<std::size_t>(__builtin_popcount(set));
 }
 
 std::size_t near_cluster(const SearchInput& in, const Bounds& box, const PlaceRun* runs, std::size_t count,
@@ -158,15 +208,14 @@ std::size_t near_cluster(const SearchInput& in, const Bounds& box, const PlaceRu
   const Floats zero = {};
   const std::uint32_t* const start = out;
   for (std::size_t r = 0; r < count; ++r) {
-    const Ints end = k_count * 0 + static_cast<int>(runs[r].end);
     const std::uint32_t behind = runs[r].end;
     for (std::uint32_t j = runs[r].begin; j < behind; j += k_cluster) {
       const Floats x = load(sx + j), y = load(sy + j), z = load(sz + j);
       const Floats dx = larger(larger(low[0] - x, x - high[0]), zero);
       const Floats dy = larger(larger(low[1] - y, y - high[1]), zero);
       const Floats dz = larger(larger(low[2] - z, z - high[2]), zero);
-      const Ints places = k_count + static_cast<int>(j);
-      out += compress((dx * dx + dy * dy + dz * dz <= limit) & (places < end), places, out);
+      const unsigned near = bits_of(is_at_most(dx * dx + dy * dy + dz * dz, limit), behind - j);
+      out += compress(near, k_count + static_cast<int>(j), out);
     }
   }
   return static_cast<std::size_t>(out - start);
@@ -179,11 +228,9 @@ std::size_t near_point(const SearchInput& in, std::size_t point, std::size_t n, 
   const std::uint32_t* const start = out;
   for (std::size_t k = 0; k < n; k += k_cluster) {
     const Floats dx = x - load(from.x + k), dy = y - load(from.y + k), dz = z - load(from.z + k);
-    const Ints listed = k_count < static_cast<int>(n - k);
-    const Ints near = (dx * dx + dy * dy + dz * dz <= limit) & listed;
     Ints values;
     __builtin_memcpy(&values, places + k, sizeof values);
-    out += compress(near, values, out);
+    out += compress(bits_of(is_at_most(dx * dx + dy * dy + dz * dz, limit), n - k), values, out);
   }
   return static_cast<std::size_t>(out - start);
 }
