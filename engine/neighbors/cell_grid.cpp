@@ -73,9 +73,15 @@ void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, flo
   for (int a = 0; a < 3; ++a) grid.dims[static_cast<std::size_t>(a)] = static_cast<int>(cells(a));
 }
 
-/// Counts of chunk after chunk become places: cell by cell, and chunk by chunk within a cell.
-void scan_counts(std::size_t cells, std::size_t chunks, int threads, CellGrid& grid) {
+/// Counts of chunk after chunk become places.
+void scan_counts(std::size_t cells, std::size_t chunks, int threads, const SearchKernels& kernels,
+                 CellGrid& grid) {
   std::uint32_t* const counts = grid.counts.data();
+  std::uint32_t* const starts = grid.cell_start.data();
+  if (chunks == 1) {
+    starts[cells] = kernels.counts_to_places(counts, chunks, cells, 0, cells, 0, starts);
+    return;
+  }
   const std::size_t blocks = (cells + k_cell_block - 1) / k_cell_block;
   grid.block_sums.resize(blocks);
   parallel_for(
@@ -89,15 +95,12 @@ void scan_counts(std::size_t cells, std::size_t chunks, int threads, CellGrid& g
       k_cell_block);
   std::uint32_t start = 0;
   for (std::uint32_t& sum : grid.block_sums) start += std::exchange(sum, start);
-  grid.cell_start[cells] = start;
+  starts[cells] = start;
   parallel_for(
       threads, cells,
       [&](std::size_t first, std::size_t last) {
-        std::uint32_t place = grid.block_sums[first / k_cell_block];
-        for (std::size_t cell = first; cell < last; ++cell) {
-          grid.cell_start[cell] = place;
-          for (std::size_t c = 0; c < chunks; ++c) place += std::exchange(counts[c * cells + cell], place);
-        }
+        kernels.counts_to_places(counts, chunks, cells, first, last, grid.block_sums[first / k_cell_block],
+                                 starts);
       },
       k_cell_block);
 }
@@ -166,7 +169,7 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
         for (std::size_t i = first; i < last; ++i) ++counts[grid.cell_of[i]];
       },
       chunk);
-  scan_counts(cells, (n + chunk - 1) / chunk, threads, grid);
+  scan_counts(cells, (n + chunk - 1) / chunk, threads, kernels, grid);
   parallel_for(
       threads, n,
       [&](std::size_t first, std::size_t last) {

@@ -46,6 +46,50 @@ void cells_of(const SearchInput& in, ConstVectors points, std::size_t begin, std
   }
 }
 
+MALLOW_INLINE Ints load_counts(const std::uint32_t* from) {
+  Ints counts;
+  __builtin_memcpy(&counts, from, sizeof counts);
+  return counts;
+}
+MALLOW_INLINE void store_counts(const Ints& counts, std::uint32_t* to) {
+  __builtin_memcpy(to, &counts, sizeof counts);
+}
+/// Lane l: the sum of the lanes up to it.
+MALLOW_INLINE Ints running_sums(Ints v) {
+  const Ints none = {};
+  v += __builtin_shufflevector(none, v, 0, 8, 9, 10, 11, 12, 13, 14);
+  v += __builtin_shufflevector(none, v, 0, 0, 8, 9, 10, 11, 12, 13);
+  return v + __builtin_shufflevector(none, v, 0, 0, 0, 0, 8, 9, 10, 11);
+}
+
+std::uint32_t counts_to_places(std::uint32_t* counts, std::size_t chunks, std::size_t cells,
+                               std::size_t first, std::size_t last, std::uint32_t place,
+                               std::uint32_t* starts) noexcept {
+  std::size_t cell = first;
+  for (; cell + k_cluster <= last; cell += k_cluster) {
+    Ints total = {};
+    for (std::size_t c = 0; c < chunks; ++c) total += load_counts(counts + c * cells + cell);
+    const Ints behind = running_sums(total) + static_cast<int>(place);
+    Ints next = behind - total;
+    store_counts(next, starts + cell);
+    for (std::size_t c = 0; c < chunks; ++c) {
+      const Ints here = load_counts(counts + c * cells + cell);
+      store_counts(next, counts + c * cells + cell);
+      next += here;
+    }
+    place = static_cast<std::uint32_t>(behind[k_cluster - 1]);
+  }
+  for (; cell < last; ++cell) {
+    starts[cell] = place;
+    for (std::size_t c = 0; c < chunks; ++c) {
+      const std::uint32_t here = counts[c * cells + cell];
+      counts[c * cells + cell] = place;
+      place += here;
+    }
+  }
+  return place;
+}
+
 Bounds box_of(const SearchInput& in, std::size_t cluster) noexcept {
   const std::size_t first = in.cluster_start[cluster];
   const Ints in_cluster = k_count < static_cast<int>(in.cluster_start[cluster + 1] - first);
@@ -238,6 +282,7 @@ std::size_t near_point(const SearchInput& in, std::size_t point, std::size_t n, 
 }  // namespace
 
 extern const SearchKernels search_kernels;
-const SearchKernels search_kernels = {cells_of, box_of, find_runs, near_cluster, near_point};
+const SearchKernels search_kernels = {cells_of,  counts_to_places, box_of,
+                                      find_runs, near_cluster,     near_point};
 
 }  // namespace mallow::MALLOW_LEVEL
