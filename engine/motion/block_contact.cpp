@@ -69,7 +69,7 @@ class NearRows {
 
   /// v of these rows becomes what it is after contact; `fastest` the largest |v|² of them, where it is less.
   void resolve(VectorColumn& velocity, float& fastest) const {
-    std::array<std::uint32_t, k_block> rows, left;
+    std::array<std::uint32_t, k_block> rows;
     std::size_t count = 0;
     for (std::size_t i = block_.begin; i < block_.end; ++i) {
       // Always written, kept only if near: no branch to predict.
@@ -80,8 +80,7 @@ class NearRows {
       const Vec3& u = collider_.velocity;
       count = kernels_.resolve(
           {parts_.data(), count_, {u[0], u[1], u[2]}, collider_.restitution, collider_.friction}, step_,
-          raw(block_.position), rows.data(), count, raw(velocity), fastest, left.data());
-      rows = left;
+          raw(block_.position), rows.data(), count, raw(velocity), fastest);
     }
     for (std::size_t k = 0; k < count; ++k) {
       const Vec3 v = resolve_contact(collider_, step_, block_.position.get(rows[k]), velocity.get(rows[k]));

@@ -165,8 +165,7 @@ struct ListedRows {
 };
 
 std::size_t resolve(const ObstacleSet& set, const ContactStep& step, ConstVectors position,
-                    const std::uint32_t* rows, std::size_t count, Vectors velocity, float& fastest,
-                    std::uint32_t* left) noexcept {
+                    std::uint32_t* rows, std::size_t count, Vectors velocity, float& fastest) noexcept {
   std::size_t left_count = 0;
   for (std::size_t k = 0; k < count; k += k_width) {
     const ListedRows listed{rows + k, count - k < k_width ? count - k : k_width};
@@ -180,7 +179,7 @@ std::size_t resolve(const ObstacleSet& set, const ContactStep& step, ConstVector
     const Lanes squares = squared(v);
     for (std::size_t l = 0; l < listed.count; ++l) {
       fastest = fastest < squares[l] ? squares[l] : fastest;
-      left[left_count] = rows[k + l];
+      rows[left_count] = rows[k + l];
       left_count += odd[l] != 0;
     }
   }

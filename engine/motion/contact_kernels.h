@@ -39,10 +39,9 @@ struct ContactKernels {
                const float* reach, std::uint8_t* flags) noexcept;
   /// v of the listed rows becomes what resolve_contact makes of it, bit for bit, and fastest the largest |v|²
   /// of them where it is less. Rows at distances out of range (shapes/norm_range.h) are left as they are and
-  /// written to `left`; returns how many. left: room for `count`.
-  std::size_t (*resolve)(const ObstacleSet&, const ContactStep&, ConstVectors position,
-                         const std::uint32_t* rows, std::size_t count, Vectors velocity, float& fastest,
-                         std::uint32_t* left) noexcept;
+  /// become the first of the list; returns how many.
+  std::size_t (*resolve)(const ObstacleSet&, const ContactStep&, ConstVectors position, std::uint32_t* rows,
+                         std::size_t count, Vectors velocity, float& fastest) noexcept;
 };
 MALLOW_DECLARE_LEVELS(ContactKernels, contact_kernels)
 

@@ -15,8 +15,9 @@ constexpr double k_min_cells = 32768.0;
 /// Edges of a cell in spacings.
 constexpr double k_across = 2.0;
 constexpr double k_along = 0.5;
-/// Cells, and columns, that one thread handles at a time.
+/// Cells, and columns, that one thread handles at a time, and cells that it handles alone.
 constexpr std::size_t k_cell_block = 8192;
+constexpr std::size_t k_few_cells = 16 * k_cell_block;
 constexpr std::size_t k_column_block = 512;
 /// Points that one thread counts in less time than several take to hand each other their counts.
 constexpr std::size_t k_least_chunk = 16384;
@@ -78,7 +79,7 @@ void scan_counts(std::size_t cells, std::size_t chunks, int threads, const Searc
                  CellGrid& grid) {
   std::uint32_t* const counts = grid.counts.data();
   std::uint32_t* const starts = grid.cell_start.data();
-  if (chunks == 1) {
+  if (chunks == 1 && cells <= k_few_cells) {
     starts[cells] = kernels.counts_to_places(counts, chunks, cells, 0, cells, 0, starts);
     return;
   }
@@ -155,7 +156,8 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
     kernels.cells_of(input, x, first, last, grid.cell_of.data());
   });
 
-  // A thread counts and sorts a chunk of the points, in order: the sort is stable whatever the chunks are.
+  // A thread counts and sorts a chunk of the points, in order: the sort is stable whatever the chunks are. More
+  // chunks than these would count more cells than points.
   const std::size_t chunks = std::clamp<std::size_t>(std::min(4 * n / cells, n / k_least_chunk), 1,
                                                      static_cast<std::size_t>(threads));
   const std::size_t chunk = (n + chunks - 1) / chunks;
