@@ -23,6 +23,14 @@ MALLOW_INLINE Floats load(const float* from) {
   __builtin_memcpy(&value, from, sizeof value);
   return value;
 }
+MALLOW_INLINE Ints load(const std::uint32_t* from) {
+  Ints values;
+  __builtin_memcpy(&values, from, sizeof values);
+  return values;
+}
+MALLOW_INLINE void store(const Ints& values, std::uint32_t* to) {
+  __builtin_memcpy(to, &values, sizeof values);
+}
 MALLOW_INLINE Floats all(float value) {
   return Floats{} + value;
 }

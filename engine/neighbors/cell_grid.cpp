@@ -4,7 +4,7 @@
 
 #include "core/bounds.h"
 #include "core/parallel.h"
-#include "neighbors/search_kernel.h"
+#include "neighbors/grid_kernels.h"
 
 namespace mallow {
 namespace {
@@ -75,7 +75,7 @@ void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, flo
 }
 
 /// Counts of chunk after chunk become places.
-void scan_counts(std::size_t cells, std::size_t chunks, int threads, const SearchKernels& kernels,
+void scan_counts(std::size_t cells, std::size_t chunks, int threads, const GridKernels& kernels,
                  CellGrid& grid) {
   std::uint32_t* const counts = grid.counts.data();
   std::uint32_t* const starts = grid.cell_start.data();
@@ -151,7 +151,7 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
   const ConstVectors x{positions.x() + begin, positions.y() + begin, positions.z() + begin};
 
   const SearchInput input = search_input(grid, radius);
-  const SearchKernels& kernels = MALLOW_SELECT(level, search_kernels);
+  const GridKernels& kernels = MALLOW_SELECT(level, grid_kernels);
   parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
     kernels.cells_of(input, x, first, last, grid.cell_of.data());
   });

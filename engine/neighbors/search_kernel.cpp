@@ -12,15 +12,6 @@ constexpr float k_rounding = 1e-5f;
 
 constexpr Ints k_count = {0, 1, 2, 3, 4, 5, 6, 7};
 
-MALLOW_INLINE Ints load_whole(const std::uint32_t* from) {
-  Ints values;
-  __builtin_memcpy(&values, from, sizeof values);
-  return values;
-}
-MALLOW_INLINE void store_whole(const Ints& values, std::uint32_t* to) {
-  __builtin_memcpy(to, &values, sizeof values);
-}
-
 /// The smallest of eight values in every lane.
 MALLOW_INLINE Floats smallest(Floats v) {
   const Floats by_four = __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
@@ -29,71 +20,6 @@ MALLOW_INLINE Floats smallest(Floats v) {
   v = smaller(v, by_two);
   const Floats by_one = __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6);
   return smaller(v, by_one);
-}
-
-/// What `place` along an axis counts to, before it is rounded down. Clamped before: a coordinate far outside
-/// would not fit an integer.
-MALLOW_INLINE Floats clamped_cell(const SearchInput& in, int axis, const Floats& place) {
-  const Floats cell = (place - in.origin[axis]) * in.inverse_edge[axis];
-  return larger(smaller(all(static_cast<float>(in.dims[axis] - 1)), cell), Floats{});
-}
-
-void cells_of(const SearchInput& in, ConstVectors points, std::size_t begin, std::size_t end,
-              std::uint32_t* cells) noexcept {
-  // As column_of, but for eight; only the last strip may be narrower.
-  const int last_strip = (in.dims[1] - 1) / k_strip * k_strip, narrower = k_strip - (in.dims[1] - last_strip);
-  const Floats last = all(static_cast<float>(last_strip));
-  const auto cells_from = [&](std::size_t i) {
-    const Floats y_cell = clamped_cell(in, 1, load(points.y + i));
-    const Ints x = __builtin_convertvector(clamped_cell(in, 0, load(points.x + i)), Ints);
-    const Ints y = __builtin_convertvector(y_cell, Ints);
-    const Ints z = __builtin_convertvector(clamped_cell(in, 2, load(points.z + i)), Ints);
-    const Ints width = k_strip - (~is_larger(last, y_cell) & narrower);
-    const Ints column = (y & -k_strip) * in.dims[2] + z * width + (y & (k_strip - 1));
-    return column * in.dims[0] + x;
-  };
-  std::size_t i = begin;
-  for (; i + k_cluster <= end; i += k_cluster) store_whole(cells_from(i), cells + i);
-  if (i == end) return;
-  std::uint32_t rest[k_cluster];
-  store_whole(cells_from(i), rest);
-  for (std::size_t l = 0; i + l < end; ++l) cells[i + l] = rest[l];
-}
-
-/// Lane l: the sum of the lanes up to it.
-MALLOW_INLINE Ints running_sums(Ints v) {
-  const Ints none = {};
-  v += __builtin_shufflevector(none, v, 0, 8, 9, 10, 11, 12, 13, 14);
-  v += __builtin_shufflevector(none, v, 0, 0, 8, 9, 10, 11, 12, 13);
-  return v + __builtin_shufflevector(none, v, 0, 0, 0, 0, 8, 9, 10, 11);
-}
-
-std::uint32_t counts_to_places(std::uint32_t* counts, std::size_t chunks, std::size_t cells,
-                               std::size_t first, std::size_t last, std::uint32_t place,
-                               std::uint32_t* starts) noexcept {
-  std::size_t cell = first;
-  for (; cell + k_cluster <= last; cell += k_cluster) {
-    Ints total = {};
-    for (std::size_t c = 0; c < chunks; ++c) total += load_whole(counts + c * cells + cell);
-    const Ints behind = running_sums(total) + static_cast<int>(place);
-    Ints next = behind - total;
-    store_whole(next, starts + cell);
-    for (std::size_t c = 0; c < chunks; ++c) {
-      const Ints here = load_whole(counts + c * cells + cell);
-      store_whole(next, counts + c * cells + cell);
-      next += here;
-    }
-    place = static_cast<std::uint32_t>(behind[k_cluster - 1]);
-  }
-  for (; cell < last; ++cell) {
-    starts[cell] = place;
-    for (std::size_t c = 0; c < chunks; ++c) {
-      const std::uint32_t here = counts[c * cells + cell];
-      counts[c * cells + cell] = place;
-      place += here;
-    }
-  }
-  return place;
 }
 
 Bounds box_of(const SearchInput& in, std::size_t cluster) noexcept {
@@ -278,8 +204,7 @@ std::size_t near_point(const SearchInput& in, std::size_t point, std::size_t n, 
   const std::uint32_t* const start = out;
   for (std::size_t k = 0; k < n; k += k_cluster) {
     const Floats dx = x - load(from.x + k), dy = y - load(from.y + k), dz = z - load(from.z + k);
-    out +=
-        compress(bits_of(is_at_most(dx * dx + dy * dy + dz * dz, limit), n - k), load_whole(places + k), out);
+    out += compress(bits_of(is_at_most(dx * dx + dy * dy + dz * dz, limit), n - k), load(places + k), out);
   }
   return static_cast<std::size_t>(out - start);
 }
@@ -287,7 +212,6 @@ std::size_t near_point(const SearchInput& in, std::size_t point, std::size_t n, 
 }  // namespace
 
 extern const SearchKernels search_kernels;
-const SearchKernels search_kernels = {cells_of,  counts_to_places, box_of,
-                                      find_runs, near_cluster,     near_point};
+const SearchKernels search_kernels = {box_of, find_runs, near_cluster, near_point};
 
 }  // namespace mallow::MALLOW_LEVEL

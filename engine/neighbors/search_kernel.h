@@ -17,7 +17,7 @@ static inline std::size_t column_of(const int* dims, int y, int z) {
          static_cast<std::size_t>(y % k_strip);
 }
 
-/// Cells, sorted points and clusters, as CellGrid holds them.
+/// Sorted points, their cells and clusters, as CellGrid holds them.
 struct SearchInput {
   ConstVectors sorted;
   const std::uint32_t* cell_start;
@@ -44,17 +44,6 @@ struct PlaceRun {
 };
 
 struct SearchKernels {
-  /// The cells of points, `begin` up to `end`, into `cells` from `begin` on. Monotone in each coordinate, so
-  /// that what lies between two coordinates lies in the cells between theirs, also where they are clamped:
-  /// cells at the border hold what lies beyond, and those at 0 what is not a number. Reads no sorted points.
-  void (*cells_of)(const SearchInput&, ConstVectors points, std::size_t begin, std::size_t end,
-                   std::uint32_t* cells) noexcept;
-  /// Counts of the points of the cells [first, last), one per chunk of points and those of chunks `cells`
-  /// apart, become places from `place` on: cell by cell, and chunk by chunk within a cell. starts: by cell,
-  /// the first of its places. Returns the place behind the last.
-  std::uint32_t (*counts_to_places)(std::uint32_t* counts, std::size_t chunks, std::size_t cells,
-                                    std::size_t first, std::size_t last, std::uint32_t place,
-                                    std::uint32_t* starts) noexcept;
   /// The box of a cluster's points.
   Bounds (*box_of)(const SearchInput&, std::size_t cluster) noexcept;
   /// Runs of points that hold all whose distance from the box is at most the radius; returns how
