@@ -1,10 +1,17 @@
 #include "core/bounds.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/parallel.h"
 
 namespace mallow {
+namespace {
+
+using Quad = float __attribute__((vector_size(16)));
+
+}  // namespace
 
 Aabb bounds_of(const VectorColumn& points, std::size_t begin, std::size_t end, int threads,
                std::vector<Aabb>& partial) {
@@ -16,11 +23,23 @@ Aabb bounds_of(const VectorColumn& points, std::size_t begin, std::size_t end, i
         for (std::size_t a = 0; a < 3; ++a) {
           const float* const values = points.axis(a) + begin;
           float low = HUGE_VALF, high = -HUGE_VALF;
-          // In any order: the smallest and the largest of numbers are the same. What is none is passed over.
-#pragma omp simd reduction(min : low) reduction(max : high)
-          for (std::size_t i = first; i < last; ++i) {
-            low = values[i] < low ? values[i] : low;
-            high = values[i] > high ? values[i] : high;
+          // Four by four: in any order the smallest and the largest are the same. What is no number is passed
+          // over.
+          Quad lows = Quad{} + low, highs = Quad{} + high;
+          std::size_t i = first;
+          for (; i + 4 <= last; i += 4) {
+            Quad four;
+            std::memcpy(&four, values + i, sizeof four);
+            lows = four < lows ? four : lows;
+            highs = four > highs ? four : highs;
+          }
+          for (; i < last; ++i) {
+            low = std::min(low, values[i]);
+            high = std::max(high, values[i]);
+          }
+          for (std::size_t l = 0; l < 4; ++l) {
+            low = std::min(low, lows[l]);
+            high = std::max(high, highs[l]);
           }
           box.min[static_cast<int>(a)] = low;
           box.max[static_cast<int>(a)] = high;
