@@ -137,11 +137,13 @@ struct Search {
     for (std::size_t s = begin; s < end; ++column) {
       const std::size_t column_end = std::min<std::size_t>(end, starts[column + 1]);
       const std::size_t points = s < column_end ? find_near(column, s, scratch.near) : 0;
+      // Of a column every other point at the most begins a run.
+      const std::size_t most_runs = (points + scratch.near.size()) / 2 + 1;
       for (; s < column_end; ++s) {
         const std::size_t from = scratch.runs;
         const std::uint32_t row = columns.order[s];
         scratch.runs += kernels.runs_in_reach(input, s, scratch.near.data(), scratch.near.size(),
-                                              scratch.room(points / 2 + 2), lists.members[row]);
+                                              scratch.room(most_runs), lists.members[row]);
         if (!columns.already) to_rows(from, scratch);
         lists.begin[row] = static_cast<std::uint32_t>(from);
         lists.count[row] = static_cast<std::uint32_t>(scratch.runs - from);

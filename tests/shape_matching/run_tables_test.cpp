@@ -39,6 +39,16 @@ Points cloud(std::size_t n, float side, float radius) {
   return points;
 }
 
+/// Two walls of columns of one point each, and a stray that makes them columns: of those near a point each is
+/// a run of its own, as the other wall's lie between.
+Points walls(int length, float radius) {
+  Points points{VectorColumn(static_cast<std::size_t>(2 * length + 1)), 1.0f, radius};
+  for (int k = 0; k < 2 * length; ++k)
+    points.x.set(static_cast<std::size_t>(k), {0, k % 2 == 0 ? 0.0f : 6.0f, static_cast<float>(k / 2)});
+  points.x.set(points.x.size() - 1, {1000, 3, 0});
+  return points;
+}
+
 /// Bodies of which some have long runs, some short ones, and one a stray far away.
 std::vector<Points> bodies() {
   std::vector<Points> all;
@@ -46,6 +56,7 @@ std::vector<Points> bodies() {
   all.push_back(lattice(9, 30, 9, 4.3f, 0.15f));
   all.push_back(lattice(200, 2, 1, 60.0f));
   all.push_back(lattice(1, 1, 1, 1.0f));
+  all.push_back(walls(60, 4.5f));
   all.push_back(cloud(900, 9, 1.7f));
   all.push_back(cloud(700, 40, 1.5f));
   all.push_back(lattice(7, 7, 7, 1.5f));
