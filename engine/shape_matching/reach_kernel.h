@@ -23,8 +23,8 @@ struct ReachColumn {
 struct ReachKernels {
   /// Writes the runs of sorted points in these columns that are within the radius of sorted point s,
   /// ascending and apart from each other; returns how many. Moves the columns' `first` behind what is out of
-  /// reach of s and of all points farther along than it. runs: room for two more than half of the columns'
-  /// points. members: becomes how many points the runs hold.
+  /// reach of s and of all points farther along than it. runs: room for half as many as columns and points
+  /// together, and one. members: becomes how many points the runs hold.
   std::size_t (*runs_in_reach)(const ReachInput&, std::size_t s, ReachColumn* columns, std::size_t count,
                                Run* runs, std::uint32_t& members) noexcept;
 };
