@@ -3,7 +3,7 @@
 #include "mallow/collider.h"
 #include "textbook/particle.h"
 
-/// Section 5 of the model.
+/// Section 4 A of the model's second chapter.
 namespace mallow::textbook {
 
 struct Obstacle {
@@ -15,9 +15,12 @@ struct ContactStep {
   double time_step;       ///< Δt [s]
   double contact_offset;  ///< gap at which particles touch [m]
   double max_push;        ///< speed at which a deep overlap is pushed out, σ/(10 Δt0) [m/s]
+  Vec gravity;            ///< [m/s²]
 };
 
-/// The velocity v of a particle at x after it touched an obstacle; v itself where it does not.
-Vec resolve_contact(const Obstacle& obstacle, const ContactStep& step, const Vec& x, const Vec& v);
+/// The velocity v of a particle at x, which came with `before`, after it touched an obstacle; v itself where
+/// it does not.
+Vec resolve_contact(const Obstacle& obstacle, const ContactStep& step, const Vec& x, const Vec& before,
+                    const Vec& v);
 
 }  // namespace mallow::textbook

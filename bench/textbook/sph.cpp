@@ -42,7 +42,9 @@ Vec conservative_pair(const Kernels& kernels, const Particle& i, const Particle&
   const Vec d = i.position - j.position;
   const double r = d.norm();
   Vec force = -(i.pressure + j.pressure) / 2 * kernels.spiky_gradient(r) * d;
-  if (viscosity > 0) force += viscosity * kernels.viscosity_laplacian(r) * (j.velocity - i.velocity);
+  // Along the pair alone, which keeps spin.
+  if (viscosity > 0 && r > 0)
+    force += 5 * viscosity * kernels.viscosity_laplacian(r) * (j.velocity - i.velocity).dot(d / r) * (d / r);
   return force;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/parallel.h"
 
@@ -11,8 +12,6 @@ namespace {
 
 /// Distances here and those of `nearest` are rounded differently, by a few 1e-7 of the coordinates.
 constexpr float k_rounding = 1e-5f;
-/// Parts of a union that are remembered as near; where more are, rows are resolved one by one.
-constexpr std::size_t k_near_parts = 32;
 
 Obstacle obstacle(const Plane& plane) {
   const float length = plane.normal.stableNorm();
@@ -24,8 +23,7 @@ Obstacle obstacle(const Sphere& sphere) {
   return {Obstacle::sphere, sphere.inside, {center[0], center[1], center[2]}, {sphere.radius, 0, 0}};
 }
 Obstacle obstacle(const Box& box) {
-  return {
-      Obstacle::box, box.inside, {box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
+  return {Obstacle::box, false, {box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
 }
 
 /// No point of the bounds is nearer to the obstacle, but for rounding.
@@ -38,7 +36,6 @@ float least_distance(const Obstacle& o, const BlockBounds& bounds) {
       if (o.inside) return b[0] - (a - min).cwiseMax(max - a).norm();
       return (min - a).cwiseMax(a - max).cwiseMax(0.0f).norm() - b[0];
     case Obstacle::box:
-      if (o.inside) return (min - a).cwiseMin(b - max).minCoeff();
       return (min - b).cwiseMax(a - max).cwiseMax(0.0f).norm();
   }
   return 0;
@@ -51,74 +48,75 @@ float largest_coordinate(const Obstacle& o, const BlockBounds& bounds) {
   return largest;
 }
 
-/// Which rows of a block, and which parts of a collider, may touch.
-class NearRows {
+/// A block that meets the parts of a collider one after the other. A part may throw it at the next one, so
+/// that the rows in reach are found for each.
+class BlockMeeting {
  public:
-  NearRows(const ContactBlock& block, const Collider& collider, const ContactStep& step,
-           const ContactKernels& kernels, const VectorColumn& velocity)
-      : block_(block), collider_(collider), step_(step), kernels_(kernels), velocity_(velocity) {
-    greatest_reach_ = step.contact_offset +
-                      step.time_step * (std::sqrt(block.bounds.squared_speed) + collider.velocity.norm());
-    if (const Union* const shapes = std::get_if<Union>(&collider.shape)) {
-      for (const Primitive& part : shapes->parts) std::visit([&](const auto& shape) { mark(shape); }, part);
-    } else {
-      std::visit([&](const auto& shape) { mark(shape); }, collider.shape);
-    }
-  }
-  bool any() const { return any_; }
+  BlockMeeting(ContactBlock& block, const Collider& collider, const ContactStep& step,
+               const ContactKernels& kernels, VectorColumn& velocity)
+      : block_(block),
+        surface_(contact_surface(collider)),
+        step_(step),
+        kernels_(kernels),
+        velocity_(velocity) {}
 
-  /// v of these rows becomes what it is after contact; `fastest` the largest |v|² of them, where it is less.
-  void resolve(VectorColumn& velocity, float& fastest) const {
-    std::array<std::uint32_t, k_block> rows;
-    std::size_t count = 0;
-    for (std::size_t i = block_.begin; i < block_.end; ++i) {
-      // Always written, kept only if near: no branch to predict.
-      rows[count] = static_cast<std::uint32_t>(i);
-      count += flags_[i - block_.begin] != 0 && !(block_.pin && block_.pin[i] != 0);
-    }
-    if (count_ <= k_near_parts) {
-      const Vec3& u = collider_.velocity;
-      count = kernels_.resolve(
-          {parts_.data(), count_, {u[0], u[1], u[2]}, collider_.restitution, collider_.friction}, step_,
-          raw(block_.position), rows.data(), count, raw(velocity), fastest);
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-      const Vec3 v = resolve_contact(collider_, step_, block_.position.get(rows[k]), velocity.get(rows[k]));
-      velocity.set(rows[k], v);
-      fastest = std::max(fastest, v.squaredNorm());
-    }
+  void operator()(const Plane& plane) { at(plane); }
+  void operator()(const Sphere& sphere) { at(sphere); }
+  void operator()(const Box& box) {
+    if (!box.inside) return at(box);
+    for (const Plane& face : faces(box)) at(face);
+  }
+  void operator()(const Union& shapes) {
+    for (const Primitive& part : shapes.parts) std::visit([&](const auto& shape) { (*this)(shape); }, part);
   }
 
  private:
-  void mark(const Union&) {}
   template <class Shape>
-  void mark(const Shape& shape) {
+  void at(const Shape& shape) {
     const Obstacle o = obstacle(shape);
-    const float slack = k_rounding * (largest_coordinate(o, block_.bounds) + greatest_reach_);
+    const float reach = step_.contact_offset + step_.time_step * (std::sqrt(block_.bounds.squared_speed) +
+                                                                  Vec3(surface_.velocity).norm());
+    const float slack = k_rounding * (largest_coordinate(o, block_.bounds) + reach);
     // What is not a number is not far, either.
-    if (least_distance(o, block_.bounds) > greatest_reach_ + slack) return;
-    if (!any_) {
-      any_ = true;
-      std::fill_n(flags_.begin(), block_.end - block_.begin, std::uint8_t{0});
-      kernels_.reach(raw(velocity_), collider_.velocity.data(), step_.time_step, step_.contact_offset,
-                     block_.begin, block_.end, reach_.data());
+    if (least_distance(o, block_.bounds) > reach + slack) return;
+    const std::size_t count = find_near_rows(o, slack);
+    const std::size_t left =
+        kernels_.resolve(o, surface_, step_, raw(block_.position), raw(block_.before), rows_.data(), count,
+                         raw(velocity_), block_.bounds.squared_speed);
+    for (std::size_t k = 0; k < left; ++k) {
+      const std::uint32_t i = rows_[k];
+      const Vec3 x = block_.position.get(i), v = velocity_.get(i);
+      const Vec3 way = step_.time_step * (v - Vec3(surface_.velocity));
+      const Vec3 after = resolve_contact(surface_, meet(shape, step_.contact_offset, x, way), step_,
+                                         block_.before.get(i), v);
+      velocity_.set(i, after);
+      block_.bounds.squared_speed = std::max(block_.bounds.squared_speed, after.squaredNorm());
     }
-    kernels_.mark(o, raw(block_.position), slack, block_.begin, block_.end, reach_.data(), flags_.data());
-    if (count_ < k_near_parts) parts_[count_] = o;
-    ++count_;
   }
 
-  const ContactBlock& block_;
-  const Collider& collider_;
+  /// Into rows_; returns how many.
+  std::size_t find_near_rows(const Obstacle& o, float slack) {
+    std::array<std::uint8_t, k_block> flags;
+    alignas(64) std::array<float, k_block> reach;
+    std::fill_n(flags.begin(), block_.end - block_.begin, std::uint8_t{0});
+    kernels_.reach(raw(std::as_const(velocity_)), surface_.velocity, step_.time_step, step_.contact_offset,
+                   block_.begin, block_.end, reach.data());
+    kernels_.mark(o, raw(block_.position), slack, block_.begin, block_.end, reach.data(), flags.data());
+    std::size_t count = 0;
+    for (std::size_t i = block_.begin; i < block_.end; ++i) {
+      // Always written, kept only if near: no branch to predict.
+      rows_[count] = static_cast<std::uint32_t>(i);
+      count += flags[i - block_.begin] != 0 && !(block_.pin && block_.pin[i] != 0);
+    }
+    return count;
+  }
+
+  ContactBlock& block_;
+  const ContactSurface surface_;
   const ContactStep& step_;
   const ContactKernels& kernels_;
-  const VectorColumn& velocity_;
-  float greatest_reach_;
-  bool any_ = false;
-  std::size_t count_ = 0;
-  std::array<Obstacle, k_near_parts> parts_;
-  std::array<std::uint8_t, k_block> flags_;
-  alignas(64) std::array<float, k_block> reach_;
+  VectorColumn& velocity_;
+  std::array<std::uint32_t, k_block> rows_;
 };
 
 }  // namespace
@@ -127,8 +125,8 @@ void resolve_contacts(const ContactBlock& rows, std::span<const Collider> collid
                       const ContactKernels& kernels, VectorColumn& velocity) {
   ContactBlock block = rows;
   for (const Collider& collider : colliders) {
-    const NearRows near(block, collider, step, kernels, velocity);
-    if (near.any()) near.resolve(velocity, block.bounds.squared_speed);
+    BlockMeeting meeting(block, collider, step, kernels, velocity);
+    std::visit([&](const auto& shape) { meeting(shape); }, collider.shape);
   }
 }
 

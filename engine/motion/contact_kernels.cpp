@@ -1,4 +1,4 @@
-// Contact of model section 5, and the distances that tell whom it may concern. Each lane is a particle.
+// Contact of model 2, section 4 A, and the distances that tell whom it may concern. Each lane is a particle.
 #include "motion/contact_kernels.h"
 
 #include "core/lanes.h"
@@ -34,14 +34,9 @@ LaneMask is_near(const Obstacle& o, const LaneVec3& x, const Lanes& reach) {
     const Lanes limit = o.inside ? o.b[0] - reach : o.b[0] + reach;
     return o.inside ? ~((distance < limit * limit) & (limit > 0.0f)) : ~(distance > limit * limit);
   }
-  if (!o.inside) {
-    const LaneVec3 outside = {beyond(x.x, o.a[0], o.b[0]), beyond(x.y, o.a[1], o.b[1]),
-                              beyond(x.z, o.a[2], o.b[2])};
-    return ~(squared(outside) > squared_reach);
-  }
-  const auto depth = [](const Lanes& y, float low, float high) { return smaller(y - low, high - y); };
-  return ~((depth(x.x, o.a[0], o.b[0]) > reach) & (depth(x.y, o.a[1], o.b[1]) > reach) &
-           (depth(x.z, o.a[2], o.b[2]) > reach));
+  const LaneVec3 outside = {beyond(x.x, o.a[0], o.b[0]), beyond(x.y, o.a[1], o.b[1]),
+                            beyond(x.z, o.a[2], o.b[2])};
+  return ~(squared(outside) > squared_reach);
 }
 
 void mark(const Obstacle& obstacle, ConstVectors position, float slack, std::size_t begin, std::size_t end,
@@ -112,39 +107,82 @@ Surface nearest_surface(const Obstacle& obstacle, const LaneVec3& x, LaneMask& l
     const LaneVec3 normal = constant(obstacle.a);
     return {dot(normal, x) - obstacle.b[0], normal};
   }
-  const Surface s =
-      obstacle.kind == Obstacle::sphere ? sphere_surface(obstacle, x, left) : box_surface(obstacle, x, left);
+  if (obstacle.kind == Obstacle::box) return box_surface(obstacle, x, left);
+  const Surface s = sphere_surface(obstacle, x, left);
   if (!obstacle.inside) return s;
   return {-s.distance, {-s.normal.x, -s.normal.y, -s.normal.z}};
 }
 
-Surface nearest_surface(const ObstacleSet& set, const LaneVec3& x, LaneMask& left) {
-  Surface nearest = nearest_surface(set.parts[0], x, left);
-  for (std::size_t k = 1; k < set.count; ++k) {
-    const Surface other = nearest_surface(set.parts[k], x, left);
-    const LaneMask nearer = other.distance < nearest.distance;
-    nearest = {nearer ? other.distance : nearest.distance, select(nearer, other.normal, nearest.normal)};
+LaneVec3 at(const LaneVec3& x, const Lanes& t, const LaneVec3& way) {
+  return {x.x + t * way.x, x.y + t * way.y, x.z + t * way.z};
+}
+
+/// As meet() of motion/contact.h.
+Surface meet(const Obstacle& obstacle, float offset, const LaneVec3& x, const LaneVec3& way, LaneMask& left) {
+  if (obstacle.kind == Obstacle::plane) return nearest_surface(obstacle, x, left);
+  if (obstacle.inside) {
+    const Surface end = nearest_surface(obstacle, {x.x + way.x, x.y + way.y, x.z + way.z}, left);
+    return {end.distance - dot(way, end.normal), end.normal};
   }
-  return nearest;
+  const Lanes length = square_root(squared(way));
+  Lanes t = {};
+  Surface met = nearest_surface(obstacle, x, left);
+  LaneMask apart = {}, going = t == 0.0f;
+  for (int look = 0; look < k_most_looks; ++look) {
+    const Lanes gap = met.distance - offset;
+    going &= gap > k_near_enough * length;
+    if (!any(going)) break;
+    t = going ? t + gap / length : t;
+    const LaneMask passes = going & ~(t < 1.0f);
+    apart |= passes;
+    going &= ~passes;
+    LaneMask odd = {};
+    const Surface next = nearest_surface(obstacle, at(x, t, way), odd);
+    left |= going & odd;
+    met = {going ? next.distance : met.distance, select(going, next.normal, met.normal)};
+  }
+  return {apart ? all_lanes(__builtin_inff()) : met.distance - t * dot(way, met.normal), met.normal};
+}
+
+/// As bounce() of motion/contact.cpp.
+Lanes bounce(float restitution, const Lanes& approach, const Lanes& gap, const LaneVec3& normal,
+             const ContactStep& step) {
+  const Lanes none = all_lanes(-__builtin_inff()), zero = {};
+  const LaneMask bounces = approach < -step.least_bounce;
+  if (!(restitution > 0) || !any(bounces)) return none;
+  const Lanes gravity = larger(zero, dot(constant(step.gravity), normal) * -1.0f);
+  const Lanes half_kick = 0.5f * gravity * step.time_step, speed = half_kick - approach;
+  const float kept = restitution * restitution;
+  const Lanes square = kept * (speed * speed) - 2.0f * (1.0f - kept) * gravity * larger(gap, zero);
+  return bounces & (square > 0.0f) ? smaller(square_root(square) - half_kick, -approach) : none;
 }
 
 /// As the function of motion/contact.h.
-LaneVec3 resolve_contact(const ObstacleSet& set, const Surface& surface, const ContactStep& step,
-                         const LaneVec3& v) {
-  const LaneVec3 &n = surface.normal, u = constant(set.velocity);
-  const Lanes gap = surface.distance - step.contact_offset, zero = {};
+LaneVec3 resolve_contact(const ContactSurface& surface, const Surface& met, const ContactStep& step,
+                         const LaneVec3& before, const LaneVec3& v) {
+  const LaneVec3 &n = met.normal, u = constant(surface.velocity);
+  const Lanes gap = met.distance - step.contact_offset, zero = {};
   const LaneVec3 relative = {v.x - u.x, v.y - u.y, v.z - u.z};
   const Lanes normal_velocity = dot(relative, n);
   const LaneMask apart = gap + step.time_step * normal_velocity >= 0.0f;
+  if (!any(~apart)) return v;
 
-  const Lanes bounce = -set.restitution * normal_velocity;
+  const LaneVec3 relative_before = {before.x - u.x, before.y - u.y, before.z - u.z};
+  const Lanes approach = dot(relative_before, n);
   const Lanes reach = -gap / step.time_step;
-  const Lanes target = larger(gap >= 0.0f ? reach : smaller(reach, all_lanes(step.max_push)), bounce);
+  const Lanes target = larger(gap >= 0.0f ? reach : smaller(reach, all_lanes(step.max_push)),
+                              bounce(surface.restitution, approach, gap, n, step));
   const Lanes change = target - normal_velocity;
-  const LaneVec3 tangential = {relative.x - normal_velocity * n.x, relative.y - normal_velocity * n.y,
-                               relative.z - normal_velocity * n.z};
-  const Lanes speed = square_root(squared(tangential));
-  const Lanes kept = speed > 0.0f ? larger(zero, 1.0f - set.friction * change / speed) : zero;
+
+  const auto tangential_part = [&](const LaneVec3& w, const Lanes& w_n) {
+    return LaneVec3{w.x - w_n * n.x, w.y - w_n * n.y, w.z - w_n * n.z};
+  };
+  const LaneVec3 tangential = tangential_part(relative, normal_velocity);
+  const Lanes square = squared(tangential), speed = square_root(square), one = all_lanes(1.0f);
+  Lanes taken = speed > 0.0f ? smaller(one, surface.friction * change / speed) : one;
+  const Lanes along = dot(tangential, tangential_part(relative_before, approach));
+  taken = along < 0.0f ? smaller(taken, larger(zero, 1.0f + along / square)) : taken;
+  const Lanes kept = 1.0f - taken;
   return select(apart, v,
                 {u.x + target * n.x + kept * tangential.x, u.y + target * n.y + kept * tangential.y,
                  u.z + target * n.z + kept * tangential.z});
@@ -164,15 +202,19 @@ struct ListedRows {
   }
 };
 
-std::size_t resolve(const ObstacleSet& set, const ContactStep& step, ConstVectors position,
-                    std::uint32_t* rows, std::size_t count, Vectors velocity, float& fastest) noexcept {
+std::size_t resolve(const Obstacle& obstacle, const ContactSurface& surface, const ContactStep& step,
+                    ConstVectors position, ConstVectors before, std::uint32_t* rows, std::size_t count,
+                    Vectors velocity, float& fastest) noexcept {
+  const LaneVec3 u = constant(surface.velocity);
   std::size_t left_count = 0;
   for (std::size_t k = 0; k < count; k += k_width) {
     const ListedRows listed{rows + k, count - k < k_width ? count - k : k_width};
-    const LaneVec3 before = get(listed, {velocity.x, velocity.y, velocity.z});
+    const LaneVec3 free = get(listed, {velocity.x, velocity.y, velocity.z});
+    const LaneVec3 way = {step.time_step * (free.x - u.x), step.time_step * (free.y - u.y),
+                          step.time_step * (free.z - u.z)};
     LaneMask odd = {};
-    const Surface surface = nearest_surface(set, get(listed, position), odd);
-    const LaneVec3 v = select(odd, before, resolve_contact(set, surface, step, before));
+    const Surface met = meet(obstacle, step.contact_offset, get(listed, position), way, odd);
+    const LaneVec3 v = select(odd, free, resolve_contact(surface, met, step, get(listed, before), free));
     listed.put(v.x, velocity.x);
     listed.put(v.y, velocity.y);
     listed.put(v.z, velocity.z);

@@ -84,8 +84,8 @@ MotionSums move_block(const MotionInput& in, const ForcesInput& forces, Instruct
     for (std::size_t a = 0; a < 3; ++a)
       std::copy_n(store.next_velocity.axis(a) + begin, end - begin, free[a].data());
   if (!in.colliders.empty())
-    resolve_contacts({begin, end, store.position, forces.pin, bounds}, in.colliders, in.contact,
-                     MALLOW_SELECT(level, contact_kernels), store.next_velocity);
+    resolve_contacts({begin, end, store.position, store.velocity, forces.pin, bounds}, in.colliders,
+                     in.contact, MALLOW_SELECT(level, contact_kernels), store.next_velocity);
   const ConstVectors velocity = raw(std::as_const(store.next_velocity));
   if (in.measure_external)
     sums.external =

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/column.h"
@@ -25,9 +26,14 @@ Fastest fastest_particle(const ParticleStore& store, float time_step, const Vect
 struct TimeStepLimits {
   float time_step;       ///< Δt0 [s]
   float support_radius;  ///< σ [m]
-  bool acoustic;         ///< the two limits below count
-  float sound_speed;     ///< largest √k [m/s]
-  float viscous_time;    ///< smallest σ² ρ0/μ [s]; infinite without viscosity
+  bool acoustic;         ///< the limits of `pressures` count
+  /// Of each group: pressure and viscosity as they act, α k or k where other groups are pushed, and α μ/ρ0.
+  struct Pressure {
+    float coefficient;          ///< [m²/s²]
+    float kinematic_viscosity;  ///< [m²/s]
+  };
+  std::span<const Pressure> pressures;
+  float viscous_time;  ///< smallest σ² ρ0/μ [s]; infinite without viscosity
 };
 /// Δt of model section 3.
 double limited_time_step(const TimeStepLimits& limits, double max_velocity);

@@ -14,20 +14,26 @@ constexpr double k_shortest_step = 1e-3;
 /// are in no order take half as long again for every step.
 constexpr std::int64_t k_sort_interval = 60;
 
-TimeStepLimits limits(const Simulation::State& state) {
+TimeStepLimits limits(Simulation::State& state) {
   TimeStepLimits limits{
       .time_step = state.config.time_step,
       .support_radius = state.config.support_radius,
       .acoustic = state.config.acoustic_limit,
-      .sound_speed = 0,
+      .pressures = {},
       .viscous_time = std::numeric_limits<float>::infinity(),
   };
+  state.pressures.clear();
   for (const Group& group : state.groups) {
-    limits.sound_speed = std::max(limits.sound_speed, std::sqrt(group.material.pressure_coefficient));
-    if (group.material.viscosity > 0)
+    const Material& material = group.material;
+    // Other groups feel the whole pressure, whatever this one's alpha.
+    const float share = state.groups.size() > 1 ? 1.0f : group.alpha;
+    state.pressures.push_back({.coefficient = share * material.pressure_coefficient,
+                               .kinematic_viscosity = share * material.viscosity / group.rest_density});
+    if (material.viscosity > 0)
       limits.viscous_time = std::min(limits.viscous_time, limits.support_radius * limits.support_radius *
-                                                              group.rest_density / group.material.viscosity);
+                                                              group.rest_density / material.viscosity);
   }
+  limits.pressures = state.pressures;
   return limits;
 }
 
@@ -173,7 +179,9 @@ void move_groups(Simulation::State& state, float time_step) {
         .colliders = state.contact_colliders(),
         .contact = {.time_step = time_step,
                     .max_push = config.support_radius / (10.0f * config.time_step),
-                    .contact_offset = config.contact_offset.value_or(0.5f * group.spacing)},
+                    .contact_offset = config.contact_offset.value_or(0.5f * group.spacing),
+                    .gravity = {config.gravity[0], config.gravity[1], config.gravity[2]},
+                    .least_bounce = 2.0f * config.gravity.norm() * time_step},
         .pin_velocities = state.pin_velocities,
         .measure_external = measure,
     };
@@ -192,6 +200,7 @@ void finish_step(Simulation::State& state, float time_step) {
   move_colliders(static_cast<double>(time_step), state.colliders);
   move_colliders(static_cast<double>(time_step), state.near_colliders);
   state.time += static_cast<double>(time_step);
+  state.last_time_step = static_cast<double>(time_step);
   ++state.step;
 }
 

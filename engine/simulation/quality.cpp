@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/checks.h"
+#include "simulation/validation.h"
 
 namespace mallow {
 namespace {
@@ -29,10 +30,6 @@ const Preset& preset(Quality quality) {
   static constexpr Preset k_accurate{0.5f, 1, 0.1f, 1.5f};
   return quality == Quality::realtime ? k_realtime : quality == Quality::balanced ? k_balanced : k_accurate;
 }
-
-/// Stiffness of an elastic pull against the step, (1 − α) Δt0/Δt_SM, up to which a longer step is taken: at 4
-/// the motion runs away, and its energy grows before.
-constexpr float k_stiffest = 2.25f;
 
 /// Voxels that a surface can have along its longest side.
 constexpr int k_fewest_voxels = 8, k_most_voxels = 1024;

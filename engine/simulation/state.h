@@ -44,6 +44,7 @@ struct Simulation::State {
   InstructionLevel level = InstructionLevel::baseline;
   std::int64_t step = 0;
   double time = 0;
+  double last_time_step = 0;  ///< Δt of the last step; 0 before the first [s]
 
   Vec3 origin{0, 0, 0};  ///< that positions in the store are relative to, see choose_origin() [m]
   ParticleStore store;
@@ -66,6 +67,7 @@ struct Simulation::State {
   RegionScratch region_scratch;
   Column<std::uint32_t> fluid_order;
   std::vector<Fastest> partial_fastest;
+  std::vector<TimeStepLimits::Pressure> pressures;
   std::vector<MotionSums> partial_motion;
 
   bool is_far() const { return origin != Vec3(0, 0, 0); }

@@ -92,18 +92,15 @@ void check(const Material& material, Checks& checks) {
   checks.number("material.region_stride", material.region_stride, material.region_stride >= 1, "1 or above");
 }
 
-// Each component of g − x pulls by κ = (1 − α) Δt/Δt_SM of itself a step, or less. x' = 2x − x_before − κx,
-// the recurrence of such a spring, stays bounded for κ up to 4 and grows without end beyond; measured, it
-// does so at 4.2. Where α is 0 and Δt_SM = Δt0, as in the paper, κ is 1.
 void check_stiffness(const SolverConfig& config, const Material& material, Checks& checks) {
-  constexpr float k_most = 4;
+  constexpr float k_rounding = 1e-5f;  // of what is typed with six digits
   if (!material.elastic_time_step || material.alpha.keys().empty()) return;
-  const float least = (1 - material.alpha.lowest()) * config.time_step / k_most;
-  if (*material.elastic_time_step >= least) return;
+  const float least = (1 - material.alpha.lowest()) * config.time_step / k_stiffest;
+  if (*material.elastic_time_step >= (1 - k_rounding) * least) return;
   std::ostringstream text;
-  text << *material.elastic_time_step
-       << " is not allowed: at least (1 - alpha) solver.time_step/4 = " << least
-       << ", as a stiffer body would blow up; lower solver.time_step (now " << config.time_step << ")";
+  text << *material.elastic_time_step << " is not allowed: at least (1 - alpha) solver.time_step/"
+       << k_stiffest << " = " << least
+       << ", as a stiffer body would gain energy; lower solver.time_step (now " << config.time_step << ")";
   checks.problem("material.elastic_time_step", text.str());
 }
 

@@ -77,7 +77,11 @@ struct World {
              .user = nullptr,
              .pull = &pull,
              .colliders = {},
-             .contact = {.time_step = 0.13f, .max_push = 1.5f, .contact_offset = 0.3f},
+             .contact = {.time_step = 0.13f,
+                         .max_push = 1.5f,
+                         .contact_offset = 0.3f,
+                         .gravity = {0.1f, 0, -0.6f},
+                         .least_bounce = 0.16f},
              .pin_velocities = pin_velocities,
              .measure_external = true};
   }
@@ -115,7 +119,8 @@ struct World {
     if (input.sph_acceleration) v += input.alpha * input.time_step * sph.get(i);
     if (input.pull) v += input.elastic_factor * pull.get(i - k_begin);
     const Vec3 free = v;
-    for (const Collider& collider : colliders) v = resolve_contact(collider, input.contact, x, v);
+    const Vec3 before = store.velocity.get(i);
+    for (const Collider& collider : colliders) v = resolve_contact(collider, input.contact, x, before, v);
     return {x + input.time_step * v, v,
             static_cast<double>((external + (v - free) / input.time_step).norm())};
   }

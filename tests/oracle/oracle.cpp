@@ -216,8 +216,10 @@ Vec Oracle::pair_acceleration(const Particle& i, const Particle& j) const {
   if (config_.formulation == Formulation::printed) {
     force = -j.pressure * poly6_gradient(d, sigma) + mu * poly6_laplacian(d.norm(), sigma) * j.v;
   } else {
+    // Viscosity along the pair alone (section 0 of the second chapter); no pair is along 0.
+    const Vec along = d.norm() > 0 ? Vec(d.normalized()) : Vec::Zero();
     force = -(i.pressure + j.pressure) / 2 * spiky_gradient(d, sigma) +
-            mu * viscosity_laplacian(d.norm(), sigma) * (j.v - i.v);
+            5 * mu * viscosity_laplacian(d.norm(), sigma) * (j.v - i.v).dot(along) * along;
   }
   return volume / i.density * force;
 }
@@ -255,13 +257,14 @@ double Oracle::time_step(double max_velocity) const {
   const double sigma = config_.support_radius;
   double dt = std::min(longest, 0.999 * sigma / max_velocity);
   if (config_.acoustic_limit) {
-    double largest_k = 0;
     for (const Group& group : groups_) {
       const Material& material = group.material;
-      largest_k = std::max(largest_k, double{material.pressure_coefficient});
-      dt = std::min(dt, sigma * sigma * group.rest_density / (15 * material.viscosity));
+      dt = std::min(dt, sigma * sigma * group.rest_density / (25 * material.viscosity));
+      const double share = groups_.size() > 1 ? 1 : group.alpha;
+      const double a = share * material.pressure_coefficient / (sigma * sigma);
+      const double b = 800 * share * material.viscosity / group.rest_density / (sigma * sigma);
+      if (a > 0) dt = std::min({dt, (b + std::sqrt(b * b + 0.4 * a)) / (2 * a), std::sqrt(1.4 / a)});
     }
-    dt = std::min(dt, 0.4 * sigma / (std::sqrt(largest_k) + max_velocity));
   }
   if (!(dt >= longest / 1000)) throw std::runtime_error("the time step would fall below a thousandth");
   return dt;
@@ -304,24 +307,35 @@ void Oracle::match_shapes() {
   }
 }
 
-// Section 5, one obstacle.
-void Oracle::touch(const Obstacle& obstacle, const Particle& particle, double dt, Vec& v) const {
+// Section 4 A of the second chapter, one obstacle: its parts one after the other.
+void Oracle::touch(const Obstacle& obstacle, const Particle& particle, const Vec& before, double dt,
+                   Vec& v) const {
   const Collider& collider = obstacle.collider;
   const double offset = config_.contact_offset.value_or(groups_[particle.group].spacing / 2);
-  const auto [phi, normal] = distance(collider, particle.x - obstacle.moved);
-  const double d = phi - offset;
   const Vec u = collider.velocity.cast<double>();
-  const Vec w = v - u;
-  const double w_n = w.dot(normal);
-  if (d + dt * w_n >= 0) return;
+  const Vec gravity = config_.gravity.cast<double>();
+  for (const Primitive& part : parts_of(collider)) {
+    const auto [phi, n] = distance_on_the_way(part, particle.x - obstacle.moved, dt * (v - u), offset);
+    const double d = phi - offset;
+    const Vec w = v - u;
+    const double w_n = w.dot(n);
+    if (d + dt * w_n >= 0) continue;
 
-  const double bounce = -collider.restitution * w_n;
-  const double gentle = config_.support_radius / (10 * double{config_.time_step});
-  const double new_w_n = d >= 0 ? std::max(-d / dt, bounce) : std::max(std::min(-d / dt, gentle), bounce);
-  const Vec w_t = w - w_n * normal;
-  const double sliding = w_t.norm();
-  const double kept = sliding > 0 ? std::max(0.0, 1 - collider.friction * (new_w_n - w_n) / sliding) : 0;
-  v = u + new_w_n * normal + kept * w_t;
+    const double gentle = config_.support_radius / (10 * double{config_.time_step});
+    double new_w_n = d >= 0 ? -d / dt : std::min(-d / dt, gentle);
+    const Vec came = before - u;
+    const double q = came.dot(n), e = collider.restitution;
+    if (e > 0 && q < -2 * gravity.norm() * dt) {
+      const double g_n = std::max(0.0, -gravity.dot(n)), gamma = g_n * dt / 2;
+      const double s = e * e * std::pow(std::abs(q) + gamma, 2) - 2 * (1 - e * e) * g_n * std::max(d, 0.0);
+      if (s > 0) new_w_n = std::max(new_w_n, std::min(std::sqrt(s) - gamma, std::abs(q)));
+    }
+    const Vec w_t = w - w_n * n, v_t = came - q * n;
+    const double sliding = w_t.norm();
+    double c = sliding > 0 ? std::min(1.0, collider.friction * (new_w_n - w_n) / sliding) : 1;
+    if (w_t.dot(v_t) < 0) c = std::min(c, std::max(0.0, 1 + w_t.dot(v_t) / w_t.squaredNorm()));
+    v = u + new_w_n * n + (1 - c) * w_t;
+  }
 }
 
 // Section 4.
@@ -332,12 +346,13 @@ void Oracle::move(double dt) {
     if (p.pinned) {
       p.v = p.pin_velocity;
     } else {
+      const Vec before = p.v;
       const double dt0 = config_.time_step;
       const double dt_sm = group.material.elastic_time_step.value_or(config_.time_step);
       p.v += dt * p.external + group.alpha * dt * p.sph;
       if (!is_always_fluid(group)) p.v += (1 - group.alpha) * dt / (dt0 * dt_sm) * (p.goal - p.x);
       const Vec blended = p.v;
-      for (const Obstacle& obstacle : obstacles_) touch(obstacle, p, dt, p.v);
+      for (const Obstacle& obstacle : obstacles_) touch(obstacle, p, before, dt, p.v);
       p.contact = (p.v - blended) / dt;
     }
     p.x += dt * p.v;

@@ -95,7 +95,7 @@ class Oracle {
   double max_velocity() const;
   double time_step(double max_velocity) const;
   void match_shapes();
-  void touch(const Obstacle& obstacle, const Particle& particle, double dt, Vec& v) const;
+  void touch(const Obstacle& obstacle, const Particle& particle, const Vec& before, double dt, Vec& v) const;
   void move(double dt);
 
   SolverConfig config_;

@@ -278,18 +278,20 @@ TEST(oracle, time_step_is_bounded_by_support_radius_sound_and_viscosity) {
   EXPECT_NEAR(bounded(16, 0.5f, 0, false, 1), 0.15f, 1e-15);
   EXPECT_NEAR(bounded(16, 0.5f, 20, false, 1), 0.999 * 2 / 20, 1e-15);
   EXPECT_NEAR(bounded(16, 0.5f, 20, false, 0), 0.15f, 1e-15);
-  EXPECT_NEAR(bounded(16, 0.5f, 3, true, 1), 0.4 * 2 / (4 + 3), 1e-15);
-  EXPECT_NEAR(bounded(16, 20, 0, true, 1), 4 / (15 * 20.0), 1e-15);
+  EXPECT_NEAR(bounded(400, 0, 3, true, 1), std::sqrt(0.1 * 4 / 400), 1e-15);
+  EXPECT_NEAR(bounded(400, 0, 3, true, 0.25f), std::sqrt(0.1 * 4 / 100), 1e-15);
+  EXPECT_NEAR(bounded(400, 0.5f, 3, true, 1), std::sqrt(1.4 * 4 / 400), 1e-15);
+  EXPECT_NEAR(bounded(16, 20, 0, true, 1), 4 / (25 * 20.0), 1e-15);
   EXPECT_NEAR(bounded(16, 20, 3, true, 0), 0.15f, 1e-15);
   EXPECT_THROW(bounded(16, 0.5f, 1e6, false, 1), std::runtime_error);
 }
 
-TEST(oracle, contact_stops_what_would_cross_the_offset_within_the_step) {
+TEST(oracle, contact_ends_at_the_offset_what_would_cross_it_within_the_step) {
   const Collider floor{.shape = Plane{{0, 0, 2}, 0}};
   const Particle stopped = after_one_step(floor, {0, 0, 0.79}, {0.2, 0, -2});
-  EXPECT_NEAR(stopped.v.z(), 0, 1e-14);
+  EXPECT_NEAR(stopped.x.z(), 0.5, 1e-14);
   EXPECT_NEAR(stopped.v.x(), 0.2, 1e-14);
-  EXPECT_NEAR(stopped.contact.z(), 2 / double{0.15f}, 1e-12);
+  EXPECT_NEAR(stopped.contact.z(), (2 - 0.29 / double{0.15f}) / double{0.15f}, 1e-12);
   const Particle untouched = after_one_step(floor, {0, 0, 0.81}, {0.2, 0, -2});
   EXPECT_NEAR(untouched.v.z(), -2, 1e-14);
   EXPECT_EQ(untouched.contact, Vec::Zero());

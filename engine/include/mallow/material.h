@@ -43,8 +43,8 @@ struct Material {
   float pressure_coefficient = 16.0f;
   /// μ [Pa s], >= 0. [TK eq. 2]
   float viscosity = 0.5f;
-  /// Δt_SM [s], > 0, at least (1 − alpha) time_step/4, as a stiffer body would blow up; left out: the solver's
-  /// time_step. [TK eq. 13]
+  /// Δt_SM [s], > 0, at least (1 − alpha) time_step/2.5, as a stiffer body would gain energy; left out: the
+  /// solver's time_step. [TK eq. 13; model 2, section 4 B]
   std::optional<float> elastic_time_step = {};
   /// m [kg], > 0. Left out: follows from rest_density; 1 if that is left out too.
   std::optional<float> particle_mass = {};

@@ -39,6 +39,17 @@ struct StepReport {
   PhaseTimes seconds{};
 };
 
+/// Energies of all particles that are not pinned [J]; see Simulation::energy().
+struct Energy {
+  double kinetic = 0;  ///< Σ ½ m v²
+  double gravity = 0;  ///< −Σ m g·x
+  double elastic = 0;  ///< U of shape matching, whose slope is its pull [model 2, section 4]
+  /// What elastic bodies keep exactly at a constant step, to judge them by: U − Σ m g·x + Σ ½ m v·(v + Δt
+  /// a(x)), a of gravity and shape matching, Δt the last step. ½ m v² + U swings by itself, by a quarter
+  /// where a body is as stiff as its step.
+  double conserved = 0;
+};
+
 /// What a simulation runs and holds; see Simulation::info().
 struct GroupInfo {
   std::string name;

@@ -134,6 +134,10 @@ class Simulation {
   std::vector<Vec3> velocities_by_id() const;
   std::vector<std::uint8_t> groups_by_id() const;
 
+  /// Energies as they are now, summed in double; slow, as every region is solved exactly. SPH pressure keeps no
+  /// energy that could be summed, so a fluid's is what it moves and falls with. Calls prepare().
+  Energy energy();
+
   /// 64 bits of positions and velocities in id order, time and step: equal states have equal hashes.
   std::uint64_t state_hash() const;
   /// All that later steps depend on; engine/STEP.md lists it. Not the force callback, which no bytes can

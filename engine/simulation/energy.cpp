@@ -1,0 +1,86 @@
+// Energies of model 2, section 4, in double and one thread: for those who judge a motion, not for its steps.
+#include <vector>
+
+#include "core/polar_rotation.h"
+#include "shape_matching/run_tables.h"
+#include "simulation/state.h"
+
+namespace mallow {
+namespace {
+
+using Vec = Eigen::Vector3d;
+
+/// Σ_j ½ Σ_i w_i |x_i − goal_ij|² of a group of unit masses [m²], and g − x of its particles [m].
+double match(const Simulation::State& state, const Group& group, std::vector<Vec>& pull) {
+  const ShapeMatching& shape = group.shape;
+  const auto x = [&](std::uint32_t i) {
+    return Vec(state.store.position.get(group.begin + i).cast<double>());
+  };
+  const auto rest = [&](std::uint32_t i) { return Vec(shape.reference.get(i).cast<double>()); };
+  std::vector<double> regions(group.size(), 0);
+  pull.assign(group.size(), Vec::Zero());
+  double sum = 0;
+  for (std::size_t j = 0; j < shape.region_weight.size(); ++j) {
+    const std::vector<std::uint32_t> members = decode(shape.regions, j);
+    double weight = 0;
+    Vec center = Vec::Zero(), rest_center = Vec::Zero();
+    for (const std::uint32_t i : members) {
+      const double w = static_cast<double>(shape.weight[i]);
+      weight += w;
+      center += w * x(i);
+      rest_center += w * rest(i);
+    }
+    center /= weight;
+    rest_center /= weight;
+    Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+    double scale = 0;
+    for (const std::uint32_t i : members) {
+      const double w = static_cast<double>(shape.weight[i]);
+      a += w * (x(i) - center) * (rest(i) - rest_center).transpose();
+      scale += w * (rest(i) - rest_center).squaredNorm();
+    }
+    const auto q = [&](std::size_t k) { return static_cast<double>(shape.rotation[k][j]); };
+    const Eigen::Quaterniond last(q(3), q(0), q(1), q(2));
+    const Eigen::Matrix3d rotation = polar_rotation(a, last, scale).toRotationMatrix();
+    for (const std::uint32_t i : members) {
+      const Vec away = rotation * (rest(i) - rest_center) + center - x(i);
+      sum += 0.5 * static_cast<double>(shape.weight[i]) * away.squaredNorm();
+      pull[i] += away;
+      regions[i] += 1;
+    }
+  }
+  for (std::size_t i = 0; i < pull.size(); ++i) pull[i] /= regions[i];
+  return sum;
+}
+
+}  // namespace
+
+Energy Simulation::energy() {
+  prepare();
+  const State& s = *state_;
+  Energy energy;
+  const Vec gravity = s.config.gravity.cast<double>();
+  std::vector<Vec> pull;
+  for (const Group& group : s.groups) {
+    const double mass = static_cast<double>(group.mass);
+    const double dt0 = static_cast<double>(s.config.time_step);
+    const double elastic_step =
+        static_cast<double>(group.material.elastic_time_step.value_or(s.config.time_step));
+    const double stiffness = (1 - static_cast<double>(group.alpha)) / (dt0 * elastic_step);
+    const bool is_elastic = group.matches_shape() && group.shape.built;
+    if (is_elastic) energy.elastic += stiffness * mass * match(s, group, pull);
+    for (std::size_t row = group.begin; row < group.end; ++row) {
+      if (!s.store.pin.empty() && s.store.pin[row] != 0) continue;
+      const Vec x = s.store.position.get(row).cast<double>() + s.origin.cast<double>();
+      const Vec v = s.store.velocity.get(row).cast<double>();
+      const Vec a = is_elastic ? Vec(gravity + stiffness * pull[row - group.begin]) : gravity;
+      energy.kinetic += 0.5 * mass * v.squaredNorm();
+      energy.gravity -= mass * gravity.dot(x);
+      energy.conserved += 0.5 * mass * s.last_time_step * v.dot(a);
+    }
+  }
+  energy.conserved += energy.kinetic + energy.gravity + energy.elastic;
+  return energy;
+}
+
+}  // namespace mallow
