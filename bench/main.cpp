@@ -7,6 +7,7 @@
 #include "scaling/scaling_command.h"
 #include "stability/stability_command.h"
 #include "table1/table1_command.h"
+#include "threads/threads_command.h"
 #include "tradeoff/tradeoff_command.h"
 
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 throws where two options clash
@@ -21,5 +22,6 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
   add_figures_command(app);
   add_stability_command(app);
   add_drift_command(app);
+  add_threads_command(app);
   return mallow::cli::run_program(app, argc, argv);
 }

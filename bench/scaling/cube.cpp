@@ -67,10 +67,11 @@ double average_neighbors(const Cube& cube) {
   return pairs / static_cast<double>(cube.particles());
 }
 
-Simulation build(const Cube& cube, int threads) {
+Simulation build(const Cube& cube, int threads, std::shared_ptr<Executor> executor) {
   SolverConfig config;
   config.support_radius = k_cube_radius;
   config.threads = threads;
+  config.executor = std::move(executor);
   Simulation simulation(config);
 
   Material material;

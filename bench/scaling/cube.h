@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,6 +38,6 @@ double average_neighbors(const Cube& cube);
 
 /// The cube on a floor, at rest density, stirred by waves of velocity that are the same whatever the size:
 /// the regions of a body at rest would need no Newton iterations.
-Simulation build(const Cube& cube, int threads);
+Simulation build(const Cube& cube, int threads, std::shared_ptr<Executor> executor = nullptr);
 
 }  // namespace mallow::bench

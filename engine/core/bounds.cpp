@@ -13,7 +13,7 @@ using Quad = float __attribute__((vector_size(16)));
 
 }  // namespace
 
-Aabb bounds_of(const VectorColumn& points, std::size_t begin, std::size_t end, int threads,
+Aabb bounds_of(const VectorColumn& points, std::size_t begin, std::size_t end, const Threads& threads,
                std::vector<Aabb>& partial) {
   const Aabb none{Vec3::Constant(HUGE_VALF), Vec3::Constant(-HUGE_VALF)};
   return parallel_reduce(

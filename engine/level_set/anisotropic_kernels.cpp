@@ -112,7 +112,8 @@ AnisotropyModel::AnisotropyModel(double radius, double particle_radius) {
   lone_weight = threshold / std::pow(1 - 1 / (k_lone_axis * k_lone_axis), 3);
 }
 
-void AnisotropicKernels::fit(const AnisotropyModel& model, float radius, int threads, ParticleCells& cells) {
+void AnisotropicKernels::fit(const AnisotropyModel& model, float radius, const Threads& threads,
+                             ParticleCells& cells) {
   const std::size_t n = cells.count();
   const auto r = static_cast<double>(radius);
   centers_.resize_unset(n);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/threads.h"
 #include "level_set/particle_cells.h"
 #include "level_set/surface_kernel.h"
 
@@ -36,7 +37,7 @@ class AnisotropicKernels {
  public:
   /// Moves the particles to their centres. shapes: by place after that, lengths in radii.
   /// radius: of the kernels [m], that of the cells.
-  void fit(const AnisotropyModel& model, float radius, int threads, ParticleCells& cells);
+  void fit(const AnisotropyModel& model, float radius, const Threads& threads, ParticleCells& cells);
   const std::vector<KernelShape>& shapes() const { return shapes_; }
   std::size_t bytes() const {
     return centers_.bytes() + (shapes_.capacity() + unsorted_.capacity()) * sizeof(KernelShape);

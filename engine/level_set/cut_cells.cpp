@@ -118,7 +118,7 @@ void CutCells::count(std::size_t at) {
   });
 }
 
-void CutCells::find(const SurfaceField& field, int threads) {
+void CutCells::find(const SurfaceField& field, const Threads& threads) {
   choose_blocks(field);
   cells_.resize(blocks_.size());
   signs_.resize(blocks_.size());

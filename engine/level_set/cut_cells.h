@@ -5,6 +5,7 @@
 #include <cstring>
 #include <vector>
 
+#include "core/threads.h"
 #include "level_set/dual_cells.h"
 #include "level_set/surface_field.h"
 
@@ -40,7 +41,7 @@ struct QuadCorner {
 /// memory from one frame to the next.
 class CutCells {
  public:
-  void find(const SurfaceField& field, int threads);
+  void find(const SurfaceField& field, const Threads& threads);
 
   /// Blocks with a cell that may be cut, by their numbers in the field.
   const std::vector<std::uint32_t>& blocks() const { return blocks_; }

@@ -113,7 +113,7 @@ Eigen::Vector3f middle_of_cuts(unsigned edges, const float* voxel) {
 }
 
 template <class Work>
-void for_each_block(const CutCells& cells, int threads, const Work& work) {
+void for_each_block(const CutCells& cells, const Threads& threads, const Work& work) {
   parallel_for(
       threads, cells.blocks().size(),
       [&](std::size_t begin, std::size_t end) {
@@ -190,8 +190,8 @@ void DualMesher::finish_merged(const SurfaceField& field, MeshCounts& counts, Me
   counts = {first_vertex_ + kept, static_cast<std::size_t>(to - mesh.triangles.data())};
 }
 
-void DualMesher::append(const SurfaceField& field, float adaptivity, int threads, MeshCounts& counts,
-                        Mesh& mesh) {
+void DualMesher::append(const SurfaceField& field, float adaptivity, const Threads& threads,
+                        MeshCounts& counts, Mesh& mesh) {
   cells_.find(field, threads);
   first_vertex_ = static_cast<std::uint32_t>(counts.vertices);
   first_triangle_ = counts.triangles;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/threads.h"
 #include "level_set/cut_cells.h"
 #include "level_set/surface_field.h"
 #include "level_set/vertex_merger.h"
@@ -22,7 +23,8 @@ class DualMesher {
   /// Appends the mesh of a field to what counts so far: vertices [m], normals, triangles. What the mesh holds
   /// beyond that is overwritten: clearing it first would set all of it to zero, for nothing. Vertices are in
   /// the order of the blocks they lie in. adaptivity: see SurfaceConfig.
-  void append(const SurfaceField& field, float adaptivity, int threads, MeshCounts& counts, Mesh& mesh);
+  void append(const SurfaceField& field, float adaptivity, const Threads& threads, MeshCounts& counts,
+              Mesh& mesh);
 
   /// A run of the vertices appended last, all in or next to one block.
   struct BlockVertices {

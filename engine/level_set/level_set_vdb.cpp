@@ -46,7 +46,7 @@ openvdb::FloatGrid::Ptr to_grid(const SurfaceField& field, const std::string& na
 
 }  // namespace
 
-std::string level_set_vdb(std::span<const SurfaceField> fields, int threads) {
+std::string level_set_vdb(std::span<const SurfaceField> fields, const Threads& threads) {
   return run_with_threads(threads, [&] {
     openvdb::initialize();
     openvdb::GridPtrVec grids;

@@ -28,7 +28,7 @@ void MeshSmoother::find_triangles(std::size_t first, const Mesh& mesh) {
       if (v >= first) triangles_[next[v - first]++] = static_cast<std::uint32_t>(t);
 }
 
-void MeshSmoother::smooth(int rounds, std::size_t first, int threads, Mesh& mesh) {
+void MeshSmoother::smooth(int rounds, std::size_t first, const Threads& threads, Mesh& mesh) {
   find_triangles(first, mesh);
   const std::size_t n = mesh.vertices.size() - first;
   next_.resize(n);

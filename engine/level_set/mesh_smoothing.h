@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/threads.h"
 #include "mallow/mesh.h"
 
 namespace mallow {
@@ -13,7 +14,7 @@ namespace mallow {
 class MeshSmoother {
  public:
   /// Vertices from `first` on, and their normals anew; triangles have no others from there on.
-  void smooth(int rounds, std::size_t first, int threads, Mesh& mesh);
+  void smooth(int rounds, std::size_t first, const Threads& threads, Mesh& mesh);
 
  private:
   void find_triangles(std::size_t first, const Mesh& mesh);

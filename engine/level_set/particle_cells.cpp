@@ -21,7 +21,8 @@ const SearchKernels& search() {
 
 }  // namespace
 
-void ParticleCells::sort(std::span<const Vec3> positions, float spacing, float radius, int threads) {
+void ParticleCells::sort(std::span<const Vec3> positions, float spacing, float radius,
+                         const Threads& threads) {
   radius_ = radius;
   grid_.spacing = spacing;
   positions_.resize_unset(positions.size());
@@ -34,7 +35,7 @@ void ParticleCells::sort(std::span<const Vec3> positions, float spacing, float r
   build_cell_grid(positions_, 0, positions_.size(), radius, threads, best_instruction_level(), grid_);
 }
 
-void ParticleCells::move(VectorColumn& positions, int threads) {
+void ParticleCells::move(VectorColumn& positions, const Threads& threads) {
   std::vector<std::uint32_t> particles(count());
   for (std::size_t place = 0; place < count(); ++place) particles[place] = particle(place);
   particle_.swap(particles);

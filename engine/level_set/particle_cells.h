@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/threads.h"
 #include "neighbors/cell_grid.h"
 #include "neighbors/search_kernel.h"
 
@@ -25,9 +26,9 @@ struct NearParticles {
 class ParticleCells {
  public:
   /// positions: finite. spacing: their h [m]. radius: of the searches [m].
-  void sort(std::span<const Vec3> positions, float spacing, float radius, int threads);
+  void sort(std::span<const Vec3> positions, float spacing, float radius, const Threads& threads);
   /// The same particles elsewhere, and sorted anew. positions: by place.
-  void move(VectorColumn& positions, int threads);
+  void move(VectorColumn& positions, const Threads& threads);
 
   std::size_t count() const { return grid_.order.size(); }
   Vec3 position(std::size_t place) const { return grid_.sorted.get(place); }

@@ -75,7 +75,7 @@ const SurfaceKernels& kernels() {
   static const InstructionLevel level = best_instruction_level();
   return MALLOW_SELECT(level, surface_kernels);
 }
-void find_neighbors(const BlockMap& blocks, int threads,
+void find_neighbors(const BlockMap& blocks, const Threads& threads,
                     std::vector<std::array<std::uint32_t, 27>>& neighbors) {
   neighbors.resize(blocks.size());
   parallel_for(threads, blocks.size(), [&](std::size_t begin, std::size_t end) {
@@ -100,7 +100,7 @@ void SurfaceField::clear() {
 }
 
 void SurfaceField::build(std::span<const Vec3> positions, float spacing, const SurfaceConfig& config,
-                         const VoxelFrame& frame, int threads) {
+                         const VoxelFrame& frame, const Threads& threads) {
   frame_ = frame;
   shape_ = make_shape(config, static_cast<double>(spacing), frame.voxel_size);
   surface_kind_ = config.kind;
@@ -230,7 +230,7 @@ void SurfaceField::find_distances(const VoxelLattice& points, const Near& near, 
 }
 
 /// Distances at the nodes of the probes' lattice in every block.
-void SurfaceField::probe(int threads) {
+void SurfaceField::probe(const Threads& threads) {
   const std::size_t n = lattice_count(probe_step_);
   const VoxelLattice points(probe_step_, shape_.voxel_size);
   probes_.resize(n * blocks_.size());
@@ -277,7 +277,7 @@ bool SurfaceField::cuts(std::uint32_t block, BlockKind& kind) const {
   return false;
 }
 
-void SurfaceField::classify(int threads) {
+void SurfaceField::classify(const Threads& threads) {
   const std::size_t n = blocks_.size();
   kind_.assign(n, BlockKind::surface);
   parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
@@ -303,7 +303,7 @@ void SurfaceField::classify(int threads) {
 }
 
 /// Sums at the nodes of all blocks that interpolation reads.
-void SurfaceField::sum_at_nodes(int threads) {
+void SurfaceField::sum_at_nodes(const Threads& threads) {
   const std::size_t n = lattice_count(node_step_);
   node_place_.resize(blocks_.size());
   if (node_step_ == probe_step_) {
@@ -373,7 +373,7 @@ void SurfaceField::collect_nodes(std::uint32_t block, float* nodes) const {
   }
 }
 
-void SurfaceField::fill(int threads) {
+void SurfaceField::fill(const Threads& threads) {
   const VoxelLattice points(1, shape_.voxel_size);
   parallel_for(
       threads, blocks_.size(),

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/threads.h"
 #include "level_set/anisotropic_kernels.h"
 #include "level_set/block_map.h"
 #include "level_set/particle_cells.h"
@@ -36,7 +37,7 @@ class SurfaceField {
   /// positions: finite. spacing: their h [m]. Throws ConfigError where the blocks would take
   /// more than config.memory_limit.
   void build(std::span<const Vec3> positions, float spacing, const SurfaceConfig& config,
-             const VoxelFrame& frame, int threads);
+             const VoxelFrame& frame, const Threads& threads);
 
   const VoxelFrame& frame() const { return frame_; }
   const BlockMap& blocks() const { return blocks_; }
@@ -64,10 +65,10 @@ class SurfaceField {
   void find_near(std::uint32_t block, Near& near) const;
   void drop_out_of_reach(Near& near) const;
   void find_distances(const VoxelLattice& points, const Near& near, float* sums, float* distances) const;
-  void probe(int threads);
-  void classify(int threads);
-  void sum_at_nodes(int threads);
-  void fill(int threads);
+  void probe(const Threads& threads);
+  void classify(const Threads& threads);
+  void sum_at_nodes(const Threads& threads);
+  void fill(const Threads& threads);
   bool cuts(std::uint32_t block, BlockKind& kind) const;
   void collect_nodes(std::uint32_t block, float* nodes) const;
 

@@ -99,7 +99,8 @@ VoxelFrame make_frame(std::span<const Vec3> positions, double margin, const Surf
 
 struct Surfacer::Work {
   SurfaceConfig config;
-  int threads = 1;
+  std::shared_ptr<Executor> executor;  ///< that `threads` points to
+  Threads threads = 1;
   std::vector<SurfaceField> fields;  ///< one for each surface
   DualMesher mesher;
   Mesh mesh;
@@ -204,11 +205,12 @@ void Surfacer::Work::draw(const SurfaceParticles& particles) {
     draw_one(particles, s, config.joined ? widest : particles.spacings[s], frame);
 }
 
-Surfacer::Surfacer(const SurfaceConfig& config, int threads) {
+Surfacer::Surfacer(const SurfaceConfig& config, int threads, std::shared_ptr<Executor> executor) {
   check(config, threads);
   work_ = std::make_unique<Work>();
   work_->config = config;
-  work_->threads = thread_count(threads);
+  work_->executor = std::move(executor);
+  work_->threads = Threads(threads, work_->executor);
 }
 Surfacer::~Surfacer() = default;
 Surfacer::Surfacer(Surfacer&&) noexcept = default;

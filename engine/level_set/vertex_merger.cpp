@@ -229,7 +229,7 @@ void VertexMerger::halve(const CutCells& cells, const std::vector<CellOfBlock>& 
   }
 }
 
-void VertexMerger::merge(const CutCells& cells, float tolerance, int threads,
+void VertexMerger::merge(const CutCells& cells, float tolerance, const Threads& threads,
                          std::span<const Eigen::Vector3f> places, std::span<const Vec3> normals) {
   const std::size_t blocks = cells.blocks().size();
   sides_.resize(blocks);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/threads.h"
 #include "level_set/cut_cells.h"
 #include "mallow/vec3.h"
 
@@ -23,8 +24,8 @@ struct DividedQuad {
 class VertexMerger {
  public:
   /// tolerance: [voxels]. places, normals: of the vertices of the cells, in voxels from their block's first.
-  void merge(const CutCells& cells, float tolerance, int threads, std::span<const Eigen::Vector3f> places,
-             std::span<const Vec3> normals);
+  void merge(const CutCells& cells, float tolerance, const Threads& threads,
+             std::span<const Eigen::Vector3f> places, std::span<const Vec3> normals);
 
   /// The vertex that stands for a vertex's cube, the first of them.
   std::uint32_t into(std::uint32_t vertex) const { return into_[vertex]; }

@@ -97,8 +97,8 @@ MotionSums move_block(const MotionInput& in, const ForcesInput& forces, Instruct
 
 }  // namespace
 
-MotionSums move_particles(const MotionInput& in, int threads, InstructionLevel level, ParticleStore& store,
-                          std::vector<MotionSums>& partial) {
+MotionSums move_particles(const MotionInput& in, const Threads& threads, InstructionLevel level,
+                          ParticleStore& store, std::vector<MotionSums>& partial) {
   const ForcesInput input = forces(in, store);
   return parallel_reduce(
       threads, in.end - in.begin, partial, MotionSums{},

@@ -5,6 +5,7 @@
 
 #include "core/column.h"
 #include "core/isa.h"
+#include "core/threads.h"
 #include "mallow/collider.h"
 #include "motion/contact.h"
 #include "particles/particle_store.h"
@@ -36,8 +37,8 @@ struct MotionSums {
 };
 
 /// Blend, contact, positions: v' and x' into the store's next columns. [model 4, 5; TK eq. 10, 11, 13]
-MotionSums move_particles(const MotionInput& input, int threads, InstructionLevel level, ParticleStore& store,
-                          std::vector<MotionSums>& partial);
+MotionSums move_particles(const MotionInput& input, const Threads& threads, InstructionLevel level,
+                          ParticleStore& store, std::vector<MotionSums>& partial);
 
 /// Colliders at the end of a step.
 void move_colliders(double time_step, std::span<Collider> colliders);

@@ -50,7 +50,7 @@ double pressure_limit(const TimeStepLimits::Pressure& pressure, double support_r
 
 Fastest fastest_particle(const ParticleStore& store, float time_step, const VectorColumn& sph_acceleration,
                          const Vec3& gravity, const VectorColumn* cross_group, const VectorColumn* user,
-                         int threads, InstructionLevel level, std::vector<Fastest>& partial) {
+                         const Threads& threads, InstructionLevel level, std::vector<Fastest>& partial) {
   const MotionKernels& kernels = MALLOW_SELECT(level, motion_kernels);
   const ForcesInput forces{.position = {},
                            .velocity = raw(store.velocity),

@@ -6,6 +6,7 @@
 
 #include "core/column.h"
 #include "core/isa.h"
+#include "core/threads.h"
 #include "particles/particle_store.h"
 
 namespace mallow {
@@ -20,7 +21,7 @@ struct Fastest {
 /// external: gravity is `gravity`, user forces and other groups are columns or null.
 Fastest fastest_particle(const ParticleStore& store, float time_step, const VectorColumn& sph_acceleration,
                          const Vec3& gravity, const VectorColumn* cross_group, const VectorColumn* user,
-                         int threads, InstructionLevel level, std::vector<Fastest>& partial);
+                         const Threads& threads, InstructionLevel level, std::vector<Fastest>& partial);
 
 /// What bounds the step beside V.
 struct TimeStepLimits {

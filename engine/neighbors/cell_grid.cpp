@@ -39,8 +39,8 @@ Aabb finite_bounds(const VectorColumn& x, std::size_t begin, std::size_t end) {
 /// Chooses the cells and the covered box. Where points lie too thinly for cells of their spacing, cells are
 /// made longer, then larger, up to the radius; where a few strays make the box too large even so, it shrinks
 /// around the mean until its cells are affordable.
-void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, float radius, int threads,
-                  CellGrid& grid) {
+void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, float radius,
+                  const Threads& threads, CellGrid& grid) {
   Aabb box = bounds_of(x, begin, end, threads, grid.partial_bounds);
   if (!box.min.allFinite() || !box.max.allFinite()) box = finite_bounds(x, begin, end);
   const auto n = static_cast<double>(end - begin);
@@ -75,7 +75,7 @@ void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, flo
 }
 
 /// Counts of chunk after chunk become places.
-void scan_counts(std::size_t cells, std::size_t chunks, int threads, const GridKernels& kernels,
+void scan_counts(std::size_t cells, std::size_t chunks, const Threads& threads, const GridKernels& kernels,
                  CellGrid& grid) {
   std::uint32_t* const counts = grid.counts.data();
   std::uint32_t* const starts = grid.cell_start.data();
@@ -107,7 +107,7 @@ void scan_counts(std::size_t cells, std::size_t chunks, int threads, const GridK
 }
 
 /// Cuts every column into clusters, the last of a column short.
-void cut_clusters(int threads, CellGrid& grid) {
+void cut_clusters(const Threads& threads, CellGrid& grid) {
   const std::size_t columns = grid.columns(), nx = static_cast<std::size_t>(grid.dims[0]);
   const auto clusters_of = [&](std::size_t column) {
     return (grid.cell_start[(column + 1) * nx] - grid.cell_start[column * nx] + k_cluster - 1) / k_cluster;
@@ -140,7 +140,7 @@ void cut_clusters(int threads, CellGrid& grid) {
 }  // namespace
 
 void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size_t end, float radius,
-                     int threads, InstructionLevel level, CellGrid& grid) {
+                     const Threads& threads, InstructionLevel level, CellGrid& grid) {
   const std::size_t n = end - begin;
   choose_cells(positions, begin, end, radius, threads, grid);
   const std::size_t cells = static_cast<std::size_t>(grid.dims[0]) * grid.columns();
@@ -156,10 +156,10 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
     kernels.cells_of(input, x, first, last, grid.cell_of.data());
   });
 
-  // A thread counts and sorts a chunk of the points, in order: the sort is stable whatever the chunks are. More
-  // chunks than these would count more cells than points.
+  // A thread counts and sorts a chunk of the points, in order: the sort is stable whatever the chunks are.
+  // More chunks than these would count more cells than points.
   const std::size_t chunks = std::clamp<std::size_t>(std::min(4 * n / cells, n / k_least_chunk), 1,
-                                                     static_cast<std::size_t>(threads));
+                                                     static_cast<std::size_t>(threads.count()));
   const std::size_t chunk = (n + chunks - 1) / chunks;
   grid.counts.resize_with_room(chunks * cells);
   const auto counts_of = [&](std::size_t point) { return grid.counts.data() + point / chunk * cells; };

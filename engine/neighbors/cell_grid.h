@@ -7,6 +7,7 @@
 
 #include "core/column.h"
 #include "core/isa.h"
+#include "core/threads.h"
 
 namespace mallow {
 
@@ -48,6 +49,6 @@ struct CellGrid {
 /// Count, scan, scatter: a stable sort, the same for any number of threads. positions: finite. radius: > 0,
 /// the largest that will be searched for.
 void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size_t end, float radius,
-                     int threads, InstructionLevel level, CellGrid& grid);
+                     const Threads& threads, InstructionLevel level, CellGrid& grid);
 
 }  // namespace mallow

@@ -16,7 +16,7 @@ constexpr double k_rounding = 1e-6;
 using Motion = std::array<double, 3>;
 
 /// Gathers the present positions and returns the mean motion since the search.
-Motion gather(const VectorColumn& positions, int threads, CellGrid& grid, KeptLists& kept) {
+Motion gather(const VectorColumn& positions, const Threads& threads, CellGrid& grid, KeptLists& kept) {
   const std::size_t n = grid.order.size();
   Motion mean = parallel_reduce(
       threads, n, kept.partial_motion, Motion{},
@@ -40,7 +40,7 @@ Motion gather(const VectorColumn& positions, int threads, CellGrid& grid, KeptLi
 }
 
 /// Largest squared distance from where the mean motion would have taken a point.
-double farthest(const Motion& mean, int threads, const CellGrid& grid, KeptLists& kept) {
+double farthest(const Motion& mean, const Threads& threads, const CellGrid& grid, KeptLists& kept) {
   const VectorColumn &now = grid.sorted, &before = kept.searched;
   const auto motion = [&](std::size_t a, std::size_t s) {
     return static_cast<double>(now.axis(a)[s]) - static_cast<double>(before.axis(a)[s]) - mean[a];
@@ -60,8 +60,8 @@ double farthest(const Motion& mean, int threads, const CellGrid& grid, KeptLists
 
 }  // namespace
 
-bool keep_lists(const VectorColumn& positions, float radius, float slack, int threads, CellGrid& grid,
-                KeptLists& kept) {
+bool keep_lists(const VectorColumn& positions, float radius, float slack, const Threads& threads,
+                CellGrid& grid, KeptLists& kept) {
   const double limit = static_cast<double>(radius) * (0.5 * static_cast<double>(slack) - k_rounding);
   if (!kept.any || !(limit > 0)) return false;
   const Motion mean = gather(positions, threads, grid, kept);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/threads.h"
 #include "neighbors/cell_grid.h"
 
 namespace mallow {
@@ -28,8 +29,8 @@ struct KeptLists {
 
 /// Where the lists of the last search still hold, makes grid.sorted the present positions and returns true.
 /// positions: finite, as many points as were searched. radius > 0, slack in [0, 1].
-bool keep_lists(const VectorColumn& positions, float radius, float slack, int threads, CellGrid& grid,
-                KeptLists& kept);
+bool keep_lists(const VectorColumn& positions, float radius, float slack, const Threads& threads,
+                CellGrid& grid, KeptLists& kept);
 /// The lists have just been searched on this grid.
 void remember_search(const CellGrid& grid, KeptLists& kept);
 

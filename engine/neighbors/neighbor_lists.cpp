@@ -42,9 +42,7 @@ struct Searcher {
   SearchInput input;
 
   Searcher(const CellGrid& cells, float radius, InstructionLevel level)
-      : grid(cells),
-        kernels(MALLOW_SELECT(level, search_kernels)),
-        input(search_input(cells, radius)) {}
+      : grid(cells), kernels(MALLOW_SELECT(level, search_kernels)), input(search_input(cells, radius)) {}
 
   /// Appends the list of a cluster.
   void find_near_cluster(std::size_t cluster, Scratch& scratch, std::uint32_t* count) const {
@@ -88,8 +86,8 @@ struct Searcher {
   }
 };
 
-/// Hands out room for lists. A thread starts on the same range of blocks in every step, and a range has a share
-/// of its own: what a thread writes is where it wrote before, in its cache and not in another's.
+/// Hands out room for lists. A thread starts on the same range of blocks in every step, and a range has a
+/// share of its own: what a thread writes is where it wrote before, in its cache and not in another's.
 class Shares {
  public:
   explicit Shares(const std::vector<std::size_t>& ends) : count_(ends.size()) {
@@ -100,7 +98,8 @@ class Shares {
     }
   }
   static constexpr std::size_t k_no_room = SIZE_MAX;
-  /// Room for `size` entries of a range, if need be of another's share. What finds a share too short closes it.
+  /// Room for `size` entries of a range, if need be of another's share. What finds a share too short closes
+  /// it.
   std::size_t place(std::size_t range, std::size_t size) {
     shares_[range].needed.fetch_add(size, std::memory_order_relaxed);
     for (std::size_t k = 0; k < count_; ++k) {
@@ -138,7 +137,7 @@ class Shares {
 /// Searches all clusters; a block's lists get a place of their own in `indices`. row(cluster): the first list
 /// of a cluster. search(cluster, scratch) appends its lists and sets their counts.
 template <class Row, class Search>
-void build_lists(std::size_t clusters, int threads, NeighborLists& lists, const Row& row,
+void build_lists(std::size_t clusters, const Threads& threads, NeighborLists& lists, const Row& row,
                  const Search& search) {
   const std::size_t ranges = SharedBlocks::ranges(threads);
   const std::size_t blocks = (clusters + k_clusters_per_block - 1) / k_clusters_per_block;
@@ -191,7 +190,7 @@ void build_lists(std::size_t clusters, int threads, NeighborLists& lists, const 
 
 }  // namespace
 
-void build_neighbor_lists(const CellGrid& grid, float radius, int threads, InstructionLevel level,
+void build_neighbor_lists(const CellGrid& grid, float radius, const Threads& threads, InstructionLevel level,
                           NeighborLists& lists) {
   const std::size_t n = grid.order.size();
   lists.begin.resize(n);
@@ -205,7 +204,7 @@ void build_neighbor_lists(const CellGrid& grid, float radius, int threads, Instr
       });
 }
 
-void build_cluster_lists(const CellGrid& grid, float radius, int threads, InstructionLevel level,
+void build_cluster_lists(const CellGrid& grid, float radius, const Threads& threads, InstructionLevel level,
                          NeighborLists& lists) {
   lists.begin.resize_with_room(grid.clusters());
   lists.count.resize_with_room(grid.clusters());

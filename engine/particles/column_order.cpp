@@ -17,8 +17,8 @@ constexpr double k_min_columns = 32768.0;
 /// Columns that a thread sorts at once.
 constexpr std::size_t k_column_block = 32;
 
-void choose_columns(const VectorColumn& x, std::size_t begin, std::size_t end, float width, int threads,
-                    ColumnOrder& columns) {
+void choose_columns(const VectorColumn& x, std::size_t begin, std::size_t end, float width,
+                    const Threads& threads, ColumnOrder& columns) {
   const Aabb box = bounds_of(x, begin, end, threads, columns.partial_bounds);
   Eigen::Index longest = 0;
   (box.max - box.min).maxCoeff(&longest);
@@ -59,7 +59,7 @@ void choose_columns(const VectorColumn& x, std::size_t begin, std::size_t end, f
 }
 
 /// Counts and scatters the points; each thread one chunk of them, in order: stable whatever the chunks are.
-void scatter(const VectorColumn& positions, std::size_t begin, std::size_t n, int threads,
+void scatter(const VectorColumn& positions, std::size_t begin, std::size_t n, const Threads& threads,
              ColumnOrder& columns) {
   const std::size_t count = columns.columns();
   const float* x[2];
@@ -69,7 +69,7 @@ void scatter(const VectorColumn& positions, std::size_t begin, std::size_t n, in
     const float at = std::floor((value - columns.origin[k]) * columns.inverse_width);
     return static_cast<int>(std::clamp(at, 0.0f, static_cast<float>(columns.dims[k] - 1)));
   };
-  const auto chunks = static_cast<std::size_t>(threads);
+  const auto chunks = static_cast<std::size_t>(threads.count());
   const std::size_t chunk = std::max<std::size_t>(1, (n + chunks - 1) / chunks);
   columns.counts.resize(0);
   columns.counts.resize(chunks * count);
@@ -118,7 +118,7 @@ void sort_column(const float* along, std::uint32_t* first, std::uint32_t* last,
 }  // namespace
 
 void order_by_columns(const VectorColumn& positions, std::size_t begin, std::size_t end, float width,
-                      int threads, ColumnOrder& columns) {
+                      const Threads& threads, ColumnOrder& columns) {
   const std::size_t n = end - begin;
   choose_columns(positions, begin, end, width, threads, columns);
   const auto strips =

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/threads.h"
 #include "mallow/vec3.h"
 
 namespace mallow {
@@ -49,6 +50,6 @@ struct ColumnOrder {
 /// The same order for any number of threads; points at one place keep theirs. positions: finite. width: > 0
 /// [m].
 void order_by_columns(const VectorColumn& positions, std::size_t begin, std::size_t end, float width,
-                      int threads, ColumnOrder& columns);
+                      const Threads& threads, ColumnOrder& columns);
 
 }  // namespace mallow

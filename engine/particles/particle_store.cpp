@@ -45,7 +45,7 @@ void ParticleStore::insert(std::size_t at, std::span<const Vec3> positions,
   for (std::size_t row = 0; row < old + count; ++row) row_of_id[id[row]] = static_cast<std::uint32_t>(row);
 }
 
-void ParticleStore::permute(std::size_t begin, std::span<const std::uint32_t> order, int threads) {
+void ParticleStore::permute(std::size_t begin, std::span<const std::uint32_t> order, const Threads& threads) {
   const std::size_t n = order.size();
   const auto gather = [&](auto* values, auto* scratch) {
     parallel_for(threads, n, [&](std::size_t first, std::size_t last) {

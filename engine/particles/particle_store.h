@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/threads.h"
 
 namespace mallow {
 
@@ -27,7 +28,7 @@ struct ParticleStore {
   /// Puts particles behind row `at`, moving later rows up. They get the next ids.
   void insert(std::size_t at, std::span<const Vec3> positions, std::span<const Vec3> velocities);
   /// Row begin + k becomes what row begin + order[k] was.
-  void permute(std::size_t begin, std::span<const std::uint32_t> order, int threads);
+  void permute(std::size_t begin, std::span<const std::uint32_t> order, const Threads& threads);
 };
 
 }  // namespace mallow

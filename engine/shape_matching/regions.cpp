@@ -42,7 +42,7 @@ bool any_drawn(std::span<const Run> runs, std::uint32_t stride) {
 }
 
 /// The particles that own regions, and how many regions those before each particle own.
-void choose_owners(std::uint32_t stride, int threads, RegionScratch& scratch) {
+void choose_owners(std::uint32_t stride, const Threads& threads, RegionScratch& scratch) {
   const std::size_t n = scratch.near.count.size();
   Column<std::uint32_t>& first_region = scratch.first_region;
   first_region.resize_unset(n + 1);
@@ -76,7 +76,7 @@ void choose_owners(std::uint32_t stride, int threads, RegionScratch& scratch) {
 
 /// Turns the lists of near particles into those of the regions that they own: what is consecutive stays so.
 /// Reads and writes each list in its place.
-void turn_around(int threads, RegionScratch& scratch) {
+void turn_around(const Threads& threads, RegionScratch& scratch) {
   RunLists& lists = scratch.near;
   const Column<std::uint32_t>& first_region = scratch.first_region;
   parallel_for(threads, lists.count.size(), [&](std::size_t begin, std::size_t end) {
@@ -98,7 +98,8 @@ void turn_around(int threads, RegionScratch& scratch) {
 }
 
 /// w_i, from how many regions a particle is in; Σ |N_i| of all particles, whatever the stride.
-std::size_t weigh_particles(bool every, int threads, const RegionScratch& scratch, ShapeMatching& shape) {
+std::size_t weigh_particles(bool every, const Threads& threads, const RegionScratch& scratch,
+                            ShapeMatching& shape) {
   const RunLists& near = scratch.near;
   return parallel_reduce(
       threads, near.count.size(), shape.partial_count, std::size_t{0},
@@ -139,7 +140,7 @@ void measure_regions(std::size_t begin, std::size_t end, const MomentKernels& ke
 }
 
 /// Room for the sums of n particles and of regions, whose rotations start from none.
-void make_room(std::size_t n, std::size_t regions, int threads, ShapeMatching& shape) {
+void make_room(std::size_t n, std::size_t regions, const Threads& threads, ShapeMatching& shape) {
   for (Column<float>& column : shape.rotation) column.resize_unset(regions);
   // Also the padding, where a zero quaternion would have no direction.
   parallel_for(threads, padded(regions), [&](std::size_t begin, std::size_t end) {
@@ -171,8 +172,8 @@ std::size_t ShapeMatching::bytes() const {
   return sum;
 }
 
-void update_reference(const VectorColumn& positions, std::size_t begin, std::size_t end, int threads,
-                      ShapeMatching& shape) {
+void update_reference(const VectorColumn& positions, std::size_t begin, std::size_t end,
+                      const Threads& threads, ShapeMatching& shape) {
   const std::size_t n = end - begin;
   using Sums = std::array<double, 12>;
   const auto add = [](Sums a, const Sums& b) {
@@ -209,12 +210,13 @@ void update_reference(const VectorColumn& positions, std::size_t begin, std::siz
   shape.built = false;
 }
 
-void sort_reference(int threads, ColumnOrder& columns, ShapeMatching& shape) {
+void sort_reference(const Threads& threads, ColumnOrder& columns, ShapeMatching& shape) {
   order_by_columns(shape.reference, 0, shape.reference.size(), column_width(shape), threads, columns);
   shape.reference.swap(columns.sorted);
 }
 
-void build_regions(int threads, InstructionLevel level, RegionScratch& scratch, ShapeMatching& shape) {
+void build_regions(const Threads& threads, InstructionLevel level, RegionScratch& scratch,
+                   ShapeMatching& shape) {
   const std::size_t n = shape.reference.size();
   const bool every = shape.region_stride == 1;
   const MomentKernels& kernels = MALLOW_SELECT(level, moment_kernels);

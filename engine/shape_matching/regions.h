@@ -6,6 +6,7 @@
 
 #include "core/column.h"
 #include "core/isa.h"
+#include "core/threads.h"
 #include "particles/column_order.h"
 #include "shape_matching/run_lists.h"
 
@@ -25,15 +26,16 @@ struct RegionScratch {
 };
 
 /// x̄ ← x of the rows [begin, end) of a store. Rotations start from none; regions are due to be built.
-void update_reference(const VectorColumn& positions, std::size_t begin, std::size_t end, int threads,
-                      ShapeMatching& shape);
+void update_reference(const VectorColumn& positions, std::size_t begin, std::size_t end,
+                      const Threads& threads, ShapeMatching& shape);
 /// Puts the rows of a reference shape in the order in which regions are fast: row k becomes what row
 /// columns.order[k] was. The other columns of the particles have to follow.
-void sort_reference(int threads, ColumnOrder& columns, ShapeMatching& shape);
+void sort_reference(const Threads& threads, ColumnOrder& columns, ShapeMatching& shape);
 /// Regions of the reference shape: owners, lists, weights, centres, moments. One of every region_stride
 /// particles owns a region, and so does every particle that is in none of theirs. Right for any order of the
 /// particles, fast after sort_reference, and owners are spread evenly then.
-void build_regions(int threads, InstructionLevel level, RegionScratch& scratch, ShapeMatching& shape);
+void build_regions(const Threads& threads, InstructionLevel level, RegionScratch& scratch,
+                   ShapeMatching& shape);
 /// Whether a row is drawn to own a region: of every `stride` in a row one is, at a scattered place. Every
 /// third row of a lattice of 12 is whole columns of it, and bent ten times as wrongly as every second or
 /// fourth.

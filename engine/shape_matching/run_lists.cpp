@@ -45,7 +45,7 @@ struct Search {
   int reach[2];
   std::vector<ColumnBounds> bounds;
 
-  Search(const ColumnOrder& order, float radius, int threads, InstructionLevel level)
+  Search(const ColumnOrder& order, float radius, const Threads& threads, InstructionLevel level)
       : columns(order),
         kernels(MALLOW_SELECT(level, reach_kernels)),
         input{order.sorted.axis(static_cast<std::size_t>(order.along)), {}, radius * radius},
@@ -153,7 +153,7 @@ struct Search {
 };
 
 /// From one of k_sampled blocks, and a tenth more.
-std::size_t estimate_runs(const Search& search, int threads, RunLists& lists) {
+std::size_t estimate_runs(const Search& search, const Threads& threads, RunLists& lists) {
   const std::size_t n = lists.count.size(), blocks = (n + k_block - 1) / k_block;
   std::atomic<std::size_t> points = 0, runs = 0;
   parallel_for(
@@ -173,7 +173,7 @@ std::size_t estimate_runs(const Search& search, int threads, RunLists& lists) {
 
 }  // namespace
 
-void find_runs(const ColumnOrder& columns, float radius, int threads, InstructionLevel level,
+void find_runs(const ColumnOrder& columns, float radius, const Threads& threads, InstructionLevel level,
                RunLists& lists) {
   const std::size_t n = columns.order.size();
   lists.begin.resize_unset(n);

@@ -56,8 +56,8 @@ void for_each_part(std::uint32_t count, const Body& body) {
   body(count);
 }
 
-Histogram count_runs(const RunLists& lists, std::span<const std::uint32_t> owners, std::size_t n, int threads,
-                     TableLists& coded) {
+Histogram count_runs(const RunLists& lists, std::span<const std::uint32_t> owners, std::size_t n,
+                     const Threads& threads, TableLists& coded) {
   return parallel_reduce(
       threads, n, coded.partial_runs, Histogram{},
       [&](std::size_t begin, std::size_t end) {
@@ -99,8 +99,8 @@ RunLengths choose_lengths(const Histogram& runs, std::size_t rows) {
   return lengths;
 }
 
-void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::size_t rows, int threads,
-            TableLists& coded) {
+void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::size_t rows,
+            const Threads& threads, TableLists& coded) {
   const std::size_t n = owners.empty() ? lists.count.size() : owners.size();
   const Histogram runs = count_runs(lists, owners, n, threads, coded);
   coded.members = runs[0];

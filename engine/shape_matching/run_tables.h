@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/threads.h"
 #include "shape_matching/run_lists.h"
 #include "shape_matching/shape_kernels.h"
 
@@ -37,8 +38,8 @@ struct TableLists {
 /// runs of n rows the lists have; longer ones count as several.
 RunLengths choose_lengths(const TableLists::Histogram& runs, std::size_t rows);
 /// The lists of `owners`, or all where there are none, for a table of `rows` rows.
-void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::size_t rows, int threads,
-            TableLists& coded);
+void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::size_t rows,
+            const Threads& threads, TableLists& coded);
 /// The rows of a list.
 std::vector<std::uint32_t> decode(const TableLists& coded, std::size_t list);
 

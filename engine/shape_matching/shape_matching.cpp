@@ -41,8 +41,8 @@ ShapeInput input(const VectorColumn& positions, std::size_t begin, const ShapeMa
 }
 
 /// Any frame near the group's motion does; the best one leaves the smallest u.
-void update_frame(const VectorColumn& positions, std::size_t begin, int threads, InstructionLevel level,
-                  ShapeMatching& shape) {
+void update_frame(const VectorColumn& positions, std::size_t begin, const Threads& threads,
+                  InstructionLevel level, ShapeMatching& shape) {
   const std::size_t n = shape.reference.size();
   const Eigen::Vector3d near_origin = positions.get(begin).cast<double>();
   const MomentKernels& kernels = MALLOW_SELECT(level, moment_kernels);
@@ -104,7 +104,7 @@ void solve_undecided(const ShapeInput& in, std::size_t begin, std::size_t end, S
 
 /// The rows of the particles and the sums of their runs, block by block: a block computes the rows behind it
 /// that its runs reach once more, rather than wait for them.
-void write_particle_table(const ShapeInput& in, int threads, const ShapeKernels& kernels,
+void write_particle_table(const ShapeInput& in, const Threads& threads, const ShapeKernels& kernels,
                           ShapeMatching& shape) {
   const std::size_t n = shape.reference.size();
   const RunLengths& lengths = shape.regions.lengths;
@@ -124,8 +124,8 @@ void write_particle_table(const ShapeInput& in, int threads, const ShapeKernels&
 
 }  // namespace
 
-void sum_regions(const VectorColumn& positions, std::size_t begin, int threads, InstructionLevel level,
-                 ShapeMatching& shape) {
+void sum_regions(const VectorColumn& positions, std::size_t begin, const Threads& threads,
+                 InstructionLevel level, ShapeMatching& shape) {
   update_frame(positions, begin, threads, level, shape);
   const ShapeInput in = input(positions, begin, shape);
   const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
@@ -135,7 +135,7 @@ void sum_regions(const VectorColumn& positions, std::size_t begin, int threads, 
   });
 }
 
-void solve_rotations(const VectorColumn& positions, std::size_t begin, int iterations, int threads,
+void solve_rotations(const VectorColumn& positions, std::size_t begin, int iterations, const Threads& threads,
                      InstructionLevel level, ShapeMatching& shape) {
   const ShapeInput in = input(positions, begin, shape);
   const RotationKernels& kernels = MALLOW_SELECT(level, rotation_kernels);
@@ -147,8 +147,8 @@ void solve_rotations(const VectorColumn& positions, std::size_t begin, int itera
   });
 }
 
-void compute_goals(const VectorColumn& positions, std::size_t begin, int threads, InstructionLevel level,
-                   ShapeMatching& shape) {
+void compute_goals(const VectorColumn& positions, std::size_t begin, const Threads& threads,
+                   InstructionLevel level, ShapeMatching& shape) {
   const ShapeInput in = input(positions, begin, shape);
   const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
   const RunLengths& lengths = shape.by_particle().lengths;

@@ -7,6 +7,7 @@
 
 #include "core/column.h"
 #include "core/isa.h"
+#include "core/threads.h"
 #include "shape_matching/regions.h"
 #include "shape_matching/rotation_kernels.h"
 #include "shape_matching/run_tables.h"
@@ -60,14 +61,14 @@ struct ShapeMatching {
 };
 
 /// First sums over the regions. [model 2]
-void sum_regions(const VectorColumn& positions, std::size_t begin, int threads, InstructionLevel level,
-                 ShapeMatching& shape);
+void sum_regions(const VectorColumn& positions, std::size_t begin, const Threads& threads,
+                 InstructionLevel level, ShapeMatching& shape);
 /// R_j of every region from last step's, by at most `iterations` of Newton's method: with k_enough_iterations
 /// to single precision, with fewer as near as they come, with 0 exactly, in double. [model 2]
-void solve_rotations(const VectorColumn& positions, std::size_t begin, int iterations, int threads,
+void solve_rotations(const VectorColumn& positions, std::size_t begin, int iterations, const Threads& threads,
                      InstructionLevel level, ShapeMatching& shape);
 /// g − x of every particle. [TK eq. 7]
-void compute_goals(const VectorColumn& positions, std::size_t begin, int threads, InstructionLevel level,
-                   ShapeMatching& shape);
+void compute_goals(const VectorColumn& positions, std::size_t begin, const Threads& threads,
+                   InstructionLevel level, ShapeMatching& shape);
 
 }  // namespace mallow

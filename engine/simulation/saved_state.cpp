@@ -378,7 +378,7 @@ SavedState Simulation::save() const {
   return saved;
 }
 
-Simulation Simulation::restore(const SavedState& saved, int threads) {
+Simulation Simulation::restore(const SavedState& saved, int threads, std::shared_ptr<Executor> executor) {
   std::uint32_t version = 0;
   unpack(saved, "version", [&](UnpackingArchive& archive) { archive(version); });
   if (version != k_version)
@@ -387,6 +387,7 @@ Simulation Simulation::restore(const SavedState& saved, int threads) {
   SolverConfig config;
   unpack(saved, "solver", [&](UnpackingArchive& archive) { pass_solver(archive, config); });
   config.threads = threads;
+  config.executor = std::move(executor);
   Simulation simulation(config);
   State& state = *simulation.state_;
   unpack(saved, "clock", [&](UnpackingArchive& archive) {

@@ -122,7 +122,7 @@ Simulation::Simulation(const SolverConfig& config) : state_(std::make_unique<Sta
   check(config, checks);
   checks.finish();
   state_->config = config;
-  state_->threads = thread_count(config.threads);
+  state_->threads = Threads(config.threads, config.executor);
   state_->level = config.instruction_level.value_or(best_instruction_level());
   state_->sph.support_radius = config.support_radius;
   state_->sph.formulation = config.formulation;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/threads.h"
 #include "mallow/simulation.h"
 #include "motion/motion.h"
 #include "motion/time_step.h"
@@ -40,7 +41,7 @@ struct Group {
 /// All that a simulation is.
 struct Simulation::State {
   SolverConfig config;
-  int threads = 1;
+  Threads threads = 1;  ///< of config.executor
   InstructionLevel level = InstructionLevel::baseline;
   std::int64_t step = 0;
   double time = 0;

@@ -37,7 +37,7 @@ std::size_t Sph::bytes() const {
          cross_group.bytes();
 }
 
-bool find_neighbors(const VectorColumn& positions, int threads, InstructionLevel level, Sph& sph) {
+bool find_neighbors(const VectorColumn& positions, const Threads& threads, InstructionLevel level, Sph& sph) {
   const std::size_t n = positions.size();
   const bool keeps = sph.neighbor_slack > 0;
   if (keeps && keep_lists(positions, sph.support_radius, sph.neighbor_slack, threads, sph.grid, sph.kept))
@@ -57,7 +57,7 @@ bool find_neighbors(const VectorColumn& positions, int threads, InstructionLevel
   return true;
 }
 
-void compute_density(int threads, InstructionLevel level, Sph& sph) {
+void compute_density(const Threads& threads, InstructionLevel level, Sph& sph) {
   const std::size_t n = sph.grid.order.size();
   for (Column<float>* column : {&sph.density, &sph.pressure, &sph.volume, &sph.density_by_row})
     column->resize(n);
@@ -75,7 +75,8 @@ void compute_density(int threads, InstructionLevel level, Sph& sph) {
       k_cluster_block);
 }
 
-void compute_accelerations(const VectorColumn& velocities, int threads, InstructionLevel level, Sph& sph) {
+void compute_accelerations(const VectorColumn& velocities, const Threads& threads, InstructionLevel level,
+                           Sph& sph) {
   const std::size_t n = sph.grid.order.size();
   sph.acceleration.resize(n);
   if (sph.groups.size() > 1) sph.cross_group.resize(n);

@@ -40,7 +40,7 @@ void check(const Camera& camera) {
 struct Renderer::State {
   State(const RenderConfig& render_config, int requested_threads)
       : config(render_config),
-        threads(thread_count(requested_threads)),
+        threads(requested_threads),
         key_points(config.samples),
         hemisphere_points(config.samples),
         surfels(static_cast<std::size_t>(config.width) * static_cast<std::size_t>(config.height)),
@@ -72,7 +72,7 @@ struct Renderer::State {
   Light light_near(const World& world, const Surfel& seen, int x, int y, float footprint) const;
 
   RenderConfig config;
-  int threads;
+  Threads threads;
   InterleavedDisc key_points;
   InterleavedDisc hemisphere_points;
   Bodies bodies;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mallow/body.h"
+#include "mallow/executor.h"
 #include "mallow/mesh.h"
 #include "mallow/surface_config.h"
 #include "mallow/vec3.h"
@@ -34,8 +35,9 @@ struct SurfaceParticles {
 /// ids, which are groups. Same particles, same bits, for any number of threads.
 class Surfacer {
  public:
-  /// threads: 0 takes all there are. Throws ConfigError where a value is out of range.
-  explicit Surfacer(const SurfaceConfig& config, int threads = 0);
+  /// threads, executor: as in SolverConfig. Throws ConfigError where a value is out of range.
+  explicit Surfacer(const SurfaceConfig& config, int threads = 0,
+                    std::shared_ptr<Executor> executor = nullptr);
   ~Surfacer();
   Surfacer(Surfacer&&) noexcept;
   Surfacer& operator=(Surfacer&&) noexcept;
@@ -44,8 +46,8 @@ class Surfacer {
   /// ConfigError where particles are not as said, or the surface would take more than
   /// SurfaceConfig::memory_limit.
   const Mesh& draw(const SurfaceParticles& particles);
-  /// The level sets of the frame drawn last as the content of a VDB file: grids "surface", or "surface_0" and on
-  /// where groups have surfaces of their own; signed distances [m], negative inside.
+  /// The level sets of the frame drawn last as the content of a VDB file: grids "surface", or "surface_0" and
+  /// on where groups have surfaces of their own; signed distances [m], negative inside.
   std::string level_set_vdb() const;
   /// Memory it holds [bytes].
   std::size_t bytes() const;

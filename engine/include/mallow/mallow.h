@@ -4,6 +4,7 @@
 #include "mallow/body.h"               // IWYU pragma: export
 #include "mallow/collider.h"           // IWYU pragma: export
 #include "mallow/errors.h"             // IWYU pragma: export
+#include "mallow/executor.h"           // IWYU pragma: export
 #include "mallow/instruction_level.h"  // IWYU pragma: export
 #include "mallow/material.h"           // IWYU pragma: export
 #include "mallow/quality.h"            // IWYU pragma: export

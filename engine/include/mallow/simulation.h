@@ -68,8 +68,8 @@ struct ForceInput {
   VectorView velocities;  ///< [m/s]
 };
 /// Adds accelerations [m/s²] to what it is given; called once a step, before anything else moves. It may not
-/// change or step the simulation that calls it: that throws ConfigError. What it throws ends the step, and the
-/// state stays what it was before it.
+/// change or step the simulation that calls it: that throws ConfigError. What it throws ends the step, and
+/// the state stays what it was before it.
 using ForceCallback = std::function<void(const ForceInput&, VectorSpan accelerations)>;
 
 /// A scene in motion: SPH and shape matching blended by alpha [TK]. Results depend on the binary and on what
@@ -117,8 +117,8 @@ class Simulation {
   const std::vector<Collider>& colliders() const;  ///< as they stand now
 
   std::span<const ParticleId> ids() const;
-  /// [m]. A scene whose first body is more than a thousand spacings from 0 is kept relative to a point near it,
-  /// so that it moves as it would at 0; then this is a copy, in which digits are lost, made once a step.
+  /// [m]. A scene whose first body is more than a thousand spacings from 0 is kept relative to a point near
+  /// it, so that it moves as it would at 0; then this is a copy, in which digits are lost, made once a step.
   VectorView positions() const;
   VectorView velocities() const;  ///< [m/s]
   /// ρ [kg/m³] of the last step; empty where no SPH ran.
@@ -147,7 +147,8 @@ class Simulation {
   /// mallow, with any number of threads. Whoever had set a force sets it again before the next step.
   /// densities() are empty until then, and instruction_level is the machine's best. Throws ConfigError that
   /// names the chunk where a state is not whole, is of another version, or holds what no simulation could.
-  static Simulation restore(const SavedState& saved, int threads = 0);
+  static Simulation restore(const SavedState& saved, int threads = 0,
+                            std::shared_ptr<Executor> executor = nullptr);
 
   /// What runs and what it holds; calls prepare().
   SimulationInfo info();

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
+#include "mallow/executor.h"
 #include "mallow/instruction_level.h"
 #include "mallow/vec3.h"
 
@@ -44,8 +46,11 @@ struct SolverConfig {
   /// keeps its lists, at the price of longer ones. 0: they are found anew in every step. Results differ by
   /// the order of sums only.
   float neighbor_slack = 0.0f;
-  /// Threads of every phase, >= 1; 0 takes what the machine has. Results do not depend on it.
+  /// Threads of every phase, >= 1; 0 takes all that the executor has. Results do not depend on it.
   int threads = 0;
+  /// Whose threads run the loops: team_executor() where it is null, openmp_executor(), or an application's
+  /// own. Results do not depend on it.
+  std::shared_ptr<Executor> executor = nullptr;
   /// Instructions that kernels use, one of those this machine has; left out: its best. Results do not depend
   /// on it; it is there to show that, and to time what older machines would do.
   std::optional<InstructionLevel> instruction_level = {};
