@@ -6,7 +6,8 @@
 namespace mallow {
 
 /// Keeps threads from being used where one that is waited for does not get to run: a wait of more than
-/// k_long means one thread for a pause, twice as long each time, until k_good loops in a row went well.
+/// k_long means one thread for a pause, twice as long each time, until k_good loops in a row went well. A
+/// pause is also so long that the wait before it takes a tenth of the time at most.
 class Governor {
  public:
   using Clock = std::chrono::steady_clock;
@@ -15,6 +16,7 @@ class Governor {
   /// About a time slice: what else runs on that core may be done then.
   static constexpr std::chrono::milliseconds k_shortest_pause{4}, k_longest_pause{256};
   static constexpr int k_good = 1000;
+  static constexpr int k_times_the_wait = 10;
 
   /// Whether more than one thread may be used now.
   bool allows(Clock::time_point now) const { return now >= resume_; }
@@ -24,7 +26,7 @@ class Governor {
     if (wait > k_long) {
       pause_ = pause_ == Clock::duration::zero() ? Clock::duration(k_shortest_pause)
                                                  : std::min(2 * pause_, Clock::duration(k_longest_pause));
-      resume_ = now + pause_;
+      resume_ = now + std::max(pause_, k_times_the_wait * wait);
       good_ = 0;
     } else if (++good_ == k_good) {
       pause_ = Clock::duration::zero();

@@ -60,6 +60,7 @@ struct Team::Worker {
   std::thread thread = {};
 };
 
+Team::Team() = default;
 Team::~Team() {
   word_.fetch_or(k_end);
   for (const auto& worker : workers_) {

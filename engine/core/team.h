@@ -16,7 +16,7 @@ namespace mallow {
 /// does not let run costs nothing: it comes late and finds the loop closed.
 class Team {
  public:
-  Team() = default;
+  Team();
   ~Team();
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;

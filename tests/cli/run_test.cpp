@@ -36,27 +36,6 @@ TEST_F(cli_run, state_is_what_the_library_computes_to_the_last_bit) {
   EXPECT_FALSE(std::getline(lines, line));
 }
 
-TEST_F(cli_run, second_start_that_limits_spinning_leaves_bound_threads_their_processors) {
-#ifdef __clang__
-  GTEST_SKIP()
-      << "SKIPPED: LLVM's OpenMP tells its places when a loop first runs, and so not before the second start";
-#endif
-  for (const char* name : {"GOMP_SPINCOUNT", "OMP_WAIT_POLICY"}) ::unsetenv(name);
-  ::setenv("OMP_PROC_BIND", "true", 1);
-  ::setenv("OMP_DISPLAY_ENV", "true", 1);
-  const Outcome outcome = run_mallow({"--version"});
-  for (const char* name : {"OMP_PROC_BIND", "OMP_DISPLAY_ENV"}) ::unsetenv(name);
-  ::setenv("OMP_WAIT_POLICY", "passive", 1);
-
-  std::istringstream lines(outcome.err);
-  std::vector<std::string> places;
-  for (std::string line; std::getline(lines, line);)
-    if (line.find("OMP_PLACES") != std::string::npos) places.push_back(line);
-  if (places.empty()) GTEST_SKIP() << "this OpenMP does not tell its places";
-  ASSERT_EQ(places.size(), 2u) << outcome.err;
-  EXPECT_EQ(places[0], places[1]);
-}
-
 TEST_F(cli_run, one_and_two_threads_give_the_same_bytes) {
   ASSERT_EQ(
       run_mallow({"run", scene_, "--steps", "12", "--threads", "1", "--state-out", at("one.csv")}).exit_code,

@@ -191,8 +191,16 @@ TEST(governor, pauses_twice_as_long_after_each_wait_and_forgets_them_after_a_tho
   governor.waited(1ms, now);
   EXPECT_FALSE(governor.allows(now + 255ms));
   for (int k = 0; k < 1000; ++k) governor.waited(0us, now);
-  governor.waited(1ms, now);
+  governor.waited(200us, now);
   EXPECT_TRUE(governor.allows(now + 4ms));
+}
+
+TEST(governor, pauses_ten_times_as_long_as_a_wait_lasted) {
+  Governor governor;
+  const Governor::Clock::time_point now{1h};
+  governor.waited(100ms, now);
+  EXPECT_FALSE(governor.allows(now + 999ms));
+  EXPECT_TRUE(governor.allows(now + 1s));
 }
 
 }  // namespace
