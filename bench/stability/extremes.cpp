@@ -11,7 +11,7 @@ namespace {
 struct Setup {
   SolverConfig config{.support_radius = 2.1f, .threads = 1};
   Material material;
-  Body body = sample(Lattice{.count = {5, 5, 5}, .corner = {0, 0, 1}});
+  Body body = sample(Lattice{.count = {5, 5, 5}, .corner = {0, 0, 1}, .jitter = 0});
   std::vector<Collider> colliders = {};
 
   Simulation build() const {
@@ -89,20 +89,21 @@ class Catalogue {
   void few_particles() {
     for (const int n : {1, 2, 3})
       add_free(std::to_string(n) + (n == 1 ? " particle" : " particles"), [n](Setup& s) {
-        s.body = sample(Lattice{.count = {n, 1, 1}});
+        s.body = sample(Lattice{.count = {n, 1, 1}, .jitter = 0});
       });
   }
 
   void shapes() {
-    add_free("a line", [](Setup& s) { s.body = sample(Lattice{.count = {20, 1, 1}}); });
-    add_free("a plane", [](Setup& s) { s.body = sample(Lattice{.count = {8, 8, 1}}); });
-    add_free("all in one place", [](Setup& s) {
-      s.body.positions.assign(20, Vec3(1, 2, 3));
+    add_free("a line", [](Setup& s) { s.body = sample(Lattice{.count = {20, 1, 1}, .jitter = 0}); });
+    add_free("a plane", [](Setup& s) { s.body = sample(Lattice{.count = {8, 8, 1}, .jitter = 0}); });
+    add_free("crowded", [](Setup& s) {  // as near as they may be
+      s.body.positions.clear();
+      for (int i = 0; i < 20; ++i) s.body.positions.push_back(Vec3(1, 2, 3 + 0.101f * static_cast<float>(i)));
       s.body.velocity = {1, 0, 0};
     });
-    add_free("pairs in one place", [](Setup& s) {
+    add_free("crowded pairs", [](Setup& s) {
       const std::vector<Vec3> once = s.body.positions;
-      s.body.positions.insert(s.body.positions.end(), once.begin(), once.end());
+      for (const Vec3& x : once) s.body.positions.push_back(x + Vec3(0.101f, 0, 0));
     });
     list_.back().trial.energy_room = list_[list_.size() - 2].trial.energy_room =
         1e3;  // pressure from the start
@@ -210,7 +211,7 @@ class Catalogue {
     add(
         "rests for " + std::to_string(long_steps_) + " steps", falling_body(),
         [](Setup& s) {
-          s.body = sample(Lattice{.count = {3, 3, 3}});
+          s.body = sample(Lattice{.count = {3, 3, 3}, .jitter = 0});
         },
         rests);
   }

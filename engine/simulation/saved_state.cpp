@@ -11,7 +11,7 @@ namespace mallow {
 namespace {
 
 /// Counted up whenever the chunks or what they mean change.
-constexpr std::uint32_t k_version = 1;
+constexpr std::uint32_t k_version = 2;
 static_assert(sizeof(std::size_t) == sizeof(std::uint64_t), "sizes are saved as they are");
 
 // One list of members a type, for both ways: see PackingArchive.
@@ -47,7 +47,6 @@ void pass_clock(Archive& archive, State& state) {
   archive(state.step);
   archive(state.time);
   archive(state.prepared);
-  archive(state.checked_particles);
 }
 
 template <class Archive>

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "core/parallel.h"
+#include "simulation/overlaps.h"
 #include "simulation/state.h"
 #include "simulation/validation.h"
 #include "sph/kernel_functions.h"
@@ -12,8 +13,6 @@ namespace {
 
 /// Bodies of one group share their spacing to this relative difference.
 constexpr float k_same_spacing = 1e-3f;
-/// Particles of different groups nearer than this share of the spacing are an error of the scene.
-constexpr float k_overlap = 0.1f;
 
 Group& checked(std::vector<Group>& groups, GroupId id) {
   const auto index = static_cast<std::size_t>(id);
@@ -47,38 +46,6 @@ void derive_density(const SolverConfig& config, Group& group) {
                      : 1.0f;
   group.rest_density =
       material.rest_density.value_or(static_cast<float>(static_cast<double>(group.mass) * per_mass));
-}
-
-void refuse_overlaps(const Simulation::State& state) {
-  float spacing = 0;
-  for (const Group& group : state.groups) spacing = std::max(spacing, group.spacing);
-  CellGrid grid;
-  NeighborLists lists;
-  build_cell_grid(state.store.position, 0, state.store.size(), spacing, state.threads, state.level, grid);
-  build_neighbor_lists(grid, k_overlap * spacing, state.threads, state.level, lists);
-  const auto group_of = [&](std::uint32_t row) -> const Group& {
-    return *std::find_if(state.groups.begin(), state.groups.end(),
-                         [&](const Group& g) { return row < g.end; });
-  };
-  for (std::size_t s = 0; s < grid.order.size(); ++s) {
-    const std::uint32_t i = grid.order[s];
-    for (const std::uint32_t t : lists.of(s)) {
-      const std::uint32_t j = grid.order[t];
-      const Group &a = group_of(i), &b = group_of(j);
-      const bool is_new =
-          state.store.id[i] >= state.checked_particles || state.store.id[j] >= state.checked_particles;
-      const float distance = (state.store.position.get(i) - state.store.position.get(j)).norm();
-      const float limit = k_overlap * std::min(a.spacing, b.spacing);
-      if (&a == &b || !is_new || distance >= limit) continue;
-      std::ostringstream text;
-      text << "groups '" << a.name << "' and '" << b.name << "' overlap at ("
-           << state.far(state.store.position.get(i)).transpose() << "): particles " << state.store.id[i]
-           << " and " << state.store.id[j] << " are " << distance
-           << " m apart, at least a tenth of the spacing (" << limit
-           << " m) is needed; move a body, or give both one group";
-      throw ConfigError("body", text.str());
-    }
-  }
 }
 
 /// Colliders that are there already are seen from the origin too.
@@ -166,11 +133,15 @@ void Simulation::add_body(const Body& body, GroupId id) {
     checks.problem("body.spacing", text.str());
   }
   checks.finish();
+  const Vec3 origin = s.store.size() == 0 ? choose_origin(body) : s.origin;
+  std::vector<Vec3> positions;
+  positions.reserve(body.positions.size());
+  for (const Vec3& x : body.positions) positions.push_back(relative_to(origin, x));
+  refuse_overlaps(s, group, positions, body.spacing, origin);
+
   std::vector<Vec3> velocities(body.positions.size(), body.velocity);
   for (std::size_t i = 0; i < body.velocities.size(); ++i) velocities[i] += body.velocities[i];
-  if (s.store.size() == 0) take_origin(s, choose_origin(body));
-  std::vector<Vec3> positions;
-  for (const Vec3& x : body.positions) positions.push_back(relative_to(s.origin, x));
+  if (s.store.size() == 0) take_origin(s, origin);
   s.store.insert(group.end, positions, velocities);
   group.end += body.positions.size();
   for (std::size_t g = static_cast<std::size_t>(id) + 1; g < s.groups.size(); ++g) {
@@ -189,8 +160,15 @@ GroupId Simulation::add_body(const Body& body, const Material& material, std::st
   Checks checks;
   check(body, checks);
   checks.finish();
+  const bool was_prepared = state_->prepared;
   const GroupId group = add_group(material, std::move(name));
-  add_body(body, group);
+  try {
+    add_body(body, group);
+  } catch (...) {
+    state_->groups.pop_back();
+    state_->prepared = was_prepared;
+    throw;
+  }
   return group;
 }
 
@@ -303,8 +281,6 @@ void Simulation::prepare() {
   for (const Group& group : s.groups)
     if (group.size() == 0) checks.problem("group", "group '" + group.name + "' has no particles");
   checks.finish();
-  if (s.groups.size() > 1) refuse_overlaps(s);
-  s.checked_particles = s.store.size();
 
   s.sph.kept.forget();
   describe_groups(s);

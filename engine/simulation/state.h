@@ -62,8 +62,7 @@ struct Simulation::State {
   std::int64_t far_step = -1;
 
   bool prepared = false;
-  std::size_t checked_particles = 0;  ///< ids below were looked at for overlaps
-  bool sph_ran = false;               ///< in the last step
+  bool sph_ran = false;  ///< in the last step
   // Scratch.
   RegionScratch region_scratch;
   Column<std::uint32_t> fluid_order;

@@ -1,6 +1,9 @@
 #include "simulation/validation.h"
 
+#include <algorithm>
 #include <sstream>
+
+#include "core/precision.h"
 
 namespace mallow {
 namespace {
@@ -129,6 +132,12 @@ void check(const Body& body, Checks& checks) {
   };
   first_bad("body.positions", body.positions);
   first_bad("body.velocities", body.velocities);
+  const auto reach = [](const Vec3& x) { return x.cwiseAbs().maxCoeff(); };
+  const auto farthest = std::max_element(body.positions.begin(), body.positions.end(),
+                                         [&](const Vec3& a, const Vec3& b) { return reach(a) < reach(b); });
+  if (farthest == body.positions.end() || !farthest->allFinite()) return;
+  if (const auto why = why_too_far(*farthest, body.spacing))
+    checks.problem("body.positions[" + std::to_string(farthest - body.positions.begin()) + ']', *why);
 }
 
 }  // namespace mallow

@@ -16,7 +16,7 @@ Simulation scene(int threads = 2) {
   config.update_interval = 10;
   config.threads = threads;
   Simulation s(config);
-  s.add_body(sample(Lattice{.count = {6, 6, 6}, .corner = {0, 0, 1}}),
+  s.add_body(sample(Lattice{.count = {6, 6, 6}, .corner = {0, 0, 1}, .jitter = 0}),
              Material{.alpha = 0.5f, .update_threshold = 0.1f});
   s.add_collider({.shape = Plane{}});
   return s;
@@ -37,9 +37,52 @@ TEST(misuse, an_empty_simulation_cannot_be_stepped_and_can_be_filled_later) {
   EXPECT_NE(refusal([&] { s.step(); }).find("no particles"), std::string::npos);
   const GroupId group = s.add_group({});
   EXPECT_NE(refusal([&] { s.step(); }).find("has no particles"), std::string::npos);
-  s.add_body(sample(Lattice{.count = {2, 2, 2}}), group);
+  s.add_body(sample(Lattice{.count = {2, 2, 2}, .jitter = 0}), group);
   s.step();
   EXPECT_EQ(s.step_count(), 1);
+}
+
+TEST(misuse, a_body_that_overlaps_is_refused_at_once_and_nothing_changes) {
+  Simulation s = scene();
+  for (int step = 0; step < 5; ++step) s.step();
+  const std::uint64_t before = s.state_hash();
+  const Body there{.positions = {s.positions_by_id()[100]}, .spacing = 1};
+  const Body touches = sample(Lattice{.count = {2, 2, 2}, .corner = {6.5f, 0, 3}, .jitter = 0});
+  Body twice = touches;
+  twice.positions.push_back(twice.positions[3] + Vec3(0, 0.09f, 0));
+  const auto expect_refused = [&](const std::string& text, const char* says, const char* particles) {
+    EXPECT_NE(text.find(says), std::string::npos) << text;
+    EXPECT_NE(text.find(particles), std::string::npos) << text;
+    EXPECT_NE(text.find("at least a tenth of the spacing (0.1 m)"), std::string::npos) << text;
+    EXPECT_EQ(s.state_hash(), before);
+    EXPECT_EQ(s.particle_count(), 216u);
+    EXPECT_EQ(s.info().groups.size(), 1u);
+  };
+  expect_refused(refusal([&] { s.add_body(there, GroupId{0}); }), "group 'group 0' overlaps itself at (",
+                 "particles 100 and 216 are 0 m apart");
+  expect_refused(refusal([&] { s.add_body(there, Material{}, "late"); }),
+                 "groups 'late' and 'group 0' overlap at (", "particles 100 and 216 are 0 m apart");
+  expect_refused(refusal([&] { s.add_body(twice, GroupId{0}); }), "group 'group 0' overlaps itself at (",
+                 "particles 219 and 224 are 0.09");
+  expect_refused(refusal([&] { s.add_body(twice, Material{}, "own"); }), "group 'own' overlaps itself at (",
+                 "particles 219 and 224 are 0.09");
+  s.step();
+  s.add_body(touches, GroupId{0});
+  s.step();
+  EXPECT_EQ(s.particle_count(), 224u);
+}
+
+TEST(misuse, a_body_so_far_away_that_floats_cannot_tell_its_points_apart_is_refused) {
+  const auto at = [](const Vec3& place, float spacing) {
+    Simulation s({.support_radius = 2 * spacing});
+    const Body pair{.positions = {place, place + Vec3(0, 0, spacing)}, .spacing = spacing};
+    return refusal([&] { s.add_body(pair, Material{}); });
+  };
+  EXPECT_EQ(at({1e5f, -1e5f, 0}, 0.1f), "");
+  const std::string far = at({5e5f, 4.5e6f, 100}, 0.1f);
+  for (const char* word : {"body.positions[", "(500000 4500000 100", "spacing of 0.1", "steps of 0.5 there"})
+    EXPECT_NE(far.find(word), std::string::npos) << far;
+  EXPECT_EQ(at({5e5f, 4.5e6f, 100}, 4.0f), "");
 }
 
 TEST(misuse, names_that_do_not_exist_are_refused) {
@@ -66,7 +109,7 @@ TEST(misuse, a_force_callback_may_not_change_or_step_what_calls_it) {
     refusals = {refusal([&] { s.step(); }),
                 refusal([&] { s.prepare(); }),
                 refusal([&] {
-                  s.add_body(sample(Lattice{.corner = {50, 0, 0}}), GroupId{0});
+                  s.add_body(sample(Lattice{.corner = {50, 0, 0}, .jitter = 0}), GroupId{0});
                 }),
                 refusal([&] { s.add_group({}); }),
                 refusal([&] { s.add_collider({}); }),

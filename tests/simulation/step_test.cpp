@@ -21,7 +21,7 @@ SolverConfig config(int threads = 2) {
 }
 
 Body cube(int side, const Vec3& corner = {0, 0, 0}) {
-  return sample(Lattice{{side, side, side}, 1.0f, corner});
+  return sample(Lattice{{side, side, side}, 1.0f, corner, 0});
 }
 
 /// Everything at once: three groups, an update, a pin, a force, colliders that move, alpha that changes.
@@ -490,14 +490,16 @@ TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
   contains(message_of([&] { s.add_collider({.shape = Union{}}); }), {"no parts"});
   const GroupId group = s.add_body(cube(3), Material{});
   contains(message_of([&] {
-             s.add_body(sample(Lattice{{2, 2, 2}, 2.0f, {9, 9, 9}}), group);
+             s.add_body(sample(Lattice{{2, 2, 2}, 2.0f, {9, 9, 9}, 0}), group);
            }),
            {"body.spacing: 2", "share one spacing"});
   contains(message_of([&] { s.pin(Aabb{{50, 50, 50}, {51, 51, 51}}); }), {"pin.box", "no particle"});
   contains(message_of([&] { s.pin(std::vector<ParticleId>{99}); }), {"no particle 99"});
   contains(message_of([&] { s.set_alpha(GroupId{7}, 0.5f); }), {"no group 7"});
-  s.add_body(cube(3, {0.05f, 0, 0}), Material{}, "second");
-  contains(message_of([&] { s.prepare(); }), {"overlap", "second", "0.05"});
+  contains(message_of([&] {
+             s.add_body(cube(3, {0.05f, 0, 0}), Material{}, "second");
+           }),
+           {"overlap", "second", "0.05"});
 }
 
 }  // namespace

@@ -86,7 +86,9 @@ class Simulation {
   /// A group without particles yet. Throws ConfigError with every value that is out of range.
   GroupId add_group(const Material& material, std::string name = {});
   /// Adds a body to a group; its particles get the next ids. Bodies of one group share one spacing; a group
-  /// that already moved takes the present positions as its reference shape. Throws ConfigError.
+  /// that already moved takes the present positions as its reference shape. Throws ConfigError, and changes
+  /// nothing, also where a point is nearer than a tenth of the spacing to another one of the body or to a
+  /// particle that is there, or where floats cannot tell points apart so far from 0.
   void add_body(const Body& body, GroupId group);
   /// Adds a body as a group of its own.
   GroupId add_body(const Body& body, const Material& material, std::string name = {});
