@@ -21,15 +21,23 @@ std::string ply_header(const Mesh& mesh) {
          "\nproperty list uchar uint vertex_indices\nend_header\n";
 }
 
+Mesh read(const std::filesystem::path& file, Eigen::Vector3d* origin) {
+  const std::string ending = lower_case_ending(file);
+  if (ending == ".obj") return read_obj(file, origin);
+  if (ending == ".ply") return read_ply_mesh(file, origin);
+  if (ending == ".stl") return read_stl(file, origin);
+  if (ending == ".off") return read_off(file, origin);
+  fail_file(file, "ending " + in_quotes(ending) + " is not allowed for a mesh: .obj, .ply, .stl or .off");
+}
+
 }  // namespace
 
 Mesh read_mesh(const std::filesystem::path& file) {
-  const std::string ending = lower_case_ending(file);
-  if (ending == ".obj") return read_obj(file);
-  if (ending == ".ply") return read_ply_mesh(file);
-  if (ending == ".stl") return read_stl(file);
-  if (ending == ".off") return read_off(file);
-  fail_file(file, "ending " + in_quotes(ending) + " is not allowed for a mesh: .obj, .ply, .stl or .off");
+  return read(file, nullptr);
+}
+
+Mesh read_mesh(const std::filesystem::path& file, Eigen::Vector3d& origin) {
+  return read(file, &origin);
 }
 
 void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh) {

@@ -5,6 +5,7 @@
 
 #include "files/byte_reader.h"
 #include "files/mesh_readers.h"
+#include "files/read_origin.h"
 #include "files/text_reader.h"
 
 namespace mallow {
@@ -82,16 +83,17 @@ void read_face(TextReader& text, Mesh& mesh, LargestIndex& largest) {
 
 }  // namespace
 
-Mesh read_obj(const std::filesystem::path& file) {
+Mesh read_obj(const std::filesystem::path& file, Eigen::Vector3d* origin) {
   const std::string content = read_whole_file(file);
   TextReader text(file, content);
   Mesh mesh;
+  ReadOrigin near(origin);
   LargestIndex largest{0, text};
   while (text.next_line()) {
     const std::string_view keyword = text.word();
     if (keyword == "v") {
       require_room(text, mesh.vertices.size() + 1, "vertices");
-      mesh.vertices.push_back(text.point());
+      mesh.vertices.push_back(near.relative(text.point()));
     } else if (keyword == "f") {
       read_face(text, mesh, largest);
     }

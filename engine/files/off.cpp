@@ -3,6 +3,7 @@
 
 #include "files/byte_reader.h"
 #include "files/mesh_readers.h"
+#include "files/read_origin.h"
 #include "files/text_reader.h"
 
 namespace mallow {
@@ -53,16 +54,17 @@ OffCounts read_header(TextReader& text) {
 
 }  // namespace
 
-Mesh read_off(const std::filesystem::path& file) {
+Mesh read_off(const std::filesystem::path& file, Eigen::Vector3d* origin) {
   const std::string content = read_whole_file(file);
   TextReader text(file, content);
   const OffCounts counts = read_header(text);
 
   Mesh mesh;
+  ReadOrigin near(origin);
   mesh.vertices.reserve(counts.vertices);
   for (std::uint64_t v = 0; v < counts.vertices; ++v) {
     require_line(text, "vertices");
-    mesh.vertices.push_back(text.point());
+    mesh.vertices.push_back(near.relative(text.point()));
   }
   mesh.triangles.reserve(counts.faces);
   const std::int64_t last = static_cast<std::int64_t>(counts.vertices) - 1;

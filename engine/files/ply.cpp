@@ -173,16 +173,15 @@ double PlyReader::read_binary(PlyType type) {
   return 0;
 }
 
-Vec3 PlyReader::finite_vector(const std::array<std::size_t, 3>& properties) const {
-  Vec3 vector;
+Eigen::Vector3d PlyReader::finite_point(const std::array<std::size_t, 3>& properties) const {
+  Eigen::Vector3d vector;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double value = values_[properties[axis]];
-    const float single = static_cast<float>(value);
-    if (!std::isfinite(single)) {
+    if (!std::isfinite(static_cast<float>(value))) {
       fail_row(element_->properties[properties[axis]].name,
                shown(value) + " is not allowed: a finite number");
     }
-    vector[static_cast<Eigen::Index>(axis)] = single;
+    vector[static_cast<Eigen::Index>(axis)] = value;
   }
   return vector;
 }

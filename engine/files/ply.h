@@ -74,7 +74,11 @@ class PlyReader {
   bool next_row();
 
   double value(std::size_t property) const { return values_[property]; }
-  Vec3 finite_vector(const std::array<std::size_t, 3>& properties) const;
+  /// Three numbers that single precision holds too.
+  Eigen::Vector3d finite_point(const std::array<std::size_t, 3>& properties) const;
+  Vec3 finite_vector(const std::array<std::size_t, 3>& properties) const {
+    return finite_point(properties).cast<float>();
+  }
   /// A whole number in [0, limit); `what` is said in the message.
   std::uint32_t index(double value, std::uint64_t limit, const char* what) const;
   std::span<const double> list() const { return list_; }

@@ -2,6 +2,7 @@
 
 #include "files/mesh_readers.h"
 #include "files/ply.h"
+#include "files/read_origin.h"
 
 namespace mallow {
 namespace {
@@ -9,14 +10,15 @@ namespace {
 /// How far the squared length of a normal may be from 1 after rounding to text or float.
 constexpr float k_unit_tolerance = 1e-3f;
 
-void read_vertices(PlyReader& ply, const PlyElement& element, Mesh& mesh) {
+void read_vertices(PlyReader& ply, const PlyElement& element, Eigen::Vector3d* origin, Mesh& mesh) {
+  ReadOrigin near(origin);
   const auto position = ply.find_vector(element, {"x", "y", "z"}, true);
   const auto normal = ply.find_vector(element, {"nx", "ny", "nz"}, false);
   const auto velocity = ply.find_vector(element, {"vx", "vy", "vz"}, false);
   const auto material = ply.find_scalar(element, "material_id");
   mesh.vertices.reserve(element.count);
   while (ply.next_row()) {
-    mesh.vertices.push_back(ply.finite_vector(*position));
+    mesh.vertices.push_back(near.relative(ply.finite_point(*position)));
     if (normal) mesh.normals.push_back(ply.finite_vector(*normal));
     if (velocity) mesh.velocities.push_back(ply.finite_vector(*velocity));
     if (material) {
@@ -60,13 +62,13 @@ void read_faces(PlyReader& ply, const PlyElement& element, std::uint64_t vertex_
 
 }  // namespace
 
-Mesh read_ply_mesh(const std::filesystem::path& file) {
+Mesh read_ply_mesh(const std::filesystem::path& file, Eigen::Vector3d* origin) {
   PlyReader ply(file);
   const std::uint64_t vertex_count = ply.require("vertex").count;
   ply.require("face");
   Mesh mesh;
   while (const PlyElement* element = ply.next_element()) {
-    if (element->name == "vertex") read_vertices(ply, *element, mesh);
+    if (element->name == "vertex") read_vertices(ply, *element, origin, mesh);
     if (element->name == "face") read_faces(ply, *element, vertex_count, mesh);
   }
   return mesh;

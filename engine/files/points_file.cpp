@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "files/byte_reader.h"
 #include "files/ply.h"
@@ -13,32 +16,90 @@ namespace {
 /// The columns that a point file may hold, in the order of a row's numbers below.
 constexpr std::array<const char*, 6> k_columns = {"x", "y", "z", "vx", "vy", "vz"};
 
+/// What the columns that hold vectors are called by other programs: ParaView writes Points:0, Points_0 in
+/// newer versions, Velocity:0.
+constexpr std::array<std::array<std::string_view, 4>, 2> k_vector_names = {
+    {{"points", "point", "position", "positions"}, {"velocity", "velocities", "vel", "v"}}};
+
 struct CsvColumns {
+  char separator = ',';
   std::vector<std::optional<std::size_t>> meaning;  ///< by column of the file: index into k_columns
   bool velocities = false;
 };
+
+/// "x" of "X [m]".
+std::string plain_name(std::string_view name) {
+  name = name.substr(0, name.find_first_of("[("));
+  name = name.substr(0, name.find_last_not_of(" \t") + 1);
+  std::string plain(name);
+  for (char& c : plain)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return plain;
+}
+
+/// Index into k_columns of a column called as other programs do: "points:0", "velocity_x".
+std::optional<std::size_t> other_name(std::string_view name) {
+  if (name.size() < 3 || (name[name.size() - 2] != ':' && name[name.size() - 2] != '_')) return std::nullopt;
+  const std::size_t axis = std::string_view("0x1y2z").find(name.back());
+  if (axis == std::string_view::npos) return std::nullopt;
+  name.remove_suffix(2);
+  for (std::size_t v = 0; v < k_vector_names.size(); ++v)
+    if (std::find(k_vector_names[v].begin(), k_vector_names[v].end(), name) != k_vector_names[v].end())
+      return 3 * v + axis / 2;
+  return std::nullopt;
+}
+
+/// What stands between the columns of a header: a comma if there is one outside of quotes, or a semicolon, or
+/// a tab.
+char find_separator(std::string_view header) {
+  for (const char separator : {',', ';', '\t'}) {
+    bool quoted = false;
+    for (const char c : header) {
+      if (c == '"') quoted = !quoted;
+      if (c == separator && !quoted) return separator;
+    }
+  }
+  return ',';
+}
+
+/// "'a', 'b'", the first of many.
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t k_most = 12;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(names.size(), k_most); ++k)
+    text += (k ? ", " : "") + in_quotes(names[k]);
+  return text + (names.size() > k_most ? ", ..." : "");
+}
 
 CsvColumns read_csv_header(TextReader& text) {
   if (!text.next_filled_line())
     text.fail("header", "is missing: a line that names the columns, such as x,y,z");
   CsvColumns columns;
+  columns.separator = find_separator(text.line());
+  std::vector<std::string> names;
+  while (const auto name = text.cell(columns.separator)) names.emplace_back(*name);
+  columns.meaning.resize(names.size());
   std::array<bool, k_columns.size()> found{};
-  while (const auto name = text.cell()) {
-    const auto known = std::find(k_columns.begin(), k_columns.end(), *name);
-    if (known == k_columns.end()) {
-      columns.meaning.emplace_back();
-      continue;
-    }
-    const auto index = static_cast<std::size_t>(known - k_columns.begin());
-    if (found[index]) text.fail("header", "column " + in_quotes(*name) + " is given twice");
-    found[index] = true;
-    columns.meaning.emplace_back(index);
+  const auto take = [&](std::size_t column, std::size_t k) {
+    if (found[k]) text.fail("header", "column " + in_quotes(names[column]) + " is given twice");
+    found[k] = true;
+    columns.meaning[column] = k;
+  };
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const auto known = std::find(k_columns.begin(), k_columns.end(), plain_name(names[c]));
+    if (known != k_columns.end()) take(c, static_cast<std::size_t>(known - k_columns.begin()));
+  }
+  // Other programs' names count where none of a vector's own is there.
+  const std::array<bool, 2> own = {found[0] || found[1] || found[2], found[3] || found[4] || found[5]};
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const auto k = other_name(plain_name(names[c]));
+    if (k && !own[*k / 3]) take(c, *k);
   }
   columns.velocities = found[3] || found[4] || found[5];
   for (std::size_t k = 0; k < (columns.velocities ? 6u : 3u); ++k) {
     if (found[k]) continue;
-    text.fail("header",
-              "lacks column " + in_quotes(k_columns[k]) + "; x, y, z are needed, and vx, vy, vz all or none");
+    text.fail("header", "lacks column " + in_quotes(k_columns[k]) +
+                            "; x, y, z are needed, and vx, vy, vz all or none; there are " + listed(names));
   }
   return columns;
 }
@@ -51,9 +112,10 @@ Body read_csv_points(const std::filesystem::path& file) {
   while (text.next_filled_line()) {
     std::array<float, k_columns.size()> row{};
     std::size_t cells = 0;
-    while (const auto cell = text.cell()) {
+    while (const auto cell = text.cell(columns.separator)) {
       if (cells < columns.meaning.size()) {
-        if (const auto k = columns.meaning[cells]) row[*k] = text.finite(k_columns[*k], *cell);
+        if (const auto k = columns.meaning[cells])
+          row[*k] = static_cast<float>(text.finite(k_columns[*k], *cell));
       }
       ++cells;
     }

@@ -74,14 +74,27 @@ std::string_view TextReader::rest_of_line() {
   return line_.substr(word_begin_);
 }
 
-std::optional<std::string_view> TextReader::cell() {
+std::optional<std::string_view> TextReader::cell(char separator) {
   if (!cells_left_) return std::nullopt;
-  const std::size_t comma = std::min(line_.find(',', at_), line_.size());
-  cells_left_ = comma < line_.size();
-  word_begin_ = std::min(line_.find_first_not_of(k_spaces, at_), comma);
-  const std::string_view text = line_.substr(word_begin_, comma - word_begin_);
-  at_ = std::min(comma + 1, line_.size());
-  return text.substr(0, text.find_last_not_of(k_spaces) + 1);
+  // A tab that separates cells is no space around them.
+  const std::string_view spaces = separator == '\t' ? std::string_view(" \v\f\r") : k_spaces;
+  word_begin_ = std::min(line_.find_first_not_of(spaces, at_), line_.size());
+  std::size_t end = word_begin_;
+  if (end < line_.size() && line_[end] == '"') {
+    end = line_.find('"', end + 1);
+    if (end == std::string_view::npos) fail("", "a quote is opened, but not closed");
+  }
+  end = std::min(line_.find(separator, end), line_.size());
+  word_begin_ = std::min(word_begin_, end);
+  cells_left_ = end < line_.size();
+  std::string_view text = line_.substr(word_begin_, end - word_begin_);
+  at_ = std::min(end + 1, line_.size());
+  text = text.substr(0, text.find_last_not_of(spaces) + 1);
+  const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+  if (!quoted) return text;
+  text = text.substr(1, text.size() - 2);
+  text.remove_prefix(std::min(text.find_first_not_of(spaces), text.size()));
+  return text.substr(0, text.find_last_not_of(spaces) + 1);
 }
 
 double TextReader::number(const char* field) {
@@ -107,18 +120,18 @@ std::int64_t TextReader::integer(const char* field, std::int64_t low, std::int64
   return value;
 }
 
-float TextReader::finite(const char* field, std::string_view text) const {
+double TextReader::finite(const char* field, std::string_view text) const {
   if (text.empty()) fail(field, "is missing; a finite number is needed");
   const std::optional<double> value = parse_number(text);
-  const float single = static_cast<float>(value.value_or(NAN));
-  if (!std::isfinite(single)) fail(field, in_quotes(text) + " is not allowed: a finite number");
-  return single;
+  if (!std::isfinite(static_cast<float>(value.value_or(NAN))))
+    fail(field, in_quotes(text) + " is not allowed: a finite number");
+  return *value;
 }
 
-Vec3 TextReader::point() {
-  const float x = finite("x", word());
-  const float y = finite("y", word());
-  const float z = finite("z", word());
+Eigen::Vector3d TextReader::point() {
+  const double x = finite("x", word());
+  const double y = finite("y", word());
+  const double z = finite("z", word());
   return {x, y, z};
 }
 

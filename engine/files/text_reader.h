@@ -42,17 +42,18 @@ class TextReader {
   std::string_view word();
   /// All words of the line that are left, as one.
   std::string_view rest_of_line();
-  /// What stands up to the next comma, without the spaces around it; nothing at the end of the line.
-  std::optional<std::string_view> cell();
+  /// What stands up to the next separator, without the spaces and the double quotes around it; nothing at the
+  /// end of the line. A separator in quotes is text.
+  std::optional<std::string_view> cell(char separator = ',');
 
   /// The next word as a number; nan and inf are left to the caller.
   double number(const char* field);
   /// The next word as a whole number in [low, high].
   std::int64_t integer(const char* field, std::int64_t low, std::int64_t high);
-  /// A word as a finite single precision number.
-  float finite(const char* field, std::string_view text) const;
+  /// A word as a number that single precision holds too.
+  double finite(const char* field, std::string_view text) const;
   /// The next three words as a point.
-  Vec3 point();
+  Eigen::Vector3d point();
 
   /// Throws IoError about the last word of this line.
   [[noreturn]] void fail(std::string field, std::string message) const;

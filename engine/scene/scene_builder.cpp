@@ -1,5 +1,6 @@
 #include <map>
 
+#include "core/precision.h"
 #include "mallow/files.h"
 #include "mallow/level_set.h"
 #include "mallow/scene.h"
@@ -65,6 +66,24 @@ void collect(Problems& problems, int line, const std::string& path, const Add& a
   }
 }
 
+/// The same problems, which name the file too.
+std::vector<Problem> about(const std::filesystem::path& file, const ConfigError& error) {
+  std::vector<Problem> problems = error.problems();
+  for (Problem& problem : problems)
+    if (problem.file.empty()) problem.file = file.string();
+  return problems;
+}
+
+/// Moves a body. Throws ConfigError where floats cannot tell its points apart then.
+void move(Body& body, const Eigen::Vector3d& by) {
+  if (by.isZero(0)) return;
+  for (Vec3& x : body.positions) {
+    x = (by + x.cast<double>()).cast<float>();
+    if (const auto why = why_too_far(x, body.spacing))
+      throw ConfigError("center", "is not given, and the mesh lies where a point at " + *why);
+  }
+}
+
 struct Sample {
   const std::filesystem::path& folder;
   int threads;
@@ -74,8 +93,19 @@ struct Sample {
     return mallow::sample(sphere_shape(source.center, source.radius), source.sampling);
   }
   Body operator()(const MeshSource& source) const {
-    const ImplicitShape shape = mesh_shape(read_mesh(folder / source.file), k_mesh_voxels, threads);
-    return mallow::sample(place(shape, source.placement), source.sampling);
+    const std::filesystem::path file = folder / source.file;
+    Eigen::Vector3d origin;
+    const Mesh mesh = read_mesh(file, origin);
+    try {
+      const ImplicitShape shape = mesh_shape(mesh, k_mesh_voxels, threads);
+      Body body = mallow::sample(place(shape, source.placement), source.sampling);
+      for (std::string& note : body.notes) note = file.string() + ": " + note;
+      // Without a centre it stays where the file has it, which counts only now that all points are there.
+      if (!source.placement.center) move(body, origin);
+      return body;
+    } catch (const ConfigError& error) {
+      throw ConfigError(about(file, error));
+    }
   }
   Body operator()(const PointsSource& source) const {
     return read_points(folder / source.file, source.spacing);
@@ -95,7 +125,7 @@ Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int 
   return points;
 }
 
-Simulation build(const Scene& scene, int threads) {
+Simulation build(const Scene& scene, int threads, std::vector<std::string>* notes) {
   using namespace scene_file;
   const Groups groups = groups_of(scene);
   SolverConfig config = scene.solver;
@@ -112,7 +142,8 @@ Simulation build(const Scene& scene, int threads) {
   std::size_t particles = 0;
   for (std::size_t i = 0; i < scene.bodies.size() && particles <= k_most_particles; ++i) {
     const SceneBody& body = scene.bodies[i];
-    collect(problems, body.line, element_path("body", i) + '.' + key_of(body.source), [&] {
+    const std::string path = element_path("body", i) + '.' + key_of(body.source);
+    collect(problems, body.line, path, [&] {
       const Body points = mallow::sample(body, scene.file, config.threads);
       particles += points.positions.size();
       if (particles > k_most_particles)
@@ -120,6 +151,8 @@ Simulation build(const Scene& scene, int threads) {
                                   " particles, and at most " + std::to_string(k_most_particles) +
                                   " are allowed");
       simulation.add_body(points, ids[groups.of_body[i]]);
+      if (notes)
+        for (const std::string& note : points.notes) notes->push_back(path + ": " + note);
     });
   }
   for (std::size_t i = 0; i < scene.colliders.size(); ++i)

@@ -1,6 +1,8 @@
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "core/checks.h"
@@ -38,7 +40,8 @@ ImplicitShape sphere_shape(const Vec3& center, float radius) {
   checks.number("radius", radius, radius > 0.0f, "a number > 0");
   checks.finish();
   return {[=](const Vec3& x) { return sphere_distance(x, center, radius); },
-          {center - Vec3::Constant(radius), center + Vec3::Constant(radius)}};
+          {center - Vec3::Constant(radius), center + Vec3::Constant(radius)},
+          4.0 / 3.0 * std::numbers::pi * std::pow(static_cast<double>(radius), 3)};
 }
 
 std::span<const char* const> implicit_shape_names() {
@@ -69,10 +72,13 @@ ImplicitShape place(const ImplicitShape& shape, const Placement& placement) {
   const Vec3 center = placement.center.value_or(middle);
   const Vec3 reach = scale * (rotation.cwiseAbs() * half);
   const Eigen::Matrix3f back = rotation.transpose() / scale;
-  return {[distance = shape.distance, back, center, middle, scale](const Vec3& x) {
-            return scale * distance(back * (x - center) + middle);
-          },
-          {center - reach, center + reach}};
+  return {
+      [distance = shape.distance, back, center, middle, scale](const Vec3& x) {
+        return scale * distance(back * (x - center) + middle);
+      },
+      {center - reach, center + reach},
+      shape.volume ? std::optional(*shape.volume * std::pow(static_cast<double>(scale), 3)) : std::nullopt,
+      shape.notes};
 }
 
 }  // namespace mallow

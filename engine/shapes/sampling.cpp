@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/checks.h"
+#include "core/precision.h"
 #include "mallow/body.h"
 
 namespace mallow {
@@ -167,12 +168,21 @@ class SpacingSearch {
   Candidate best_;
 };
 
+/// Throws ConfigError where floats cannot tell neighbouring points of a box apart.
+void refuse_too_far(const char* field, const Aabb& box, float spacing) {
+  const Vec3 farthest = (box.min.cwiseAbs().array() > box.max.cwiseAbs().array()).select(box.min, box.max);
+  if (const auto why = why_too_far(farthest, spacing)) throw ConfigError(field, *why);
+}
+
 Candidate choose_lattice(const ImplicitShape& shape, const Sampling& sampling) {
   if (sampling.spacing) {
     const Grid grid = grid_within(shape.bounds, *sampling.spacing, 0);
+    refuse_too_far("bounds", shape.bounds, *sampling.spacing);
     return {*sampling.spacing, 0, count_inside(shape, grid)};
   }
   const std::int64_t wanted = *sampling.count;
+  const double box = (shape.bounds.max - shape.bounds.min).cast<double>().prod();
+  refuse_too_far("bounds", shape.bounds, static_cast<float>(std::cbrt(box / double(wanted))));
   const Candidate best = SpacingSearch(shape, wanted).run();
   // Among less than 200 points 1% is less than the two by which symmetric shapes grow at the least.
   if (wanted >= 200 && !within_1_percent(best.count, wanted)) {
@@ -208,6 +218,41 @@ Vec3 displace(const Vec3& point, Vec3 displacement, const DistanceFunction& dist
     moved = point + displacement;
   }
   return moved;
+}
+
+/// Share of a shape's volume that points may miss, or exceed, without a word.
+constexpr double k_volume_tolerance = 0.1;
+
+double filled(double count, double spacing) {
+  return count * spacing * spacing * spacing;
+}
+
+bool fills(double count, double spacing, double volume) {
+  return std::abs(filled(count, spacing) - volume) <= k_volume_tolerance * volume;
+}
+
+/// What points of a lattice that miss the volume of a shape mean, and a spacing that does better.
+std::string why_volume_differs(const ImplicitShape& shape, const Candidate& chosen) {
+  std::ostringstream text;
+  text << chosen.count << (chosen.count == 1 ? " point" : " points") << " with spacing " << chosen.spacing
+       << " stand for a volume of " << filled(double(chosen.count), chosen.spacing) << ", but the shape's is "
+       << *shape.volume << ": the spacing is too large for its thin parts";
+  // Each try holds twice the points of the one before.
+  constexpr int k_tries = 24;
+  constexpr std::int64_t k_most_tried = 4'000'000;
+  const float finer = std::cbrt(0.5f);
+  float spacing = chosen.spacing;
+  for (int i = 0; i < k_tries; ++i) {
+    spacing *= finer;
+    if (filled(double(k_most_tried), spacing) < *shape.volume) break;
+    if ((shape.bounds.max - shape.bounds.min).cast<double>().prod() / filled(1.0, spacing) > k_most_cells)
+      break;
+    const std::int64_t count = count_inside(shape, grid_within(shape.bounds, spacing, 0));
+    if (!fills(double(count), spacing, *shape.volume)) continue;
+    text << "; with " << spacing << " it has " << count << " points, which fit its volume";
+    break;
+  }
+  return text.str();
 }
 
 void check(const ImplicitShape& shape, const Sampling& sampling) {
@@ -248,6 +293,12 @@ Body sample(const Lattice& lattice) {
   checks.finish();
 
   const auto [nx, ny, nz] = lattice.count;
+  const Vec3 far_corner = lattice.corner + lattice.spacing * Vec3(float(nx), float(ny), float(nz));
+  if (!far_corner.allFinite()) {
+    throw ConfigError("spacing",
+                      std::to_string(lattice.spacing) + " is not allowed: the last point is not finite");
+  }
+  refuse_too_far("corner", {lattice.corner, far_corner}, lattice.spacing);
   const Grid grid{
       lattice.corner.cast<double>().array() + 0.5 * double(lattice.spacing), lattice.spacing, {nx, ny, nz}};
   Body body;
@@ -262,10 +313,6 @@ Body sample(const Lattice& lattice) {
       for (std::int64_t y = 0; y < ny; ++y)
         for (std::int64_t x = 0; x < nx; ++x)
           body.positions[k++] += lattice.jitter * lattice.spacing * random_offset({x, y, z});
-  }
-  if (!body.positions.back().allFinite()) {
-    throw ConfigError("spacing",
-                      std::to_string(lattice.spacing) + " is not allowed: the last point is not finite");
   }
   return body;
 }
@@ -288,6 +335,9 @@ Body sample(const ImplicitShape& shape, const Sampling& sampling) {
   const float jitter = sampling.jitter * chosen.spacing;
   Body body;
   body.spacing = chosen.spacing;
+  body.notes = shape.notes;
+  if (shape.volume && !fills(double(chosen.count), chosen.spacing, *shape.volume))
+    body.notes.push_back(why_volume_differs(shape, chosen));
   body.positions.reserve(static_cast<std::size_t>(chosen.count));
   visit_inside(shape, grid, [&](const Block& block) {
     Index i;

@@ -132,6 +132,31 @@ TEST_F(cli_run, sample_writes_points_that_a_scene_reads) {
   EXPECT_NE(outcome.out.find("average_neighbors "), std::string::npos);
 }
 
+TEST_F(cli_run, what_was_done_to_a_mesh_is_a_warning_of_sample_info_and_run) {
+  // The same cube inside out.
+  const std::string mesh =
+      write("cube.off",
+            "OFF\n8 6 0\n0 0 0\n10 0 0\n10 10 0\n0 10 0\n0 0 10\n10 0 10\n10 10 10\n0 10 10\n"
+            "4 0 1 2 3\n4 4 7 6 5\n4 0 4 5 1\n4 1 5 6 2\n4 2 6 7 3\n4 3 7 4 0\n")
+          .string();
+  const std::string scene =
+      write("mesh.toml",
+            "[solver]\nsupport_radius = 5\n[[material]]\nname = \"a\"\n[[body]]\n"
+            "material = \"a\"\nmesh = { file = \"cube.off\", spacing = 2.5 }\n[run]\nframes = 1\n")
+          .string();
+  for (const auto& arguments : {std::vector<std::string>{"sample", mesh, "--spacing", "2.5"},
+                                {"info", scene},
+                                {"run", scene, "--report", at("report.json")}}) {
+    const Outcome outcome = run_mallow(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("warning: "), std::string::npos) << arguments[0];
+    EXPECT_NE(outcome.err.find("cube.off: the mesh is inside out: its triangles were turned\n"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(outcome.out.find("warning"), std::string::npos) << outcome.out;
+  }
+}
+
 TEST_F(cli_run, quality_turns_the_scene_and_is_reported) {
   const Scene written = read_scene(scene_);
   for (const Quality quality : qualities()) {

@@ -1,5 +1,6 @@
 #include <clocale>
 #include <cmath>
+#include <cstdio>
 #include <locale>
 #include <numbers>
 
@@ -198,6 +199,47 @@ TEST(mesh_file, off_is_read_in_its_variants) {
     EXPECT_EQ(mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}})) << text;
     EXPECT_EQ(mesh.triangles, quad) << text;
   }
+}
+
+constexpr double k_east = 500000.25,
+                 k_north = 4500000.125;  // as maps of Europe have them; floats are 0.5 apart
+
+/// A cube of side 2 in the coordinates of a map.
+std::string mapped_cube(const char* prefix, int digits) {
+  std::string text;
+  char line[100];
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    std::snprintf(line, sizeof line, "%s%.*f %.*f %d\n", prefix, digits, k_east + (corner & 1u ? 2 : 0),
+                  digits, k_north + (corner & 2u ? 2 : 0), corner & 4u ? 102 : 100);
+    text += line;
+  }
+  return text;
+}
+
+TEST(mesh_file, a_mesh_far_from_0_is_read_relative_to_a_point_near_it) {
+  const TemporaryFolder folder;
+  const char* const faces =
+      "3 0 2 3\n3 0 3 1\n3 4 5 7\n3 4 7 6\n3 0 1 5\n3 0 5 4\n3 2 6 7\n3 2 7 3\n"
+      "3 0 4 6\n3 0 6 2\n3 1 3 7\n3 1 7 5\n";
+  for (const auto& file :
+       {folder.file("a.off", "OFF\n8 12 0\n" + mapped_cube("", 3) + faces),
+        folder.file("a.ply",
+                    "ply\nformat ascii 1.0\nelement vertex 8\nproperty double x\nproperty double y\n"
+                    "property double z\nelement face 12\nproperty list uchar int vertex_indices\n"
+                    "end_header\n" +
+                        mapped_cube("", 3) + faces),
+        folder.file("a.obj", mapped_cube("v ", 3) + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\n"
+                                                    "f 2 4 8 6\n")}) {
+    Eigen::Vector3d origin;
+    const Mesh mesh = read_mesh(file, origin);
+    EXPECT_EQ(origin, Eigen::Vector3d(500000, 4500000, 0)) << file;
+    EXPECT_EQ(mesh.vertices.front(), Vec3(0.25f, 0.125f, 100)) << file;
+    EXPECT_EQ(mesh.vertices.back(), Vec3(2.25f, 2.125f, 102)) << file;
+  }
+  Eigen::Vector3d origin;
+  write_mesh_obj(folder / "near.obj", tetrahedron());
+  EXPECT_EQ(read_mesh(folder / "near.obj", origin).vertices, tetrahedron().vertices);
+  EXPECT_EQ(origin, Eigen::Vector3d(0, 0, 0));
 }
 
 struct CommaPoint : std::numpunct<char> {

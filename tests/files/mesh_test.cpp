@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/precision.h"
 #include "files/file_fixture.h"
 
 namespace mallow {
@@ -21,10 +22,12 @@ TEST(mesh, closed_means_an_even_number_of_triangles_at_every_edge) {
   mesh.triangles.push_back({1, 1, 2});
   EXPECT_EQ(why_not_closed(mesh), "") << "a triangle without an area opens nothing";
   mesh.triangles.push_back({0, 1, 3});
-  EXPECT_EQ(why_not_closed(mesh), "3 open edges, the first between vertices 0 and 1");
+  EXPECT_EQ(why_not_closed(mesh), "3 open edges, the first from (" + text_of(mesh.vertices[0]) + ") to (" +
+                                      text_of(mesh.vertices[1]) + ")");
   mesh.triangles = tetrahedron().triangles;
   mesh.triangles.erase(mesh.triangles.begin());
-  EXPECT_EQ(why_not_closed(mesh), "3 open edges, the first between vertices 0 and 1");
+  EXPECT_EQ(why_not_closed(mesh), "3 open edges, the first from (" + text_of(mesh.vertices[0]) + ") to (" +
+                                      text_of(mesh.vertices[1]) + ")");
 }
 
 TEST(mesh, without_triangles_is_not_closed) {

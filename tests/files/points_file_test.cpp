@@ -16,6 +16,52 @@ TEST(points_file, csv_columns_are_found_by_name_in_any_order) {
   EXPECT_EQ(body.velocity, Vec3(0, 0, 0));
 }
 
+TEST(points_file, csv_columns_may_be_called_and_separated_as_other_programs_do) {
+  const TemporaryFolder folder;
+  const auto points = [&](const char* text) { return read_points(folder.file("a.csv", text), 1); };
+  for (const char* text : {
+           "\"x\",\"y\",\"z\"\n1,2,3\n",
+           "X,Y,Z\n\"1\",\" 2 \",3\n",
+           "\xEF\xBB\xBF\"Points:0\",\"Points:1\",\"Points:2\"\r\n1,2,3\r\n",
+           "Points_2,Points_1,Points_0,Points_Magnitude\n3,2,1,9\n",
+           "\"name, of a point\",position_x,position_y,position_z\n\"a, b\",1,2,3\n",
+           "x;y;z\n1;2;3\n",
+           "x\ty\tz\tnote\n1\t 2\t3\t\n",
+           "x [m], y [m], z (m)\n1,2,3\n",
+           "x,y,z,Points:0,Points:1,Points:2\n1,2,3,4,5,6\n",
+           "# exported\n \"x\" , \"y\" , \"z\" \n# rows\n 1 , 2 , 3 \n",
+       }) {
+    const Body body = points(text);
+    EXPECT_EQ(body.positions, (std::vector<Vec3>{{1, 2, 3}})) << text;
+    EXPECT_TRUE(body.velocities.empty()) << text;
+  }
+  for (const char* text : {
+           "\"Velocity:0\",\"Velocity:1\",\"Velocity:2\",\"Points:0\",\"Points:1\",\"Points:2\"\n4,5,6,1,2,"
+           "3\n",
+           "VX,VY,VZ,X,Y,Z\n4,5,6,1,2,3\n",
+           "x;y;z;v_x;v_y;v_z\n1;2;3;4;5;6\n",
+       }) {
+    const Body body = points(text);
+    EXPECT_EQ(body.positions, (std::vector<Vec3>{{1, 2, 3}})) << text;
+    EXPECT_EQ(body.velocities, (std::vector<Vec3>{{4, 5, 6}})) << text;
+  }
+}
+
+TEST(points_file, where_columns_are_missing_those_that_are_there_are_listed) {
+  const TemporaryFolder folder;
+  const auto problem = [&](const char* text) {
+    return io_problem([&] { read_points(folder.file("a.csv", text), 1); }).message;
+  };
+  EXPECT_EQ(
+      problem("time,\"East\",North\n0,1,2\n"),
+      "lacks column 'x'; x, y, z are needed, and vx, vy, vz all or none; there are 'time', 'East', 'North'");
+  EXPECT_NE(problem("x y z\n1 2 3\n").find("there are 'x y z'"), std::string::npos);
+  EXPECT_NE(problem("X,x,y,z\n1,2,3,4\n").find("'x' is given twice"), std::string::npos);
+  EXPECT_NE(problem("Points:0,Points_0,Points:1,Points:2\n1,2,3,4\n").find("is given twice"),
+            std::string::npos);
+  EXPECT_EQ(problem("x,y,\"z\n1,2,3\n"), "a quote is opened, but not closed");
+}
+
 TEST(points_file, without_velocity_columns_there_are_no_velocities) {
   const TemporaryFolder folder;
   EXPECT_TRUE(read_points(folder.file("a.csv", "x,y,z\n1,2,3\n"), 1).velocities.empty());

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mallow/errors.h"
@@ -41,6 +42,34 @@ inline Mesh sphere_mesh(const Vec3& center, float radius, int stacks) {
     mesh.triangles.push_back({ring(stacks - 2, j), last, ring(stacks - 2, j + 1)});
   }
   return mesh;
+}
+
+/// A box that faces outwards.
+inline Mesh box_mesh(const Vec3& low, const Vec3& high) {
+  Mesh mesh;
+  for (unsigned corner = 0; corner < 8; ++corner)
+    mesh.vertices.emplace_back(corner & 1u ? high.x() : low.x(), corner & 2u ? high.y() : low.y(),
+                               corner & 4u ? high.z() : low.z());
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+/// The same surface, facing the other way.
+inline Mesh turned(Mesh mesh) {
+  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+  return mesh;
+}
+
+/// Several meshes as one, each with vertices of its own.
+inline Mesh together(std::initializer_list<Mesh> meshes) {
+  Mesh all;
+  for (const Mesh& mesh : meshes) {
+    const auto first = static_cast<std::uint32_t>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (const auto& [a, b, c] : mesh.triangles) all.triangles.push_back({first + a, first + b, first + c});
+  }
+  return all;
 }
 
 /// Positive where triangles are counter-clockwise seen from outside.

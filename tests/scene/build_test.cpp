@@ -17,7 +17,7 @@ name = "cream"
 alpha = 1.0
 [[body]]
 material = "cream"
-box = { count = [2, 2, 2], spacing = 1.0, corner = [0, 0, 1] }
+box = { count = [2, 2, 2], spacing = 1.0, corner = [0, 0, 1], jitter = 0.0 }
 velocity = [1, 0, 0]
 [[body]]
 material = "jelly"
@@ -94,6 +94,78 @@ TEST_F(build_scene, says_which_body_has_a_file_that_cannot_be_read) {
   EXPECT_NE(error.find("scene.toml:17: body[2].points: "), std::string::npos) << error;
   EXPECT_NE(error.find("points.csv:2"), std::string::npos) << error;
   EXPECT_NE(error.find("scene.toml:26: body[3].mesh: "), std::string::npos) << error;
+}
+
+TEST_F(build_scene, names_file_and_coordinates_of_an_open_edge) {
+  write("open.off", "OFF\n4 3 0\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n");
+  const std::string error = build_error(read(
+      k_small_scene + "[[body]]\nmaterial = \"jelly\"\nmesh = { file = \"open.off\", spacing = 0.1 }\n"));
+  EXPECT_NE(error.find("body[1].mesh: " + (folder_ / "open.off").string() +
+                       ": mesh: does not enclose a volume: "
+                       "3 open edges, the first from (4 0 0) to (0 4 0)"),
+            std::string::npos)
+      << error;
+}
+
+constexpr const char* k_mapped_cube =
+    "v 500000.25 4500000.125 100\nv 500002.25 4500000.125 100\nv 500002.25 4500002.125 100\n"
+    "v 500000.25 4500002.125 100\nv 500000.25 4500000.125 102\nv 500002.25 4500000.125 102\n"
+    "v 500002.25 4500002.125 102\nv 500000.25 4500002.125 102\n"
+    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+TEST_F(build_scene, a_mesh_in_the_coordinates_of_a_map_is_moved_near_exactly_or_refused) {
+  write("map.obj", k_mapped_cube);
+  const auto scene = [&](const std::string& mesh) {
+    return read(
+        "[solver]\nsupport_radius = 0.21\n[[material]]\nname = \"a\"\n[[body]]\nmaterial = \"a\"\n"
+        "mesh = { file = \"map.obj\", jitter = 0.0, " +
+        mesh + " }\n");
+  };
+  const std::vector<Vec3> near = build(scene("spacing = 0.1, center = [0, 0, 1]"), 1).positions_by_id();
+  ASSERT_EQ(near.size(), 8000u);
+  Vec3 low = near[0], high = near[0];
+  for (const Vec3& x : near) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+    const Vec3 cell = (x - Vec3(0, 0, 1)) / 0.1f - Vec3::Constant(0.5f);
+    ASSERT_LT((cell - cell.array().round().matrix()).norm(), 1e-4f);
+  }
+  EXPECT_LT((low - Vec3(-0.95f, -0.95f, 0.05f)).norm(), 1e-6f);
+  EXPECT_LT((high - Vec3(0.95f, 0.95f, 1.95f)).norm(), 1e-6f);
+  const std::string error = build_error(scene("spacing = 0.1"));
+  for (const char* word :
+       {"body[0].mesh: ", "map.obj: center: is not given", "4500000", "floats are steps of 0.5 there"})
+    EXPECT_NE(error.find(word), std::string::npos) << error;
+}
+
+TEST_F(build_scene, refuses_points_that_are_given_twice) {
+  const std::string box =
+      "[[body]]\nmaterial = \"jelly\"\ngroup = \"g\"\n"
+      "box = { count = [2, 2, 2], spacing = 1.0, corner = [5, 0, 0], jitter = 0.0 }\n";
+  const std::string twice = build_error(read(k_small_scene + box + box));
+  EXPECT_NE(twice.find("scene.toml:13: body[2].box: body: group 'g' overlaps itself at (5.5 0.5 0.5): "
+                       "particles 8 and 16 are 0 m apart"),
+            std::string::npos)
+      << twice;
+  write("points.csv", "x,y,z\n5,0,0\n6,0,0\n7,0,0\n6,0,0\n");
+  const std::string points = build_error(read(
+      k_small_scene + "[[body]]\nmaterial = \"jelly\"\npoints = { file = \"points.csv\", spacing = 1.0 }\n"));
+  EXPECT_NE(points.find("body[1].points: body: group 'body[1]' overlaps itself at (6 0 0): particles 9 and "
+                        "11 are 0 m apart"),
+            std::string::npos)
+      << points;
+}
+
+TEST_F(build_scene, hands_on_what_is_worth_knowing_about_its_bodies) {
+  write("cube.off",
+        "OFF\n8 6 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n0 0 2\n2 0 2\n2 2 2\n0 2 2\n"
+        "4 0 1 2 3\n4 7 6 5 4\n4 4 5 1 0\n4 5 6 2 1\n4 6 7 3 2\n4 7 4 0 3\n");
+  std::vector<std::string> notes;
+  build(read("[solver]\nsupport_radius = 0.5\n[[material]]\nname = \"a\"\n[[body]]\nmaterial = \"a\"\n"
+             "mesh = { file = \"cube.off\", spacing = 0.2 }\n"),
+        1, &notes);
+  EXPECT_EQ(notes, (std::vector<std::string>{"body[0].mesh: " + (folder_ / "cube.off").string() +
+                                             ": the mesh is inside out: its triangles were turned"}));
 }
 
 TEST_F(build_scene, reports_overlapping_groups_and_empty_pins_together) {

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string>
@@ -10,6 +11,12 @@
 #include "mallow/errors.h"
 
 namespace mallow::cli {
+
+void print_warnings(std::span<const std::string> notes) {
+  // Names of files are in them, which to_string() makes fit for a terminal.
+  for (const std::string& note : notes)
+    std::fprintf(stderr, "warning: %s\n", to_string(Problem{.message = note}).c_str());
+}
 
 void check_writable(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file))

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <stdexcept>
+#include <string>
 
 namespace mallow::cli {
 
@@ -15,6 +17,9 @@ class RunFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// Says what is not wrong, but worth to be known, on stderr: "warning: ..." for each.
+void print_warnings(std::span<const std::string> notes);
 
 /// Throws IoError where `file` cannot be written, now and not after hours of work. Leaves nothing behind.
 void check_writable(const std::filesystem::path& file);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mallow/failure.h"
 #include "mallow/machine.h"
 #include "mallow/scene.h"
 #include "mallow/scene_options.h"
@@ -42,7 +43,9 @@ void info(const InfoOptions& options) {
     std::fputs(print_scene(scene).c_str(), stdout);
     return;
   }
-  Simulation simulation = build(scene, resolve_threads(options.threads));
+  std::vector<std::string> notes;
+  Simulation simulation = build(scene, resolve_threads(options.threads), &notes);
+  print_warnings(notes);
   const SimulationInfo info = simulation.info();
   const bool shape_matching = std::any_of(info.groups.begin(), info.groups.end(),
                                           [](const GroupInfo& group) { return group.shape_matching; });

@@ -93,7 +93,9 @@ Run begin(const RunOptions& options, int threads) {
   if (options.scene.quality) run.report.quality = name(*options.scene.quality);
   {
     const StageTimer timer(run.report.stage_seconds, Stage::build);
-    run.simulation.emplace(build(run.scene, threads));
+    std::vector<std::string> notes;
+    run.simulation.emplace(build(run.scene, threads, &notes));
+    print_warnings(notes);
     describe(run.scene, threads, *run.simulation, run.report);
   }
   if (!options.out.empty()) run.cache = Cache::create(options.out, options.overwrite);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mallow/errors.h"
 #include "mallow/failure.h"
@@ -21,6 +22,7 @@ struct SampleOptions {
   std::optional<int> count;
   std::optional<float> spacing;
   std::optional<float> size;
+  std::vector<float> center;
   std::optional<float> radius;
   std::string out;
   int threads = 0;
@@ -59,7 +61,10 @@ void sample_mesh(const SampleOptions& options) {
   source.sampling.count = options.count;
   source.sampling.spacing = options.spacing;
   source.placement.size = options.size;
+  if (!options.center.empty())
+    source.placement.center = Vec3(options.center[0], options.center[1], options.center[2]);
   const Body body = sample(SceneBody{"", "", source}, "", threads);
+  print_warnings(body.notes);
   std::printf("points %zu\nspacing %.9g\n", body.positions.size(), static_cast<double>(body.spacing));
   if (options.radius) {
     std::printf("average_neighbors %.2f\n", average_neighbors(body, *options.radius, threads));
@@ -79,6 +84,7 @@ void add_sample_command(CLI::App& app) {
       command->add_option("--spacing", options->spacing, "Distance of neighbouring points");
   count->excludes(spacing);
   command->add_option("--size", options->size, "Scale the mesh so that its longest side is this long");
+  command->add_option("--center", options->center, "Move the middle of its bounds there: X Y Z")->expected(3);
   command->add_option("--radius", options->radius, "Say how many points are within this distance of a point");
   command->add_option("--out", options->out, "File for the points, .csv or .ply");
   command->add_option("--threads", options->threads, "Threads; 0 takes all there are")

@@ -14,9 +14,9 @@
 #include "mallow/saved_state.h"
 
 /// Files of meshes, particles and checkpoints: target mallow::scene. Files may come from strangers. Readers
-/// check every count against the bytes that are left before they allocate, and throw IoError that names file, line (of
-/// text), field, value and what is allowed. They open only the file that they are given, and refuse what is
-/// beyond:
+/// check every count against the bytes that are left before they allocate, and throw IoError that names file,
+/// line (of text), field, value and what is allowed. They open only the file that they are given, and refuse
+/// what is beyond:
 ///
 ///   file                                   2 GiB - 1 byte, a regular file (scene: 16 MiB)
 ///   line of text                           1 MiB
@@ -40,12 +40,18 @@ namespace mallow {
 
 class Simulation;
 
-/// Triangles of an OBJ, PLY, STL or OFF file, by its ending; polygons are split into triangles, equal corners
-/// of an STL are joined.
+/// Triangles of an OBJ, PLY, STL or OFF file, by its ending; polygons are split into triangles.
 Mesh read_mesh(const std::filesystem::path& file);
 
+/// The same, with vertices relative to `origin`, whose components are whole numbers: 0 unless the first
+/// vertex is over 1,000 from 0 along that axis. Numbers are then read in double, so that a mesh in the
+/// coordinates of a map (y = 4,500,000 m) keeps its shape.
+Mesh read_mesh(const std::filesystem::path& file, Eigen::Vector3d& origin);
+
 /// Points of a PLY or CSV file, by its ending: columns or properties x, y, z and, if there, vx, vy, vz;
-/// others are passed over. spacing goes into the body as it is.
+/// others are passed over. Columns of a CSV stand between commas, semicolons or tabs, in quotes or not, in
+/// capitals or not, and may be called as ParaView does: Points:0, Velocity:0. spacing goes into the body as
+/// it is.
 Body read_points(const std::filesystem::path& file, float spacing);
 
 /// What a frame of particles holds on disk, in id order.

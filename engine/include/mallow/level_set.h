@@ -19,7 +19,12 @@ namespace mallow {
 inline constexpr int k_mesh_voxels = 192;
 
 /// A closed mesh as an implicit shape: a narrow-band level set with `voxels` voxels along its longest side.
-/// Throws ConfigError where the mesh is empty, open (why_not_closed) or has a vertex that is not finite.
+/// Inside is where the mesh winds around a point more often outwards than inwards: a shell within another
+/// that faces the other way is a cavity, one that faces the same way, or overlaps, is filled with it.
+/// Triangles that face another way than their neighbours, and shells that are inside out, are turned; the
+/// shape's notes say so. Where the triangles cannot agree on which side is outside, lines that cross the mesh
+/// count: inside is behind an odd number of them. The shape's volume is the mesh's. Throws ConfigError where
+/// the mesh is empty, open (why_not_closed) or has a vertex that is not finite.
 ImplicitShape mesh_shape(const Mesh& mesh, int voxels = k_mesh_voxels, int threads = 0);
 
 /// Particles that surfaces are drawn around.

@@ -20,9 +20,14 @@ struct Mesh {
 /// The smallest box that holds all vertices; {0, 0} for an empty mesh.
 Aabb bounds(const Mesh& mesh);
 
-/// What keeps a mesh from enclosing a volume, in words ("12 open edges, the first between vertices 3 and 4"),
-/// or an empty string. Closed means: every edge belongs to an even number of triangles, and there is at least
-/// one triangle.
+/// The same surface with one vertex for all corners at the same place, where files give each face corners of
+/// its own; vertices stand in the order in which they first appear. Triangles that have one place twice are
+/// dropped. Of the columns only vertices and triangles are kept.
+Mesh welded(const Mesh& mesh);
+
+/// What keeps a mesh from enclosing a volume, in words ("12 open edges, the first from (0 0 1) to (0 2 1)"),
+/// with corners of open edges that nearly coincide, or an empty string. Closed means: every edge belongs to
+/// an even number of triangles, and there is at least one triangle.
 std::string why_not_closed(const Mesh& mesh);
 
 }  // namespace mallow

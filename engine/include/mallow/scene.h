@@ -116,9 +116,9 @@ Scene with_quality(const Scene& scene, Quality quality);
 
 /// The points of a body as the scene would add them. Throws ConfigError or IoError.
 Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int threads = 0);
-/// The simulation of a scene, ready to step. `threads` as in SolverConfig. Throws ConfigError with all
-/// problems found.
-Simulation build(const Scene& scene, int threads = 0);
+/// The simulation of a scene, ready to step. `threads` as in SolverConfig. notes: where given, gets those of
+/// all bodies, each with the body's path in front. Throws ConfigError with all problems found.
+Simulation build(const Scene& scene, int threads = 0, std::vector<std::string>* notes = nullptr);
 /// The material of each group that build() makes, in order of GroupId.
 std::vector<std::size_t> group_materials(const Scene& scene);
 
