@@ -47,7 +47,7 @@ std::vector<DriftScene> drift_scenes() {
     scene.name = name;
     scene.config = {.support_radius = 2.1f, .threads = 1};
     scene.material.alpha = alpha;
-    scene.body = sample(Lattice{.count = {5, 5, 5}, .corner = corner});
+    scene.body = sample(Lattice{.count = {5, 5, 5}, .corner = corner, .jitter = 0});
     if (falls)
       scene.colliders = {{.shape = Plane{}, .friction = 0.3f}};
     else

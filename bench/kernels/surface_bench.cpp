@@ -20,7 +20,9 @@ struct SurfaceScene {
 };
 
 SurfaceScene cube_scene(const LatticeScene& lattice) {
-  return {sample(Lattice{.count = lattice.count, .spacing = lattice.spacing}).positions, lattice.spacing, {}};
+  return {sample(Lattice{.count = lattice.count, .spacing = lattice.spacing, .jitter = 0}).positions,
+          lattice.spacing,
+          {}};
 }
 
 SurfaceScene balls_scene() {

@@ -76,7 +76,7 @@ Simulation build(const Cube& cube, int threads, std::shared_ptr<Executor> execut
 
   Material material;
   material.alpha = cube_alpha(cube.material);
-  Body body = sample(Lattice{.count = cube.count, .spacing = 1.0f});
+  Body body = sample(Lattice{.count = cube.count, .spacing = 1.0f, .jitter = 0});
   body.velocities.reserve(body.positions.size());
   for (const Vec3& x : body.positions) body.velocities.push_back(stirred(x, config.time_step));
   simulation.add_body(body, material, cube.material);

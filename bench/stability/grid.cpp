@@ -56,7 +56,7 @@ Trial falling_cube(const GridPoint& point, int steps) {
     config.threads = 1;
     Simulation simulation(config);
     simulation.add_collider({.shape = Plane{}, .friction = 0.3f});
-    Body cube = sample(Lattice{.count = {k_side, k_side, k_side}, .corner = {0, 0, k_height}});
+    Body cube = sample(Lattice{.count = {k_side, k_side, k_side}, .corner = {0, 0, k_height}, .jitter = 0});
     for (const Vec3& x : cube.positions) {
       const auto wave = [](float c) { return std::sin(2 * std::numbers::pi_v<float> * c / k_side); };
       cube.velocities.push_back(k_stir / config.time_step * Vec3(wave(x.y()), wave(x.z()), wave(x.x())));

@@ -19,7 +19,7 @@ FieldTable fields(Sampling& sampling) {
        "distance of neighbouring particles, h; give this or count", "from count"},
       {"count", &sampling.count, k_count, "",
        "wanted number of particles, met within 1%; give this or spacing", "from spacing"},
-      {"jitter", &sampling.jitter, between(0, 0.5), "h",
+      {"jitter", &sampling.jitter, between(0, 0.45), "h",
        "random displacement of every particle along each axis, at most"},
   };
 }
@@ -97,7 +97,7 @@ FieldTable fields(Lattice& lattice) {
       {"count", &lattice.count, k_count, "", "cells along x, y and z, a particle each", k_required},
       {"spacing", &lattice.spacing, k_positive, "m", "side of a cell, h", k_required},
       {"corner", &lattice.corner, k_finite, "m", "lowest corner, half a cell from the first particle"},
-      {"jitter", &lattice.jitter, between(0, 0.5), "h", "random displacement of every particle, per axis"},
+      {"jitter", &lattice.jitter, between(0, 0.45), "h", "random displacement of every particle, per axis"},
   };
 }
 

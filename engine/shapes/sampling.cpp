@@ -16,6 +16,9 @@ namespace {
 constexpr double k_most_points = 100e6;
 constexpr double k_most_cells = 1e9;
 
+/// Neighbours then come as near as a tenth of the spacing, which is as near as a simulation takes them.
+constexpr float k_most_jitter = 0.45f;
+
 /// Distance functions may be this much steeper than true distances and are still sampled correctly.
 constexpr float k_steepest = 1.5f;
 
@@ -272,7 +275,8 @@ void check(const ImplicitShape& shape, const Sampling& sampling) {
     const int count = *sampling.count;
     checks.number("count", count, count >= 1 && count <= k_most_points, "1 to 100 million points");
   }
-  checks.number("jitter", sampling.jitter, sampling.jitter >= 0.0f && sampling.jitter <= 0.5f, "0 to 0.5");
+  checks.number("jitter", sampling.jitter, sampling.jitter >= 0.0f && sampling.jitter <= k_most_jitter,
+                "0 to 0.45");
   checks.finish();
 }
 
@@ -289,7 +293,8 @@ Body sample(const Lattice& lattice) {
   if (points > k_most_points) checks.number("count", points, false, "100 million points at most");
   checks.number("spacing", lattice.spacing, lattice.spacing > 0.0f, "a number > 0");
   checks.vector("corner", lattice.corner);
-  checks.number("jitter", lattice.jitter, lattice.jitter >= 0.0f && lattice.jitter <= 0.5f, "0 to 0.5");
+  checks.number("jitter", lattice.jitter, lattice.jitter >= 0.0f && lattice.jitter <= k_most_jitter,
+                "0 to 0.45");
   checks.finish();
 
   const auto [nx, ny, nz] = lattice.count;

@@ -132,7 +132,7 @@ const Case k_cases[] = {
      "most "
      "100000000"},
     {{.source = "sphere = { radius = 1.0, count = 9, jitter = 0.75 }"},
-     "scene.toml:7:46: body[0].sphere.jitter: 0.75 is not allowed: a number in [0, 0.5]"},
+     "scene.toml:7:46: body[0].sphere.jitter: 0.75 is not allowed: a number in [0, 0.45]"},
     {{.source = "mesh = { file = \"none.off\", count = 9 }"},
      "scene.toml:7:17: body[0].mesh.file: \"none.off\" is not allowed: there is no file none.off"},
     {{.source = "points = { file = \".\", spacing = 1.0 }"},

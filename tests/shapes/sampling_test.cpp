@@ -12,7 +12,7 @@ namespace {
 constexpr float k_nan = std::numeric_limits<float>::quiet_NaN();
 
 TEST(lattice, points_are_in_the_middle_of_cells_with_x_fastest) {
-  const Body body = sample(Lattice{{2, 3, 4}, 0.5f, {10.0f, 20.0f, 30.0f}});
+  const Body body = sample(Lattice{{2, 3, 4}, 0.5f, {10.0f, 20.0f, 30.0f}, 0});
   ASSERT_EQ(body.positions.size(), 24u);
   EXPECT_EQ(body.spacing, 0.5f);
   EXPECT_EQ(body.positions[0], Vec3(10.25f, 20.25f, 30.25f));
@@ -70,7 +70,7 @@ TEST(sampling, sphere_holds_its_volume_in_cells) {
 TEST(sampling, equals_a_test_of_every_lattice_point) {
   const ImplicitShape moai = moai_shape();
   constexpr float spacing = 1.1f;
-  const Body body = sample(moai, {.spacing = spacing});
+  const Body body = sample(moai, {.spacing = spacing, .jitter = 0});
   std::size_t expected = 0;
   const Vec3 middle = 0.5f * (moai.bounds.min + moai.bounds.max);
   for (int z = -30; z < 30; ++z)
@@ -101,7 +101,7 @@ TEST(sampling, spacing_for_a_wanted_count_fits_the_volume) {
 }
 
 TEST(sampling, single_points_and_tiny_counts_are_met) {
-  EXPECT_EQ(sample(sphere_shape({1.0f, 2.0f, 3.0f}, 1.0f), {.count = 1}).positions.at(0),
+  EXPECT_EQ(sample(sphere_shape({1.0f, 2.0f, 3.0f}, 1.0f), {.count = 1, .jitter = 0}).positions.at(0),
             Vec3(1.0f, 2.0f, 3.0f));
   EXPECT_EQ(sample(sphere_shape(Vec3::Zero(), 1.0f), {.count = 8}).positions.size(), 8u);
 }
@@ -113,7 +113,7 @@ TEST(sampling, gives_the_same_points_each_time) {
 
 TEST(sampling, jitter_moves_points_by_its_share_and_keeps_them_inside) {
   const ImplicitShape sphere = sphere_shape({1.0f, -2.0f, 3.0f}, 6.0f);
-  const Body regular = sample(sphere, {.spacing = 0.5f});
+  const Body regular = sample(sphere, {.spacing = 0.5f, .jitter = 0});
   const Body jittered = sample(sphere, {.spacing = 0.5f, .jitter = 0.4f});
   ASSERT_EQ(jittered.positions.size(), regular.positions.size());
   Vec3 largest = Vec3::Zero();
@@ -135,6 +135,56 @@ TEST(sampling, jitter_moves_points_by_its_share_and_keeps_them_inside) {
     EXPECT_NEAR(mean[axis] / double(deep), 0.0, 0.01);
     EXPECT_NEAR(square[axis] / double(deep), 0.2 * 0.2 / 3.0, 7e-4);
   }
+}
+
+TEST(sampling, without_a_word_points_are_displaced_so_that_a_lattice_has_no_directions) {
+  const Body box = sample(Lattice{.count = {9, 9, 9}});
+  const Body lattice = sample(Lattice{.count = {9, 9, 9}, .jitter = 0});
+  const Body ball = sample(sphere_shape(Vec3::Zero(), 5), {.spacing = 1});
+  const Body regular = sample(sphere_shape(Vec3::Zero(), 5), {.spacing = 1, .jitter = 0});
+  for (const auto& [moved, at_rest] : {std::pair{box, lattice}, std::pair{ball, regular}}) {
+    ASSERT_EQ(moved.positions.size(), at_rest.positions.size());
+    float most = 0;
+    for (std::size_t i = 0; i < moved.positions.size(); ++i)
+      most = std::max(most, (moved.positions[i] - at_rest.positions[i]).cwiseAbs().maxCoeff());
+    EXPECT_GT(most, 0.09f);
+    EXPECT_LE(most, 0.1001f);
+  }
+}
+
+TEST(sampling, the_largest_jitter_keeps_points_a_tenth_of_the_spacing_apart) {
+  const Body box = sample(Lattice{.count = {16, 16, 16}, .jitter = 0.45f});
+  float nearest = 1;
+  for (std::size_t i = 0; i < box.positions.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      nearest = std::min(nearest, (box.positions[i] - box.positions[j]).norm());
+  EXPECT_GE(nearest, 0.1f);
+}
+
+TEST(sampling, where_floats_cannot_tell_neighbours_apart_is_refused) {
+  EXPECT_EQ(sample(Lattice{.count = {2, 2, 2}, .spacing = 0.1f, .corner = {1e5f, 0, 0}}).positions.size(),
+            8u);
+  EXPECT_EQ(problem_of([] {
+              sample(Lattice{.count = {2, 2, 2}, .spacing = 0.1f, .corner = {0, 4.5e6f, 0}});
+            }).substr(0, 60),
+            "corner: (0.2 4500000 0.2) is too far from 0 for a spacing of");
+  EXPECT_EQ(problem_of([] {
+              sample(sphere_shape({0, 0, -4.5e6f}, 1), {.spacing = 0.1f});
+            }).substr(0, 9),
+            "bounds: (");
+  EXPECT_EQ(problem_of([] {
+              sample(sphere_shape({0, 0, -4.5e6f}, 1), {.count = 4000});
+            }).substr(0, 9),
+            "bounds: (");
+}
+
+TEST(sampling, points_that_miss_the_volume_are_noted_with_a_spacing_that_does_better) {
+  const Body coarse = sample(sphere_shape(Vec3::Zero(), 1), {.spacing = 1.1f});
+  ASSERT_EQ(coarse.notes.size(), 1u);
+  EXPECT_EQ(coarse.notes[0].substr(0, 82),
+            "8 points with spacing 1.1 stand for a volume of 10.648, but the shape's is 4.18879");
+  EXPECT_NE(coarse.notes[0].find("points, which fit its volume"), std::string::npos) << coarse.notes[0];
+  EXPECT_TRUE(sample(sphere_shape(Vec3::Zero(), 1), {.spacing = 0.2f}).notes.empty());
 }
 
 TEST(sampling, bad_values_are_named) {

@@ -23,7 +23,7 @@ SolverConfig config(float neighbor_slack = 0) {
 }
 
 Body cube(int side, const Vec3& corner) {
-  return sample(Lattice{{side, side, side}, 1.0f, corner});
+  return sample(Lattice{{side, side, side}, 1.0f, corner, 0});
 }
 
 void twist(const ForceInput& in, VectorSpan a) {

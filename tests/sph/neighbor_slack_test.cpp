@@ -100,9 +100,9 @@ Simulation wet_scene(float slack, int threads = 2) {
   SolverConfig config{
       .support_radius = 2.1f, .update_interval = 8, .neighbor_slack = slack, .threads = threads};
   Simulation simulation(config);
-  simulation.add_body(sample(Lattice{.count = {6, 6, 6}, .spacing = 1, .corner = {0, 0, 1}}),
+  simulation.add_body(sample(Lattice{.count = {6, 6, 6}, .spacing = 1, .corner = {0, 0, 1}, .jitter = 0}),
                       Material{.alpha = 0.6f, .update_threshold = 0});
-  simulation.add_body(sample(Lattice{.count = {5, 5, 5}, .spacing = 1, .corner = {1, 1, 8}}),
+  simulation.add_body(sample(Lattice{.count = {5, 5, 5}, .spacing = 1, .corner = {1, 1, 8}, .jitter = 0}),
                       Material{.alpha = 1});
   simulation.add_collider({.shape = Plane{{0.1f, 0, 1}, 0}, .friction = 0.3f});
   return simulation;
@@ -137,7 +137,8 @@ TEST(neighbor_slack, gives_the_same_bits_for_any_number_of_threads) {
 TEST(neighbor_slack, a_falling_body_finds_its_neighbors_once) {
   SolverConfig config{.support_radius = 2, .neighbor_slack = 0.1f};
   Simulation simulation(config);
-  simulation.add_body(sample(Lattice{.count = {6, 6, 6}, .spacing = 1}), Material{.alpha = 0.5f});
+  simulation.add_body(sample(Lattice{.count = {6, 6, 6}, .spacing = 1, .jitter = 0}),
+                      Material{.alpha = 0.5f});
   EXPECT_TRUE(simulation.step().neighbors_found);
   for (int step = 0; step < 50; ++step) EXPECT_FALSE(simulation.step().neighbors_found) << step;
 }
@@ -145,7 +146,7 @@ TEST(neighbor_slack, a_falling_body_finds_its_neighbors_once) {
 TEST(neighbor_slack, a_body_that_is_added_is_found) {
   Simulation simulation = wet_scene(0.5f);
   simulation.step();
-  simulation.add_body(sample(Lattice{.count = {3, 3, 3}, .spacing = 1, .corner = {30, 0, 9}}),
+  simulation.add_body(sample(Lattice{.count = {3, 3, 3}, .spacing = 1, .corner = {30, 0, 9}, .jitter = 0}),
                       Material{.alpha = 1});
   EXPECT_TRUE(simulation.step().neighbors_found);
 }

@@ -55,7 +55,7 @@ TEST(from_scene, puts_bodies_that_name_one_group_together_and_no_others) {
   scene.materials = {{.name = "clay", .material = {.alpha = 0.5f}},
                      {.name = "milk", .material = {.alpha = 1.0f}}};
   const auto body = [](const char* material, const char* group, float x) {
-    return SceneBody{.material = material, .group = group, .source = Lattice{{2, 2, 2}, 1.0f, {x, 0, 0}}};
+    return SceneBody{.material = material, .group = group, .source = Lattice{{2, 2, 2}, 1.0f, {x, 0, 0}, 0}};
   };
   scene.bodies = {body("clay", "heap", 0), body("clay", "", 4), body("milk", "", 8), body("clay", "heap", 12),
                   body("clay", "", 16)};
