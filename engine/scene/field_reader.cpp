@@ -67,12 +67,15 @@ class ValueReader {
     const std::string* given = node_.get_if<std::string>();
     if (!given) return complain();
     if (given->empty() && field_.required()) return complain(allowed(field_) + " that is not empty");
-    // A zero byte would cut a file name short, and the others garble every message they get into.
-    if (std::any_of(given->begin(), given->end(),
-                    [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
+    // Control characters garble every message they get into, but a file may have them in its name; only a
+    // zero byte would cut that short.
+    const bool is_path = std::holds_alternative<std::filesystem::path*>(field_.target);
+    if (is_path && given->find('\0') != given->npos)
+      return complain(allowed(field_) + " without a zero byte");
+    if (!is_path && std::any_of(given->begin(), given->end(),
+                                [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
       return complain(allowed(field_) + " without control characters");
-    const std::size_t most =
-        std::holds_alternative<std::filesystem::path*>(field_.target) ? k_max_path_bytes : k_max_name_bytes;
+    const std::size_t most = is_path ? k_max_path_bytes : k_max_name_bytes;
     if (given->size() > most)
       return complain(allowed(field_) + " of at most " + std::to_string(most) + " bytes");
     *text = *given;

@@ -85,7 +85,11 @@ struct Allowed {
   }
   template <Choice T>
   std::string operator()(const T*) const {
-    return toml_string(choices(T{})[0]) + " or " + toml_string(choices(T{})[1]);
+    constexpr auto k_names = choices(T{});
+    std::string text = toml_string(k_names[0]);
+    for (std::size_t i = 1; i < k_names.size(); ++i)
+      text += (i + 1 < k_names.size() ? ", " : " or ") + toml_string(k_names[i]);
+    return text;
   }
   std::string operator()(const InstructionLevel*) const {
     std::string text;

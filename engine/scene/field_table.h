@@ -56,7 +56,7 @@ struct Field {
 };
 using FieldTable = std::vector<Field>;
 
-/// "a number > 0", "3 numbers in [0, 1]", "\"conservative\" or \"printed\"".
+/// "a number > 0", "3 numbers in [0, 1]", "\"blended\", \"anisotropic\" or \"spheres\"".
 std::string allowed(const Field& field);
 /// The value as TOML, or an empty string where it is left out.
 std::string value_text(const Field& field);
@@ -71,6 +71,8 @@ constexpr std::array<const char*, 2> choices(Finish) {
   return {"jelly", "clay"};
 }
 template <class T>
-concept Choice = requires { choices(T{}); };
+concept Choice = requires {
+  choices(T{});
+};
 
 }  // namespace mallow::scene_file

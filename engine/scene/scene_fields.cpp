@@ -126,12 +126,13 @@ FieldTable fields(ImplicitSource& source) {
                 joined(fields(source.sampling), fields(source.placement)));
 }
 
-FieldTable fields(Collider& collider) {
+FieldTable fields(SceneCollider& collider) {
   return {
       {"velocity", &collider.velocity, k_finite, "m/s", "the obstacle moves with it"},
       {"restitution", &collider.restitution, between(0, 1), "",
        "share of the normal velocity that bounces back, e"},
       {"friction", &collider.friction, k_not_negative, "", "Coulomb's μ_f"},
+      {"visible", &collider.visible, k_any, "", "it is seen in pictures; false: it acts all the same"},
   };
 }
 

@@ -18,7 +18,7 @@ FieldTable fields(SphereSource& source);
 FieldTable fields(MeshSource& source);
 FieldTable fields(PointsSource& source);
 FieldTable fields(ImplicitSource& source);
-FieldTable fields(Collider& collider);  ///< without its shape
+FieldTable fields(SceneCollider& collider);  ///< without its shape
 FieldTable fields(Plane& plane);
 FieldTable fields(Sphere& sphere);
 FieldTable fields(Box& box);

@@ -75,7 +75,7 @@ std::string print_scene(const Scene& scene) {
   for (SceneBody& body : copy.bodies)
     text += "\n[[body]]\n" + lines_of(fields(body)) + key_of(body.source) + " = " +
             inline_table(fields(body.source)) + '\n';
-  for (Collider& collider : copy.colliders)
+  for (SceneCollider& collider : copy.colliders)
     text += "\n[[collider]]\n" + shape_line(collider) + lines_of(fields(collider));
   for (ScenePin& pin : copy.pins)
     text += "\n[[pin]]\nbox = " + inline_table(fields(pin.box)) + '\n' + lines_of(fields(pin));
@@ -89,7 +89,7 @@ std::string describe_scene_keys() {
   Scene scene;
   SceneMaterial material;
   SceneBody body;
-  Collider collider;
+  SceneCollider collider;
   ScenePin pin;
   std::string text = key_lines("solver", fields(scene.solver)) + key_lines("material[]", fields(material)) +
                      key_lines("body[]", fields(body));

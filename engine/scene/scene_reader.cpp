@@ -91,7 +91,7 @@ class SceneReader {
   }
 
   void read_collider(const Node& node, const std::string& path) {
-    Collider& collider = scene_.colliders.emplace_back();
+    SceneCollider& collider = scene_.colliders.emplace_back();
     read_fields(node, path, fields(collider), shape_keys(), problems_);
     read_shape(node, path, collider, problems_);
   }

@@ -57,6 +57,9 @@ const Case k_cases[] = {
     {{.solver = "support_radius = 2.0\nformulation = \"print\""},
      "scene.toml:3:15: solver.formulation: \"print\" (a string) is not allowed: \"conservative\" or "
      "\"printed\""},
+    {{.rest = "[surface]\nkind = \"balls\""},
+     "scene.toml:9:8: surface.kind: \"balls\" (a string) is not allowed: \"blended\", \"anisotropic\" or "
+     "\"spheres\""},
     {{.material = "name = 3\nalpha = 0.5", .body = "material = \"jelly\""},
      "scene.toml:4:8: material[0].name: 3 is not allowed: a string"},
     {{.material = "name = \"jelly\"\nalpha = 2024-01-01"},
@@ -140,7 +143,7 @@ const Case k_cases[] = {
     {{.source = "points = { file = \"a\\u0000b\", spacing = 1.0 }"},
      "scene.toml:7:19: body[0].points.file: \"a\\u0000b\" (a string) is not allowed: the name of a file, a "
      "string "
-     "without control characters"},
+     "without a zero byte"},
     {{.source = "implicit = \"maoi\""},
      "scene.toml:7:12: body[0].implicit: unknown shape 'maoi'; did you mean 'moai'?"},
     {{.source = "implicit = { shape = \"maoi\", count = 9 }"},

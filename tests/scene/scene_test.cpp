@@ -68,6 +68,7 @@ plane = { normal = [0, 1, 0], offset = -3 }
 velocity = [0, 0, 0.5]
 restitution = 0.25
 friction = 0.125
+visible = false
 [[collider]]
 sphere = { center = [1, 2, 3], radius = 4, inside = true }
 [[collider]]
@@ -180,6 +181,8 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_EQ(read.colliders[0].velocity, Vec3(0, 0, 0.5f));
   EXPECT_EQ(read.colliders[0].restitution, 0.25f);
   EXPECT_EQ(read.colliders[0].friction, 0.125f);
+  EXPECT_FALSE(read.colliders[0].visible);
+  EXPECT_TRUE(read.colliders[1].visible);
   EXPECT_TRUE(std::get<Sphere>(read.colliders[1].shape).inside);
   EXPECT_EQ(std::get<Box>(read.colliders[2].shape).min, Vec3(-1, -2, -3));
   const auto& parts = std::get<Union>(read.colliders[3].shape).parts;

@@ -1,6 +1,7 @@
 #include "mallow/scene_options.h"
 
-#include <map>
+#include <string>
+#include <vector>
 
 namespace mallow::cli {
 
@@ -10,12 +11,17 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
       .add_option("--set", options.overrides,
                   "Change a value of the scene: section.key=value, any number of times")
       ->allow_extra_args(false);
-  std::map<std::string, Quality> names;
-  for (const Quality quality : qualities()) names[name(quality)] = quality;
+  std::vector<std::string> names;
+  for (const Quality quality : qualities()) names.emplace_back(name(quality));
   command
-      .add_option("--quality", options.quality,
-                  "Turn the scene's settings between speed and accuracy: realtime, balanced, accurate")
-      ->transform(CLI::CheckedTransformer(names));
+      .add_option_function<std::string>(
+          "--quality",
+          [&options](const std::string& given) {
+            for (const Quality quality : qualities())
+              if (name(quality) == given) options.quality = quality;
+          },
+          "Turn the scene's settings between speed and accuracy")
+      ->check(CLI::IsMember(names));
   command.add_flag(
       "--allow-outside-paths", options.allow_outside_paths,
       "Meshes and points that the scene names may lie outside of its folder; give it for scenes that you "

@@ -34,9 +34,17 @@ std::vector<Primitive> primitives(const Collider& collider) {
       collider.shape);
 }
 
-/// The colliders of a scene where they are at a time.
+/// The colliders of a scene that are seen.
+std::vector<Collider> visible_colliders(const Scene& scene) {
+  std::vector<Collider> colliders;
+  for (const SceneCollider& collider : scene.colliders)
+    if (collider.visible) colliders.push_back(collider);
+  return colliders;
+}
+
+/// The same where they are at a time.
 std::vector<Collider> colliders_at(const Scene& scene, double time) {
-  std::vector<Collider> colliders = scene.colliders;
+  std::vector<Collider> colliders = visible_colliders(scene);
   for (Collider& collider : colliders) {
     std::vector<Primitive> parts = primitives(collider);
     for (Primitive& part : parts) move(part, static_cast<float>(time) * collider.velocity);
@@ -64,7 +72,7 @@ Aabb view_bounds(const Scene& scene, const ParticleFrame& first) {
   const float side = (box.max - box.min).maxCoeff();
 
   std::vector<Primitive> shapes;
-  for (const Collider& collider : scene.colliders) {
+  for (const Collider& collider : visible_colliders(scene)) {
     for (const Primitive& part : primitives(collider)) shapes.push_back(part);
   }
   float lowest = -std::numeric_limits<float>::infinity();

@@ -55,6 +55,10 @@ struct SceneBody {
   int line = 0;  ///< of the scene file; 0 where it did not come from one
 };
 
+struct SceneCollider : Collider {
+  bool visible = true;  ///< in pictures; it acts on particles in any case
+};
+
 struct ScenePin {
   Aabb box;
   Vec3 velocity{0, 0, 0};
@@ -82,7 +86,7 @@ struct Scene {
   SolverConfig solver;
   std::vector<SceneMaterial> materials = {};
   std::vector<SceneBody> bodies = {};
-  std::vector<Collider> colliders = {};
+  std::vector<SceneCollider> colliders = {};
   std::vector<ScenePin> pins = {};
   SurfaceConfig surface;
   RunConfig run;
