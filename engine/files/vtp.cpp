@@ -81,6 +81,11 @@ std::string escaped(const std::string& text) {
       case '"':
         xml += "&quot;";
         break;
+      case '\t':
+      case '\n':
+      case '\r':  // readers make spaces of these in an attribute
+        xml += "&#" + std::to_string(static_cast<int>(c)) + ';';
+        break;
       default:
         xml += c;
     }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <functional>
 #include <string>
 #include <system_error>
 
@@ -79,10 +80,20 @@ void write_content(const fs::path& file, std::string_view content, const fs::pat
   out.close();
 }
 
+/// A name beside the file. File systems take names of at most 255 bytes, so of a long one only the beginning
+/// is used, and a hash for what follows.
+fs::path partial_name(const fs::path& file) {
+  constexpr std::size_t k_longest = 200;
+  std::string name = file.filename().string();
+  if (name.size() > k_longest)
+    name = name.substr(0, k_longest) + '-' + std::to_string(std::hash<std::string>{}(name));
+  return fs::path(file).replace_filename('.' + name + ".partial");
+}
+
 /// What the file was goes to `previous`, or is lost where that is empty.
 void replace(const fs::path& file, const std::function<void(const fs::path& beside)>& write,
              const fs::path& previous) {
-  const PartialFile partial(fs::path(file).replace_filename('.' + file.filename().string() + ".partial"));
+  const PartialFile partial(partial_name(file));
   write(partial.path());
   OpenFile(partial.path(), O_RDONLY, file).sync();
   if (!previous.empty() && ::rename(file.c_str(), previous.c_str()) != 0 && errno != ENOENT)
@@ -94,17 +105,27 @@ void replace(const fs::path& file, const std::function<void(const fs::path& besi
 
 }  // namespace
 
+bool is_written_in_place(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status) || fs::is_directory(status)) return false;
+  if (!fs::is_regular_file(status)) return true;
+  // A file that replaced this name would take the place of the system's link.
+  const std::string path = fs::absolute(file, error).lexically_normal().string();
+  if (path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/") ||
+      path.starts_with("/proc/"))
+    fail_file(file, "leads to a file here, and cannot be replaced; give the name of that file");
+  return false;
+}
+
 void write_whole(const fs::path& file, const std::function<void(const fs::path& beside)>& write) {
   if (!file.has_filename()) fail_file(file, "cannot be written: it has no file name");
   std::error_code error;
-  const fs::file_status old = fs::status(file, error);
-  if (fs::is_directory(old)) fail_write(file, EISDIR);
-  if (fs::exists(old) && !fs::is_regular_file(old)) {
-    write(file);  // a device or pipe, such as /dev/stdout, takes the content and must stay what it is
-    return;
-  }
-
-  replace(file, write, {});
+  if (fs::is_directory(file, error)) fail_write(file, EISDIR);
+  if (is_written_in_place(file))
+    write(file);
+  else
+    replace(file, write, {});
 }
 
 void write_whole(const fs::path& file, std::string_view content) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "mallow/errors.h"
+#include "mallow/files.h"
 
 namespace mallow::cli {
 
@@ -21,8 +22,7 @@ void print_warnings(std::span<const std::string> notes) {
 void check_writable(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file))
     throw IoError({file.string(), 0, 0, "", "is a folder, not a file"});
-  // A device or pipe, such as /dev/stdout, is written as it is.
-  if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) return;
+  if (is_written_in_place(file)) return;
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   // Only creating a file tells: root passes every check of permission bits, also where nothing can be
   // created.

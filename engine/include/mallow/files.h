@@ -133,8 +133,11 @@ SavedState read_checkpoint(const std::filesystem::path& file);
 /// "checkpoint.previous" for "checkpoint".
 std::filesystem::path previous_checkpoint(const std::filesystem::path& file);
 
+/// Whether a file takes what is written as it comes, and must stay what it is: a device or pipe. Throws
+/// IoError for /dev/stdout and the like where they lead to a file, as nothing can be put in their place.
+bool is_written_in_place(const std::filesystem::path& file);
 /// Writes a file whole or not at all: `write` gets a name beside it, which is synced and renamed when it
-/// returns and removed when it throws.
+/// returns and removed when it throws. What is_written_in_place() is given to `write` itself.
 void write_whole(const std::filesystem::path& file,
                  const std::function<void(const std::filesystem::path& beside)>& write);
 /// The same for content that is already there.
