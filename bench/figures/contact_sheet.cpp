@@ -36,10 +36,10 @@ void ContactSheet::close() {
   }
   const std::string tiles = std::to_string(pictures_ / takes_) + 'x' + std::to_string(takes_);
   write_whole(file_, [&](const std::filesystem::path& beside) {
-    const int status =
-        cli::run_program({"ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-i",
-                          file_.parent_path() / (file_.stem().string() + "_%03d.png"), "-vf", "tile=" + tiles,
-                          "-frames:v", "1", "-f", "image2", "-c:v", "png", beside.string()});
+    const int status = cli::run_program(
+        {"ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-i", file_.stem().string() + "_%03d.png", "-vf",
+         "tile=" + tiles, "-frames:v", "1", "-f", "image2", "-c:v", "png", beside.filename().string()},
+        file_.parent_path());
     if (status != 0) throw cli::RunFailure("ffmpeg failed with exit status " + std::to_string(status));
   });
   for (std::size_t number = 0; number < pictures_; ++number) std::filesystem::remove(picture(number));

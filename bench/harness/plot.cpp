@@ -34,12 +34,12 @@ void run_gnuplot(const std::filesystem::path& svg, int width, int height, const 
     std::ostringstream script;
     // svg: fonts of whatever shows it; noenhanced: an underscore is an underscore.
     script << "set terminal svg size " << width << ',' << height
-           << " noenhanced background rgb 'white' font 'Helvetica,13'\nset output " << quoted(beside.string())
-           << '\n'
+           << " noenhanced background rgb 'white' font 'Helvetica,13'\nset output "
+           << quoted(beside.filename().string()) << '\n'
            << commands;
     const std::filesystem::path file = beside.string() + ".gp";
     write_whole(file, script.str());
-    const int status = cli::run_program({"gnuplot", file.string()});
+    const int status = cli::run_program({"gnuplot", file.filename().string()}, file.parent_path());
     std::filesystem::remove(file);
     if (status != 0) throw cli::RunFailure("gnuplot failed with exit status " + std::to_string(status));
   });

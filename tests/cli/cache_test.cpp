@@ -18,8 +18,9 @@ const std::vector<std::string> k_three_images = {"frame_000000.png", "frame_0000
 TEST_F(cli_cache, holds_particles_surfaces_pictures_report_and_summary) {
   const Outcome outcome = run({"--out", at("out"), "--no-film"}, true);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_EQ(names_in(at("out")), (std::vector<std::string>{"images", "particles", "report.json", "scene.toml",
-                                                           "summary.html", "surface"}));
+  EXPECT_EQ(names_in(at("out")),
+            (std::vector<std::string>{".mallow-run", "images", "particles", "report.json", "scene.toml",
+                                      "summary.html", "surface"}));
   EXPECT_EQ(names_in(at("out/particles")), k_three_surfaces);
   EXPECT_EQ(names_in(at("out/surface")), k_three_surfaces);
   EXPECT_EQ(names_in(at("out/images")), k_three_images);
@@ -130,7 +131,7 @@ TEST_F(cli_cache, overwrite_refuses_a_folder_that_holds_no_run) {
   write("home/report.json", "mine");
   const Outcome outcome = run({"--out", at("home"), "--overwrite"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("no scene.toml"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("no .mallow-run"), std::string::npos) << outcome.err;
   EXPECT_EQ(names_in(at("home")), std::vector<std::string>{"report.json"});
   EXPECT_EQ(read_text(at("home/report.json")), "mine");
 }

@@ -100,8 +100,8 @@ TEST_F(cli_checkpoint, run_of_so_many_steps_goes_on_to_the_same_state) {
   ASSERT_EQ(running.wait().exit_code, 1);
   ASSERT_EQ(resume("out", {"--state-out", at("state.csv")}).exit_code, 0);
   EXPECT_EQ(read_text(at("state.csv")), read_text(at("whole.csv")));
-  EXPECT_EQ(names_in(at("out")), (std::vector<std::string>{"checkpoint", "particles", "report.json",
-                                                           "scene.toml", "summary.html"}));
+  EXPECT_EQ(names_in(at("out")), (std::vector<std::string>{".mallow-run", "checkpoint", "particles",
+                                                           "report.json", "scene.toml", "summary.html"}));
 }
 
 TEST_F(cli_checkpoint, are_written_every_so_many_frames_and_a_run_can_be_made_longer) {
@@ -181,8 +181,8 @@ TEST_F(cli_checkpoint, warns_of_a_scene_that_has_changed_and_moves_as_before) {
 TEST_F(cli_checkpoint, overwrite_removes_them) {
   ASSERT_EQ(run({"--out", at("out"), "--frames", "4", "--checkpoint-every", "1"}).exit_code, 0);
   ASSERT_EQ(run({"--out", at("out"), "--overwrite", "--no-surface"}).exit_code, 0);
-  EXPECT_EQ(names_in(at("out")),
-            (std::vector<std::string>{"particles", "report.json", "scene.toml", "summary.html"}));
+  EXPECT_EQ(names_in(at("out")), (std::vector<std::string>{".mallow-run", "particles", "report.json",
+                                                           "scene.toml", "summary.html"}));
 }
 
 TEST_F(cli_checkpoint, options_that_contradict_are_refused) {

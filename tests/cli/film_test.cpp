@@ -9,8 +9,8 @@ namespace {
 namespace fs = std::filesystem;
 using cli_film = CliTest;
 
-const std::vector<std::string> k_run_without_film = {"images",     "particles",    "report.json",
-                                                     "scene.toml", "summary.html", "surface"};
+const std::vector<std::string> k_run_without_film = {
+    ".mallow-run", "images", "particles", "report.json", "scene.toml", "summary.html", "surface"};
 
 /// A PATH on which there is no ffmpeg, for as long as it lives.
 class NoPrograms {
@@ -76,6 +76,21 @@ TEST_F(cli_film, without_ffmpeg_the_film_of_the_folder_is_left_out_with_a_word) 
   EXPECT_NE(outcome.err.find("no film, because the program ffmpeg is not installed"), std::string::npos)
       << outcome.err;
   EXPECT_EQ(names_in(at("out")), k_run_without_film);
+}
+
+TEST_F(cli_film, is_refused_before_a_run_goes_on_where_a_picture_is_missing) {
+  if (!cli::is_installed("ffmpeg")) GTEST_SKIP() << "ffmpeg is not installed";
+  ASSERT_EQ(run({"--out", at("out"), "--checkpoint-every", "1", "--no-film"}, true).exit_code, 0);
+  fs::remove(at("out/images/frame_000001.png"));
+  Outcome outcome = run_mallow({"run", "--resume", at("out"), "--frames", "3"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("the picture of frame 1 is missing; 'mallow render"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(outcome.err.find("simulating"), std::string::npos) << outcome.err;
+  outcome = run_mallow({"run", "--resume", at("out"), "--frames", "3", "--no-film"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_EQ(run_mallow({"render", at("out")}).exit_code, 0);
+  EXPECT_TRUE(is_mp4(at("out/film.mp4")));
 }
 
 TEST_F(cli_film, wrong_use_is_refused_before_anything_runs) {

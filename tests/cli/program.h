@@ -29,6 +29,7 @@ class Running {
   /// Whether it is still there.
   bool alive();
   Outcome wait();
+  pid_t process() const { return child_; }
 
  private:
   std::filesystem::path folder_;

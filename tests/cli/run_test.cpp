@@ -183,5 +183,33 @@ TEST_F(cli_run, keys_lists_every_section) {
   }
 }
 
+TEST_F(cli_run, a_hidden_collider_acts_and_is_not_seen) {
+  const std::vector<std::string> frame = {"--frames", "1", "--no-film", "--no-surface"};
+  const auto run_into = [&](const std::string& folder, const std::string& visible) {
+    std::vector<std::string> arguments = {"--out", at(folder), "--set", "collider[0].visible=" + visible};
+    arguments.insert(arguments.end(), frame.begin(), frame.end());
+    ASSERT_EQ(run(arguments, true).exit_code, 0);
+  };
+  run_into("seen", "true");
+  run_into("hidden", "false");
+  const auto picture = [&](const std::string& folder) {
+    return read_text(folder_ / folder / "images/frame_000001.png");
+  };
+  EXPECT_EQ(read_json(at("seen/report.json")).at("state_hash"),
+            read_json(at("hidden/report.json")).at("state_hash"));
+  EXPECT_NE(picture("seen"), picture("hidden"));
+  const Outcome outcome =
+      run_mallow({"render", at("seen"), "--no-film", "--set", "collider[0].visible=false"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(picture("seen"), picture("hidden"));
+}
+
+TEST_F(cli_run, help_names_the_qualities) {
+  const Outcome outcome = run_mallow({"run", "--help"});
+  EXPECT_NE(outcome.out.find("{realtime,balanced,accurate}"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("->"), std::string::npos) << outcome.out;
+  EXPECT_EQ(run({"--quality", "1"}).exit_code, 2);
+}
+
 }  // namespace
 }  // namespace mallow::test

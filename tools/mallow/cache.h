@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "mallow/input_files.h"
+#include "mallow/run_mark.h"
 #include "mallow/scene.h"
 
 namespace mallow::cli {
@@ -12,24 +15,40 @@ namespace mallow::cli {
 std::filesystem::path frame_name(int frame, const std::string& ending);
 
 /// A folder that holds a run, so that its parts can be made again apart from each other:
+///   .mallow-run                 what marks the folder as a run's, and is locked by whoever writes into it
 ///   scene.toml  report.json  summary.html  film.mp4
 ///   checkpoint  checkpoint.previous  what an unfinished run goes on from
 ///   particles/frame_000000.ply  surface/frame_000000.ply  images/frame_000000.png
 ///   export/                     what `mallow export` made of these for other programs
-/// Frame 0 is the initial state.
+/// Frame 0 is the initial state. A folder of an earlier mallow has no mark: it is known by its report.json
+/// and its frame 0, gets a mark from what writes into it, but is not overwritten.
 class Cache {
  public:
+  /// What there is one of.
+  static constexpr std::array k_single_files = {
+      k_run_mark,     "scene.toml", "report.json",        "checkpoint",          "checkpoint.previous",
+      "summary.html", "film.mp4",   "export/surface.pvd", "export/surface.usda", "export/particles.pvd"};
+
   /// An empty cache in a folder that does not exist yet or is empty. With `overwrite` an earlier cache there
-  /// is removed: the files named above and no others. Throws IoError where the folder holds something else or
-  /// cannot be written.
+  /// is removed: the files named above and no others. Throws IoError where the folder holds something else,
+  /// is in use or cannot be written.
   static Cache create(const std::filesystem::path& folder, bool overwrite);
   /// What create() would throw, found out without a change on disk.
   static void check(const std::filesystem::path& folder, bool overwrite);
   /// The cache of a run that goes on; removes what a killed writer left half written. Throws IoError where
-  /// the folder holds no run.
+  /// the folder holds no run or is in use.
   static Cache open_to_resume(const std::filesystem::path& folder);
-  /// The cache of an earlier run. Throws IoError where the folder holds none.
-  static Cache open(const std::filesystem::path& folder);
+  /// The cache of an earlier run, to write into it or to read it alone. Throws IoError where the folder holds
+  /// none or is in use.
+  enum class Access { read, write };
+  static Cache open(const std::filesystem::path& folder, Access access);
+
+  /// Throws IoError where the scene.toml of a run in `folder` could not name the scene's files: TOML has no
+  /// word for a name that is not UTF-8.
+  static void check_names(const std::filesystem::path& folder, const Scene& scene);
+  /// Throws IoError where a file of a run in `folder` is an input. own_scene: also its scene.toml.
+  static void refuse_inputs(const std::filesystem::path& folder, const InputFiles& inputs,
+                            const std::string& option, bool own_scene);
 
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path scene_file() const { return folder_ / "scene.toml"; }
@@ -48,22 +67,24 @@ class Cache {
   std::vector<int> surface_frames() const;
   std::vector<int> image_frames() const;
 
-  void remove_surfaces() const;
-  /// The pictures and the film of them.
-  void remove_images() const;
+  /// Pictures of other frames are of an earlier rendering.
+  void remove_images_but(const std::vector<int>& frames) const;
 
-  /// Exports of every format, which an earlier run's frames would be among.
-  void remove_exports() const;
-
-  /// A scene with the paths in it made right for scene.toml.
+  /// A scene with the paths in it made right for scene.toml: relative to it, once links are followed.
   Scene moved_here(Scene scene) const;
-  /// scene.toml
+  /// scene.toml, unless it says the same already, with comments perhaps.
   void write_scene(const Scene& scene) const;
 
  private:
   explicit Cache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
+  /// The files of a run that are there: those named above, without the mark, and what killed writers left
+  /// half written of them.
+  std::vector<std::filesystem::path> files() const;
+  std::vector<std::filesystem::path> half_written_files() const;
+
   std::filesystem::path folder_;
+  RunLock lock_;
 };
 
 }  // namespace mallow::cli

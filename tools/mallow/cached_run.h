@@ -29,11 +29,12 @@ struct CachedRun {
 };
 
 /// Throws IoError and ConfigError. `section`: the one whose keys may be changed, as the motion is there
-/// already; empty: none, and the run stays as it is.
+/// already, with "render" also which colliders are visible; empty: none, and the run stays as it is. No other
+/// program writes into the folder while the run lives.
 CachedRun open_cached_run(const CachedRunOptions& options, const std::string& section);
 
 /// Calls `work` for every frame, with progress and an end at Ctrl-C. Returns how many frames that were.
-std::size_t for_each_frame(const CachedRun& run, const char* verb,
+std::size_t for_each_frame(const std::vector<int>& frames, const char* verb,
                            const std::function<void(int frame)>& work);
 
 /// Writes the scene as it was changed, the new times of `stages` and the summary.

@@ -4,6 +4,7 @@
 
 #include "mallow/errors.h"
 #include "mallow/files.h"
+#include "mallow/shell_word.h"
 
 namespace mallow::cli {
 namespace fs = std::filesystem;
@@ -18,6 +19,11 @@ const std::string& require_chunk(const SavedState& state, const char* name) {
   const std::string* bytes = state.find(name);
   if (!bytes) throw ConfigError(std::string("chunk '") + name + "'", "is missing");
   return *bytes;
+}
+
+/// A path that is not UTF-8 has to pass through JSON too.
+std::string dumped(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 std::string plan_text(const RunPlan& plan) {
@@ -77,7 +83,7 @@ SavedState Checkpoints::take(const Simulation& simulation, const RunReport& repo
   SavedState state = simulation.save();
   state.chunks.push_back({k_scene, scene_});
   state.chunks.push_back({k_plan, plan_});
-  state.chunks.push_back({k_progress, report.progress().dump()});
+  state.chunks.push_back({k_progress, dumped(report.progress())});
   taken_ = Clock::now();
   return state;
 }
@@ -106,8 +112,7 @@ CheckpointedRun load_newest_checkpoint(const Cache& cache, int threads) {
   const std::string why =
       refused.empty() ? "holds no checkpoint: the run ended before the first one was due" : refused;
   throw IoError({folder, 0, 0, "--resume",
-                 why + "; start again with: mallow run " + cache.scene_file().string() + " --out " + folder +
-                     " --overwrite"});
+                 why + "; start again with: mallow run SCENE --out " + shell_word(folder) + " --overwrite"});
 }
 
 }  // namespace mallow::cli

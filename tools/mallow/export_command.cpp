@@ -13,7 +13,10 @@
 #include "mallow/failure.h"
 #include "mallow/files.h"
 #include "mallow/group_appearances.h"
+#include "mallow/input_files.h"
 #include "mallow/level_set.h"
+#include "mallow/run_mark.h"
+#include "mallow/shell_word.h"
 
 namespace mallow::cli {
 namespace {
@@ -92,8 +95,29 @@ void check_formats(const ExportOptions& options) {
 /// A run that was ended early may lack the last frame's surface; one without any has nothing to export.
 void require_surfaces(const Cache& cache) {
   if (!cache.surface_frames().empty()) return;
-  throw IoError({cache.folder().string(), 0, 0, "--surface",
-                 "the run has no surfaces; 'mallow surface " + cache.folder().string() + "' draws them"});
+  throw IoError(
+      {cache.folder().string(), 0, 0, "--surface",
+       "the run has no surfaces; 'mallow surface " + shell_word(cache.folder().string()) + "' draws them"});
+}
+
+/// A scene may name what an earlier export wrote.
+void refuse_inputs(const ExportOptions& options, const CachedRun& run, const fs::path& out) {
+  const InputFiles inputs(run.scene);
+  const auto check = [&](const char* kind, const std::vector<std::string>& formats) {
+    for (const std::string& format : formats)
+      for (const int frame : run.cache.particle_frames())
+        inputs.refuse(out / kind / frame_name(frame, format), "--out");
+  };
+  check("surface", options.surface);
+  check("particles", options.particles);
+}
+
+/// Two exports into one folder would mix their frames.
+RunLock lock_folder(const fs::path& out) {
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) throw IoError({out.string(), 0, 0, "--out", "cannot be made: " + error.message()});
+  return RunLock::for_exports(out);
 }
 
 void export_frames(const ExportOptions& options) {
@@ -102,6 +126,8 @@ void export_frames(const ExportOptions& options) {
   const Cache& cache = run.cache;
   if (!options.surface.empty()) require_surfaces(cache);
   const fs::path out = options.out.empty() ? cache.export_folder() : fs::path(options.out);
+  refuse_inputs(options, run, out);
+  const RunLock lock = lock_folder(out);
   Series surfaces(out, "surface", options.surface);
   Series particles(out, "particles", options.particles);
   const std::vector<Appearance> palette = group_appearances(run.scene);
@@ -125,7 +151,7 @@ void export_frames(const ExportOptions& options) {
     if (format == "csv") write_state_csv(file, frame);
   };
   try {
-    for_each_frame(run, "exporting", [&](int number) {
+    for_each_frame(cache.particle_frames(), "exporting", [&](int number) {
       const ParticleFrame frame =
           read_particles(cache.particles_file(number));  // tells the time of surfaces too
       if (!options.particles.empty()) {

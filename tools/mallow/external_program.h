@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -8,8 +9,9 @@ namespace mallow::cli {
 /// Whether a program is found on the PATH.
 bool is_installed(const std::string& program);
 
-/// Runs a program without a shell and waits for it; gives its exit status. Throws RunFailure where it cannot
-/// be started.
-int run_program(std::vector<std::string> arguments);
+/// Runs a program in a folder, without a shell, and waits for it; gives its exit status. Names of files in
+/// that folder need no path then, which could hold what means something to the program: '%', quotes, '-' at
+/// the beginning. Throws RunFailure where it cannot be started.
+int run_program(std::vector<std::string> arguments, const std::filesystem::path& folder);
 
 }  // namespace mallow::cli

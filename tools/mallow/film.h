@@ -21,8 +21,12 @@ void add_film_options(CLI::App& command, FilmOptions& options);
 /// stderr where ffmpeg is not installed, so that there will be none.
 void check_film(const FilmOptions& options);
 
+/// Before a run goes on: throws IoError where its film would lack the picture of a frame up to `last`.
+void check_pictures(const FilmOptions& options, const Cache& cache, int last);
+
 /// Joins the pictures of a cache to a film (H.264) with the program ffmpeg. Where ffmpeg is not installed it
-/// makes none, and says so on stderr unless check_film() did. Throws RunFailure where ffmpeg fails.
+/// makes none, and says so on stderr unless check_film() did. Throws RunFailure where ffmpeg fails or a
+/// picture between two others is missing.
 void make_film(const FilmOptions& options, const Cache& cache, int frames_per_second, int threads);
 
 /// After all other work: throws RunFailure where FILE was asked for and there was no ffmpeg to make it.

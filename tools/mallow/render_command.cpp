@@ -4,11 +4,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "mallow/cached_run.h"
 #include "mallow/failure.h"
 #include "mallow/files.h"
 #include "mallow/film.h"
+#include "mallow/input_files.h"
 #include "mallow/stills.h"
 
 namespace mallow::cli {
@@ -18,26 +20,31 @@ struct RenderOptions : CachedRunOptions {
   FilmOptions film;
 };
 
-/// The surface of a frame; an empty mesh where the run has none, which shows the particles.
-Mesh surface_of(const Cache& cache, int frame) {
-  const std::filesystem::path file = cache.surface_file(frame);
-  return std::filesystem::exists(file) ? read_mesh(file) : Mesh{};
+/// The frames of which pictures can be taken. A run that was ended early may lack the last frame's surface,
+/// which gets no picture then; one without any shows its particles.
+std::vector<int> frames_to_show(const Cache& cache) {
+  const std::vector<int> surfaces = cache.surface_frames();
+  return surfaces.empty() ? cache.particle_frames() : surfaces;
 }
 
 void render_cache(const RenderOptions& options) {
   check_film(options.film);
   CachedRun run = open_cached_run(options, "render");
   const Cache& cache = run.cache;
+  InputFiles(run.scene).refuse(options.film.file, "--film");
   const ParticleFrame first = read_particles(cache.particles_file(cache.particle_frames().front()));
   Stills stills(run.scene, first, run.spacings, run.threads);
+  const std::vector<int> frames = frames_to_show(cache);
+  const bool surfaces = !cache.surface_frames().empty();
   StageTimes seconds{};
   std::size_t count = 0;
   try {
     std::filesystem::create_directories(cache.images_folder());
-    count = for_each_frame(run, "rendering", [&](int number) {
+    cache.remove_images_but(frames);
+    count = for_each_frame(frames, "rendering", [&](int number) {
       const StageTimer timer(seconds, Stage::pictures);
-      stills.take(read_particles(cache.particles_file(number)), surface_of(cache, number),
-                  cache.image_file(number));
+      stills.take(read_particles(cache.particles_file(number)),
+                  surfaces ? read_mesh(cache.surface_file(number)) : Mesh{}, cache.image_file(number));
     });
     {
       const StageTimer timer(seconds, Stage::film);

@@ -1,8 +1,10 @@
 #include "mallow/run_command.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,9 +12,11 @@
 
 #include "mallow/cache.h"
 #include "mallow/checkpoint.h"
+#include "mallow/errors.h"
 #include "mallow/failure.h"
 #include "mallow/files.h"
 #include "mallow/film.h"
+#include "mallow/input_files.h"
 #include "mallow/interrupt.h"
 #include "mallow/machine.h"
 #include "mallow/run_loop.h"
@@ -52,12 +56,43 @@ struct Run {
   std::optional<Cache> cache;
 };
 
-/// All that can be known to be wrong before anything is computed.
+/// No output may be another one, or a file of the folder that means something else there.
+void check_apart(const RunOptions& options) {
+  const std::string& folder = options.out.empty() ? options.resume : options.out;
+  std::map<std::filesystem::path, std::string> names;
+  const auto add = [&](const std::filesystem::path& file, const std::string& name,
+                       const char* may_be = nullptr) {
+    if (file.empty() || is_written_in_place(file)) return;
+    std::error_code unknown;
+    const auto [other, is_new] = names.emplace(std::filesystem::weakly_canonical(file, unknown), name);
+    if (is_new || (may_be && other->second == may_be)) return;
+    throw ConfigError(name, "'" + file.string() + "' is also " + other->second + "; give another name");
+  };
+  if (!folder.empty())
+    for (const char* name : Cache::k_single_files) add(std::filesystem::path(folder) / name, name);
+  add(options.report, "--report", "report.json");
+  add(options.film.file, "--film", "film.mp4");
+  add(options.state_out, "--state-out");
+}
+
+/// All that can be known to be wrong before anything is read.
 void check_outputs(const RunOptions& options) {
   if (!options.out.empty()) Cache::check(options.out, options.overwrite);
   if (!options.state_out.empty()) check_writable(options.state_out);
   if (!options.report.empty()) check_writable(options.report);
   check_film(options.film);
+  check_apart(options);
+}
+
+/// Nothing that is written may be what is read.
+void refuse_inputs(const RunOptions& options, const Scene& scene) {
+  const InputFiles inputs(scene);
+  inputs.refuse(options.state_out, "--state-out");
+  inputs.refuse(options.report, "--report");
+  inputs.refuse(options.film.file, "--film");
+  if (!options.out.empty()) Cache::refuse_inputs(options.out, inputs, "--out", true);
+  // A run that goes on reads its own scene.toml, and writes there what of it has changed.
+  if (!options.resume.empty()) Cache::refuse_inputs(options.resume, inputs, "--resume", false);
 }
 
 Scene scene_of(const RunOptions& options) {
@@ -82,6 +117,8 @@ void describe(const Scene& scene, int threads, Simulation& simulation, RunReport
 
 Run begin(const RunOptions& options, int threads) {
   Run run{.scene = scene_of(options), .plan = {}, .report = {}, .simulation = {}, .cache = {}};
+  refuse_inputs(options, run.scene);
+  if (!options.out.empty()) Cache::check_names(options.out, run.scene);
   run.plan = {.frames = run.scene.run.frames,
               .steps = options.steps,
               .surface = !options.no_surface,
@@ -105,7 +142,8 @@ Run begin(const RunOptions& options, int threads) {
 /// What of a scene counts when a run goes on: how frames look, and how many there are. What moves the
 /// particles is in the checkpoint.
 bool counts_when_resumed(const std::string& key) {
-  return key.starts_with("surface.") || key.starts_with("render.") || key == "run.frames";
+  const bool hides_collider = key.starts_with("collider[") && key.ends_with("].visible");
+  return key.starts_with("surface.") || key.starts_with("render.") || key == "run.frames" || hides_collider;
 }
 
 /// Takes over what counts of a scene that is not the checkpoint's any more, and says on stderr what differs.
@@ -123,6 +161,8 @@ void take_changes(const Scene& now, Scene& scene) {
                  now.file.c_str(), said.c_str());
   scene.surface = now.surface;
   scene.render = now.render;
+  for (std::size_t i = 0; i < std::min(scene.colliders.size(), now.colliders.size()); ++i)
+    scene.colliders[i].visible = now.colliders[i].visible;
   scene.run.frames = now.run.frames;
 }
 
@@ -134,7 +174,9 @@ Run resume(const RunOptions& options, int threads) {
   SceneOptions now = options.scene;
   if (now.file.empty()) now.file = cache.scene_file().string();
   now.allow_outside_paths = true;  // what it names is not read: the particles are there
-  take_changes(cache.moved_here(read_scene(now)), saved.scene);
+  const Scene scene_now = read_scene(now);
+  refuse_inputs(options, scene_now);
+  take_changes(cache.moved_here(scene_now), saved.scene);
   if (options.frames) saved.scene.run.frames = *options.frames;
 
   Run run{std::move(saved.scene), saved.plan, std::move(saved.report), std::move(saved.simulation),
@@ -144,6 +186,7 @@ Run resume(const RunOptions& options, int threads) {
   run.plan.frames = run.scene.run.frames;
   run.plan.surface = run.plan.surface && !options.no_surface;
   run.plan.images = run.plan.images && !options.no_images;
+  if (run.plan.images) check_pictures(options.film, *run.cache, run.report.frames);
   run.plan.threads = threads;
   run.plan.checkpoints = checkpoint_interval(options, run.plan.checkpoints);
   describe(run.scene, threads, *run.simulation, run.report);

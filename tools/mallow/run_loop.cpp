@@ -13,6 +13,7 @@
 #include "mallow/interrupt.h"
 #include "mallow/level_set.h"
 #include "mallow/progress.h"
+#include "mallow/shell_word.h"
 #include "mallow/stills.h"
 
 namespace mallow::cli {
@@ -118,7 +119,7 @@ std::shared_ptr<const ParticleFrame> first_frame(const Simulation& simulation, c
   } catch (const Error& error) {
     throw RunFailure(said + ", and no checkpoint could be written: " + error.what());
   }
-  throw RunFailure(said + "; to go on: mallow run --resume " + cache->folder().string());
+  throw RunFailure(said + "; to go on: mallow run --resume " + shell_word(cache->folder().string()));
 }
 
 /// Whether the simulation has come to frame `number`; without a frame time every step is a frame.

@@ -10,6 +10,7 @@
 #include "mallow/errors.h"
 #include "mallow/failure.h"
 #include "mallow/files.h"
+#include "mallow/input_files.h"
 #include "mallow/machine.h"
 #include "mallow/scene.h"
 #include "mallow/simulation.h"
@@ -55,6 +56,9 @@ void sample_mesh(const SampleOptions& options) {
       throw ConfigError("--out", "'" + options.out + "' must end in .csv or .ply");
     }
     check_writable(out);
+    InputFiles mesh;
+    mesh.add(options.mesh);
+    mesh.refuse(out, "--out");
   }
   const int threads = resolve_threads(options.threads);
   MeshSource source{std::filesystem::absolute(options.mesh), {}, {}};

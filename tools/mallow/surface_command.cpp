@@ -22,7 +22,7 @@ void draw_surfaces(const CachedRunOptions& options) {
     std::filesystem::create_directories(run.cache.surface_file(0).parent_path());
     Surfacer surfacer(run.scene.surface, run.threads);
     BackgroundWriter files;
-    count = for_each_frame(run, "surfacing", [&](int number) {
+    count = for_each_frame(run.cache.particle_frames(), "surfacing", [&](int number) {
       const StageTimer timer(seconds, Stage::surface);
       const ParticleFrame frame = read_particles(run.cache.particles_file(number));
       const auto mesh = std::make_shared<const Mesh>(

@@ -1,0 +1,135 @@
+#include "cli/program.h"
+
+namespace mallow::test {
+namespace {
+
+namespace fs = std::filesystem;
+using cli_inputs = CliTest;
+
+const std::vector<std::string> k_quick = {"--no-surface", "--no-images", "--frames", "1"};
+
+/// A scene of four points in a file.
+std::string points_scene(const std::string& file) {
+  return "[solver]\nsupport_radius = 2.0\n[[material]]\nname = \"a\"\n[[body]]\nmaterial = \"a\"\n"
+         "points = { file = \"" +
+         file + "\", spacing = 1.0 }\n";
+}
+constexpr const char* k_points = "x,y,z\n0,0,1\n1,0,1\n0,1,1\n1,1,1\n";
+constexpr const char* k_tetrahedron =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n"
+    "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+
+Outcome quick_run(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "run");
+  arguments.insert(arguments.end(), k_quick.begin(), k_quick.end());
+  return run_mallow(arguments);
+}
+
+void expect_refused(const Outcome& outcome, const std::string& word) {
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_NE(outcome.err.find(word), std::string::npos) << "'" << word << "' is not in: " << outcome.err;
+}
+
+TEST_F(cli_inputs, a_scene_is_never_replaced_by_its_run) {
+  fs::create_directory(at("mine"));
+  write("mine/scene.toml", read_text(scene_) + "# by hand\n");
+  const std::string text = read_text(at("mine/scene.toml"));
+  expect_refused(quick_run({at("mine/scene.toml"), "--out", at("mine")}), "is not empty");
+  expect_refused(quick_run({at("mine/scene.toml"), "--out", at("mine"), "--overwrite"}), "no .mallow-run");
+  // Nor beside a report that looks like a run's.
+  ASSERT_EQ(quick_run({at("mine/scene.toml"), "--report", at("mine/report.json")}).exit_code, 0);
+  expect_refused(quick_run({at("mine/scene.toml"), "--out", at("mine"), "--overwrite"}), "no .mallow-run");
+  EXPECT_EQ(read_text(at("mine/scene.toml")), text);
+  EXPECT_EQ(names_in(at("mine")), (std::vector<std::string>{"report.json", "scene.toml"}));
+}
+
+TEST_F(cli_inputs, of_a_run_in_its_folder_are_kept_whatever_they_are_called) {
+  ASSERT_EQ(quick_run({scene_, "--out", at("out")}).exit_code, 0);
+  const std::string scene = read_text(at("out/scene.toml"));
+  fs::create_hard_link(at("out/scene.toml"), at("hard.toml"));
+  fs::create_symlink(at("out/scene.toml"), at("soft.toml"));
+  fs::create_directory_symlink(at("out"), at("link"));
+  for (const std::string given : {"out/scene.toml", "out/../out/scene.toml", "hard.toml", "soft.toml"})
+    for (const std::string folder : {"out", "link", "link/../out/."})
+      expect_refused(quick_run({at(given), "--out", at(folder), "--overwrite"}), "would be written over");
+  write("next.toml", points_scene("out/particles/frame_000001.ply"));
+  expect_refused(quick_run({at("next.toml"), "--out", at("out"), "--overwrite"}),
+                 "out/particles/frame_000001.ply: --out: would be written over");
+  EXPECT_EQ(read_text(at("out/scene.toml")), scene);
+  EXPECT_EQ(names_in(at("out/particles")).size(), 2u);
+  // What only lies in the folder is in nobody's way.
+  write("out/other.toml", read_text(scene_));
+  ASSERT_EQ(quick_run({at("out/other.toml"), "--out", at("out"), "--overwrite"}).exit_code, 0);
+  EXPECT_EQ(read_text(at("out/other.toml")), read_text(scene_));
+}
+
+TEST_F(cli_inputs, are_refused_as_the_file_of_an_option) {
+  write("points.csv", k_points);
+  write("points.toml", points_scene("points.csv"));
+  write("film.mp4", points_scene("points.csv"));
+  fs::create_hard_link(at("points.csv"), at("hard.csv"));
+  fs::create_symlink(at("points.toml"), at("soft.json"));
+  fs::create_directory(at("deep"));
+  for (const std::string option : {"--state-out", "--report"})
+    for (const std::string file :
+         {"points.csv", "points.toml", "hard.csv", "soft.json", "deep/../points.csv"})
+      expect_refused(quick_run({at("points.toml"), option, at(file)}), option + ": would be written over");
+  expect_refused(run_mallow({"run", at("film.mp4"), "--out", at("out"), "--film", at("film.mp4")}),
+                 "--film: would be written over");
+  EXPECT_EQ(read_text(at("points.csv")), k_points);
+  EXPECT_EQ(read_text(at("points.toml")), points_scene("points.csv"));
+  EXPECT_FALSE(fs::exists(at("out")));
+
+  ASSERT_EQ(quick_run({at("points.toml"), "--out", at("out"), "--checkpoint-every", "1"}).exit_code, 0);
+  expect_refused(run_mallow({"run", at("points.toml"), "--resume", at("out"), "--report", at("points.toml")}),
+                 "--report: would be written over");
+  write("export.toml", points_scene("exported/particles/frame_000001.csv"));
+  fs::create_directories(at("exported/particles"));
+  write("exported/particles/frame_000001.csv", k_points);
+  ASSERT_EQ(quick_run({at("export.toml"), "--out", at("again")}).exit_code, 0);
+  expect_refused(run_mallow({"export", at("again"), "--particles", "csv", "--out", at("exported")}),
+                 "--out: would be written over");
+  EXPECT_EQ(read_text(at("exported/particles/frame_000001.csv")), k_points);
+}
+
+TEST_F(cli_inputs, a_mesh_is_not_replaced_by_its_points) {
+  write("mesh.ply", k_tetrahedron);
+  fs::create_hard_link(at("mesh.ply"), at("same.ply"));
+  for (const std::string out : {"mesh.ply", "same.ply"})
+    expect_refused(run_mallow({"sample", at("mesh.ply"), "--count", "50", "--out", at(out)}),
+                   "--out: would be written over");
+  EXPECT_EQ(read_text(at("mesh.ply")), k_tetrahedron);
+}
+
+TEST_F(cli_inputs, no_file_is_written_twice_by_one_run) {
+  fs::create_directory(at("b"));
+  expect_refused(quick_run({scene_, "--report", at("a"), "--state-out", at("b/../a")}), "is also --report");
+  fs::create_directory(at("out"));
+  ASSERT_EQ(quick_run({scene_, "--out", at("out")}).exit_code, 0);
+  expect_refused(quick_run({scene_, "--out", at("out"), "--overwrite", "--state-out", at("out/scene.toml")}),
+                 "is also scene.toml");
+  EXPECT_EQ(
+      quick_run({scene_, "--out", at("out"), "--overwrite", "--report", at("out/report.json")}).exit_code, 0);
+}
+
+TEST_F(cli_inputs, what_was_written_by_hand_into_the_scene_of_a_run_stays) {
+  ASSERT_EQ(run({"--out", at("out"), "--frames", "1", "--checkpoint-every", "1"}).exit_code, 0);
+  const std::string by_hand = "# mine\n" + read_text(at("out/scene.toml"));
+  write("out/scene.toml", by_hand);
+  ASSERT_EQ(run_mallow({"surface", at("out")}).exit_code, 0);
+  ASSERT_EQ(run_mallow({"render", at("out"), "--no-film"}).exit_code, 0);
+  ASSERT_EQ(run_mallow({"run", "--resume", at("out")}).exit_code, 0);
+  EXPECT_EQ(read_text(at("out/scene.toml")), by_hand);
+}
+
+TEST_F(cli_inputs, standard_output_that_is_a_file_is_not_replaced) {
+  const Outcome outcome = quick_run({scene_, "--report", "/dev/stdout"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("/dev/stdout: leads to a file here"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(fs::is_symlink("/dev/stdout"));
+}
+
+}  // namespace
+}  // namespace mallow::test
