@@ -13,7 +13,7 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
   command->add_option("--out", options.output.folder, "Folder for JSON, CSV and pictures")
       ->capture_default_str();
   command->add_option("--json", options.output.json, "The JSON file, where it is to have another name");
-  command->add_option("--threads", options.threads, "Threads; 0 takes all there are")
+  command->add_option("--threads", options.threads, "Number of threads; 0: one for each processor")
       ->check(CLI::Range(0, 1024));
   command->callback([&options, run] {
     options.threads = cli::resolve_threads(options.threads);

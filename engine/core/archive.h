@@ -64,7 +64,7 @@ class UnpackingArchive {
   void operator()(bool& value) {
     std::uint8_t byte = 0;
     (*this)(byte);
-    if (byte > 1) fail(std::to_string(byte) + " is no truth value");
+    if (byte > 1) fail(std::to_string(byte) + " must be 0 or 1");
     value = byte == 1;
   }
   void operator()(Vec3& value) { array(value.data(), 3); }

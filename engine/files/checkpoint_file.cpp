@@ -100,7 +100,7 @@ class CheckpointReader {
 
   void read_beginning() {
     if (!bytes_.starts_with(k_magic.substr(0, bytes_.size())))
-      fail_file(file_, "is no checkpoint of mallow: it does not begin as one");
+      fail_file(file_, "is not a checkpoint of mallow: it does not begin like one");
     take(k_magic.size());
     const auto version = number<std::uint32_t>();
     if (version != k_version)
@@ -108,7 +108,7 @@ class CheckpointReader {
                            " of the format; this build of mallow reads " + std::to_string(k_version));
     const std::string_view order = take(sizeof k_byte_order);
     if (std::memcmp(order.data(), &k_byte_order, sizeof k_byte_order) != 0)
-      fail_file(file_, "is damaged, or was written on a machine of the other byte order");
+      fail_file(file_, "is damaged, or was written on a machine with the other byte order");
   }
 
   std::vector<Entry> read_table() {
@@ -137,11 +137,11 @@ class CheckpointReader {
       size += entry.stored;
     }
     if (size != bytes_.size())
-      fail_file(file_, std::string(size > bytes_.size() ? "is cut off" : "has something behind its end") +
-                           ": " + counted(bytes_.size(), "byte") + ", expected " + std::to_string(size));
+      fail_file(file_, std::string(size > bytes_.size() ? "is cut off" : "has bytes after its end") + ": " +
+                           counted(bytes_.size(), "byte") + ", expected " + std::to_string(size));
     ByteReader end(bytes_.substr(bytes_.size() - k_magic.size() - sizeof size), std::endian::little);
     if (*end.read<std::uint64_t>() != size || !bytes_.ends_with(k_magic))
-      fail_file(file_, "is damaged: it does not end as a checkpoint does");
+      fail_file(file_, "is damaged: it does not end like a checkpoint");
   }
 
   std::string payload(const Entry& entry) {

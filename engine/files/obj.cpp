@@ -49,8 +49,8 @@ std::uint32_t read_corner(const TextReader& text, std::string_view word, std::si
   if (index == 0)
     text.fail("f", in_quotes(word) + " is not allowed: indices begin at 1, or at -1 from the end");
   if (index < -count) {
-    text.fail("f",
-              in_quotes(word) + " is not allowed: only " + counted(vertices, "vertex line") + " stood above");
+    text.fail("f", in_quotes(word) + " is not allowed: only " + counted(vertices, "vertex line") +
+                       " come before it");
   }
   if (index < 0) return static_cast<std::uint32_t>(count + index);
   if (index > largest.index) largest = {index, text};

@@ -34,7 +34,7 @@ OffCounts read_header(TextReader& text) {
   if (const std::string_view next = ahead.word(); next.empty()) {
     require_line(text, "counts");
   } else if (next == "BINARY") {
-    ahead.fail("header", "binary OFF is not read; save it as text, or as PLY");
+    ahead.fail("header", "binary OFF is not supported; save it as text, or as PLY");
   }
   // The shortest vertex is "0 0 0" and a line end, the shortest triangle "3 0 0 0" and one.
   constexpr std::uint64_t k_vertex_bytes = 6, k_face_bytes = 8;

@@ -57,7 +57,7 @@ const PlyElement& PlyReader::require(std::string_view element) const {
   if (const PlyElement* found = header_.find(element)) return *found;
   std::string names;
   for (const PlyElement& other : header_.elements) names += (names.empty() ? "" : ", ") + other.name;
-  fail("there is no element " + in_quotes(element) + "; there is: " + (names.empty() ? "none" : names));
+  fail("there is no element " + in_quotes(element) + "; the file has: " + (names.empty() ? "none" : names));
 }
 
 std::optional<std::size_t> PlyReader::find_scalar(const PlyElement& element, std::string_view name) const {

@@ -158,7 +158,7 @@ void Problems::finish() {
   if (count_ > problems_.size())
     problems_.push_back({.file = file_,
                          .field = {},
-                         .message = "and " + std::to_string(count_ - problems_.size()) + " problems more"});
+                         .message = "and " + std::to_string(count_ - problems_.size()) + " more problems"});
   throw ConfigError(std::move(problems_));
 }
 

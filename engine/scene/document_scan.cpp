@@ -23,8 +23,8 @@ class Scan {
       if (!continues_character) ++place_.column;
       if (byte >= 0x80 && !(closing_.size() == 1 && letters_))
         return fault(
-            "a character beyond ASCII is not allowed here, only in comments and in strings of one line "
-            "behind white space");
+            "a character beyond ASCII is not allowed here, only in comments and in strings of one line that "
+            "follow white space");
       if (at_ - line_begin_ > k_max_line_bytes)
         return fault("the line is too long: at most " + std::to_string(k_max_line_bytes) +
                      " bytes are allowed");
@@ -60,14 +60,14 @@ class Scan {
       skip(closing_.size() - 1);
     } else if (c == '.') {
       if (++key_points_ > k_max_key_points)
-        return fault("keys within keys are not allowed here: at most " +
-                     std::to_string(k_max_key_points + 1));
+        return fault("keys are nested too deeply here: at most " + std::to_string(k_max_key_points + 1) +
+                     " levels are allowed");
       return count_value();
     } else if (c == '[' || c == '{') {
       key_points_ = 0;
       if (++nesting_ > k_max_nesting)
-        return fault("tables and lists within each other are not allowed here: at most " +
-                     std::to_string(k_max_nesting));
+        return fault("tables and lists are nested too deeply here: at most " + std::to_string(k_max_nesting) +
+                     " levels are allowed");
       return count_value();
     } else if (c == ']' || c == '}') {
       key_points_ = 0;

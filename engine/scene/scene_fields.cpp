@@ -50,10 +50,9 @@ FieldTable fields(SolverConfig& config) {
       {"rotation_iterations", &config.rotation_iterations, between(0, 8), "",
        "most iterations for a region's rotation in a step; it stops when converged; 0 is exact and slow"},
       {"neighbor_slack", &config.neighbor_slack, between(0, 1), "σ",
-       "how much farther neighbour lists reach than needed, so that they are kept until something moved half "
-       "of it"},
+       "extra reach of neighbour lists, which are kept until a particle has moved half of it"},
       {"instruction_level", &config.instruction_level, k_any, "",
-       "instructions that kernels use; the motion is the same", "the best of the machine"},
+       "instructions that kernels use; the motion is the same", "the best this machine has"},
   };
 }
 
@@ -76,7 +75,7 @@ FieldTable fields(SceneMaterial& material) {
       {"region_radius", &m.region_radius, k_positive, "m", "radius of the shape matching regions",
        "solver.support_radius"},
       {"region_stride", &m.region_stride, between(1, k_largest_int), "particles",
-       "one of so many owns a region; more is faster and coarser"},
+       "one region for this many particles; more is faster and coarser"},
       {"color", &material.color, between(0, 1), "", "red, green and blue in pictures, linear",
        "one of a palette"},
       {"finish", &material.finish, k_any, "", "in pictures: translucent and glossy, or opaque and dull"},
@@ -161,7 +160,7 @@ FieldTable fields(Box& box) {
 
 FieldTable fields(ScenePin& pin) {
   return {{"velocity", &pin.velocity, k_finite, "m/s",
-           "with which the particles in the box at the start move for good"}};
+           "of the particles that are in the box at the start, for the whole run"}};
 }
 
 FieldTable fields(Aabb& box) {
@@ -174,15 +173,15 @@ FieldTable fields(Aabb& box) {
 FieldTable fields(SurfaceConfig& config) {
   return {
       {"voxels", &config.voxels, between(8, 1024), "",
-       "voxels along the longest side of the particles' box, where voxel_size is left out"},
+       "voxels along the longest side of the box around the particles, if voxel_size is left out"},
       {"voxel_size", &config.voxel_size, k_positive, "m", "side of a voxel", "from voxels"},
       {"kernel_radius", &config.kernel_radius, between(1, 4), "h", "radius in which particles are blended"},
       {"particle_radius", &config.particle_radius, between(0.1, 1), "h",
        "distance of the surface from the outermost particles"},
-      {"kind", &config.kind, k_any, "", "what the surface is the zero of"},
+      {"kind", &config.kind, k_any, "", "how the surface is drawn around the particles"},
       {"joined", &config.joined, k_any, "", "one surface around all groups"},
       {"adaptivity", &config.adaptivity, between(0, 1), "voxels",
-       "what merging vertices where the surface is even may move it by"},
+       "how far merging vertices on even parts may move the surface"},
       {"smoothing", &config.smoothing, between(0, 100), "",
        "rounds that smooth the mesh and keep its volume"},
       {"memory_limit", &config.memory_limit, k_positive, "GiB", "a surface that would need more is refused"},

@@ -158,8 +158,8 @@ class SceneReader {
       const std::string& material = scene_.bodies[earlier].material;
       if (!material.empty() && material != body.material)
         problems_.add(place_of("body", i, "material"), element_path("body", i) + ".material",
-                      "'" + body.material + "' is not allowed: group '" + body.group + "' is of '" +
-                          material + "' since " + element_path("body", earlier));
+                      "'" + body.material + "' is not allowed: group '" + body.group + "' has material '" +
+                          material + "', given by " + element_path("body", earlier));
     }
   }
 

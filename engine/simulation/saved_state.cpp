@@ -128,7 +128,7 @@ void pass_kind(Archive& archive, Shapes& shapes) {
   auto kind = static_cast<std::uint8_t>(shapes.index());
   archive(kind);
   if constexpr (!Archive::k_packs) {
-    if (kind >= std::variant_size_v<Shapes>) archive.fail(std::to_string(kind) + " is no kind of shape");
+    if (kind >= std::variant_size_v<Shapes>) archive.fail(std::to_string(kind) + " is not a kind of shape");
     if (kind == 0) shapes = Plane{};
     if (kind == 1) shapes = Sphere{};
     if (kind == 2) shapes = Box{};
@@ -194,7 +194,7 @@ void require_permutation(const UnpackingArchive& archive, std::span<const std::u
   std::vector<bool> seen(values.size(), false);
   for (const std::uint32_t value : values) {
     if (value >= values.size() || seen[value])
-      archive.fail(std::to_string(value) + " is there twice, or too large");
+      archive.fail(std::to_string(value) + " appears twice or is too large");
     seen[value] = true;
   }
 }
@@ -208,17 +208,20 @@ void require_valid(const UnpackingArchive& archive, const Simulation::State& sta
   const auto require = [&](bool ok, const char* what) {
     if (!ok) archive.fail("group '" + group.name + "': " + what);
   };
-  require(group.begin == begin && group.end >= begin, "its rows do not follow those of the group before");
+  require(group.begin == begin && group.end >= begin, "its rows must follow those of the group before it");
   require(group.size() > 0 || !state.prepared, "it has no particles");
   for (const float value : {group.spacing, group.mass, group.rest_density})
-    require(std::isfinite(value) && (value > 0 || group.size() == 0), "spacing, mass or density is no such");
-  require(group.alpha >= 0 && group.alpha <= 1, "alpha is not in [0, 1]");
-  require(std::isfinite(group.mean_external) && group.mean_external >= 0, "mean acceleration is no such");
-  require(group.shape.spacing >= 0 && std::isfinite(group.shape.spacing), "spacing is no such");
+    require(std::isfinite(value) && (value > 0 || group.size() == 0),
+            "spacing, particle mass and rest density must be finite and above 0");
+  require(group.alpha >= 0 && group.alpha <= 1, "alpha must be in [0, 1]");
+  require(std::isfinite(group.mean_external) && group.mean_external >= 0,
+          "mean acceleration must be finite and 0 or above");
+  require(group.shape.spacing >= 0 && std::isfinite(group.shape.spacing),
+          "spacing of the regions must be finite and 0 or above");
   require(!(group.grew && state.prepared), "it has particles that were not prepared");
   require(group.grew || !group.keeps_reference() || sizes.references == group.size(),
-          "its reference shape has not as many particles as itself");
-  require(sizes.references <= group.size(), "its reference shape has more particles than itself");
+          "its reference shape must have as many particles as the group");
+  require(sizes.references <= group.size(), "its reference shape has more particles than the group");
   require(!group.shape.built || sizes.references > 0, "there are regions without a reference shape");
 }
 
@@ -255,7 +258,7 @@ void unpack_obstacles(const SavedState& saved, Simulation::State& state) {
     }
     checks.finish();
     if (state.near_colliders.size() != (state.is_far() ? state.colliders.size() : 0))
-      archive.fail("there are not as many relative to the origin as there are");
+      archive.fail("there must be one relative to the origin for each collider");
   });
   unpack(saved, "pins", [&](UnpackingArchive& archive) {
     pass_list(archive, state.pin_velocities, sizeof(Vec3), [&](Vec3& velocity) {
@@ -271,14 +274,15 @@ void unpack_particles(const SavedState& saved, Simulation::State& state) {
   const std::size_t n = state.groups.empty() ? 0 : state.groups.back().end;
   unpack(saved, "ids", [&](UnpackingArchive& archive) {
     unpack_column(archive, store.id);
-    if (store.size() != n) archive.fail("there are not as many as the groups have rows");
+    if (store.size() != n) archive.fail("there must be one for each particle of the groups");
     require_permutation(archive, store.id.span());
   });
   unpack(saved, "positions", [&](UnpackingArchive& archive) { archive.columns(store.position, n); });
   unpack(saved, "velocities", [&](UnpackingArchive& archive) { archive.columns(store.velocity, n); });
   unpack(saved, "pinned", [&](UnpackingArchive& archive) {
     unpack_column(archive, store.pin);
-    if (!store.pin.empty() && store.pin.size() != n) archive.fail("there are not as many as rows");
+    if (!store.pin.empty() && store.pin.size() != n)
+      archive.fail("there must be one for each particle, or none");
     for (const std::uint16_t pin : store.pin)
       if (pin > state.pin_velocities.size()) archive.fail("there is no pin " + std::to_string(pin - 1));
   });
@@ -301,7 +305,7 @@ void unpack_shapes(const SavedState& saved, const std::vector<ShapeSizes>& sizes
       build_regions(state.threads, state.level, state.region_scratch, shape);
       if (shape.region_weight.size() != sizes[g].regions)
         archive.fail("this build of mallow makes " + std::to_string(shape.region_weight.size()) +
-                     " regions of group '" + state.groups[g].name + "', and not " +
+                     " regions of group '" + state.groups[g].name + "', not " +
                      std::to_string(sizes[g].regions));
       for (Column<float>& component : shape.rotation) archive.array(component.data(), component.size());
     }
@@ -315,13 +319,13 @@ void unpack_neighbors(const SavedState& saved, Simulation::State& state) {
   unpack(saved, "cell_order", [&](UnpackingArchive& archive) {
     unpack_column(archive, sph.grid.order);
     if (!sph.grid.order.empty() && sph.grid.order.size() != n)
-      archive.fail("is not as long as there are rows");
+      archive.fail("there must be one entry for each particle, or none");
     require_permutation(archive, sph.grid.order.span());
   });
   unpack(saved, "searched", [&](UnpackingArchive& archive) {
     if (archive.remaining() == 0) return;
     if (!state.prepared || sph.neighbor_slack <= 0 || sph.grid.order.empty())
-      archive.fail("there are no lists to keep");
+      archive.fail("must be empty, as this simulation keeps no neighbour lists");
     VectorColumn searched;
     archive.columns(searched, n);
     VectorColumn by_row(n);
@@ -391,7 +395,8 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
   State& state = *simulation.state_;
   unpack(saved, "clock", [&](UnpackingArchive& archive) {
     pass_clock(archive, state);
-    if (state.step < 0 || !std::isfinite(state.time)) archive.fail("step or time is no such");
+    if (state.step < 0 || !std::isfinite(state.time))
+      archive.fail("step must be 0 or above, and time finite");
   });
   const std::vector<ShapeSizes> sizes = unpack_groups(saved, state);
   unpack_obstacles(saved, state);

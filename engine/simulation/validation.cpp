@@ -19,7 +19,7 @@ void check_optional(const char* field, const std::optional<float>& value, Checks
 void check(const Plane& plane, Checks& checks) {
   checks.vector("collider.plane.normal", plane.normal);
   if (!(plane.normal.norm() > 0))
-    checks.problem("collider.plane.normal", "(0 0 0) is not allowed: a direction");
+    checks.problem("collider.plane.normal", "(0 0 0) is not allowed: a vector other than 0");
   checks.number("collider.plane.offset", plane.offset, true, "a finite number");
 }
 
@@ -36,7 +36,7 @@ void check(const Box& box, Checks& checks) {
 }
 
 void check(const Union& shapes, Checks& checks) {
-  if (shapes.parts.empty()) checks.problem("collider.union", "no parts: at least one is needed");
+  if (shapes.parts.empty()) checks.problem("collider.union", "has no parts: at least one is needed");
   for (const Primitive& part : shapes.parts)
     std::visit([&](const auto& shape) { check(shape, checks); }, part);
 }
@@ -56,7 +56,7 @@ void check(const SolverConfig& config, Checks& checks) {
   checks.number("solver.neighbor_slack", config.neighbor_slack,
                 config.neighbor_slack >= 0 && config.neighbor_slack <= 1, k_share);
   checks.number("solver.threads", config.threads, config.threads >= 0 && config.threads <= 1024,
-                "0 (what the machine has) to 1024");
+                "0 (all processors) to 1024");
   if (config.instruction_level) check(*config.instruction_level, best_instruction_level(), checks);
 }
 
@@ -70,7 +70,7 @@ void check(InstructionLevel level, InstructionLevel best, Checks& checks) {
 }
 
 void check(const AlphaSchedule& alpha, Checks& checks) {
-  if (alpha.keys().empty()) checks.problem("material.alpha", "no keys: at least one is needed");
+  if (alpha.keys().empty()) checks.problem("material.alpha", "has no keys: at least one is needed");
   for (std::size_t k = 0; k < alpha.keys().size(); ++k) {
     const AlphaKey& key = alpha.keys()[k];
     checks.number("material.alpha", key.alpha, key.alpha >= 0 && key.alpha <= 1, k_share);
@@ -116,7 +116,7 @@ void check(const Collider& collider, Checks& checks) {
 }
 
 void check(const Body& body, Checks& checks) {
-  if (body.positions.empty()) checks.problem("body.positions", "no particles: at least one is needed");
+  if (body.positions.empty()) checks.problem("body.positions", "has no particles: at least one is needed");
   checks.number("body.spacing", body.spacing, body.spacing > 0, k_positive);
   checks.vector("body.velocity", body.velocity);
   if (!body.velocities.empty() && body.velocities.size() != body.positions.size())

@@ -120,7 +120,7 @@ TEST(checkpoint_file, of_another_version_or_byte_order_is_refused) {
   EXPECT_EQ(why_refused(folder, newer), "is of version 2 of the format; this build of mallow reads 1");
   std::reverse(turned.begin() + 12, turned.begin() + 16);
   EXPECT_NE(why_refused(folder, turned).find("other byte order"), std::string::npos);
-  EXPECT_NE(why_refused(folder, "ply\nformat ascii 1.0\n").find("is no checkpoint"), std::string::npos);
+  EXPECT_NE(why_refused(folder, "ply\nformat ascii 1.0\n").find("is not a checkpoint"), std::string::npos);
 }
 
 /// One that was made to do harm: its hashes are right.

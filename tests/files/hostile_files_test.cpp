@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(
                     std::string(600'000, 'a') + "\n",
                 4, "the header is too long: at most 1048576 bytes"},
         Hostile{"escape.ply", "ply\nformat ascii 1.0\nelement \x1b[31m 0\nend_header\n", 0,
-                "there is: ?[31m"},
+                "the file has: ?[31m"},
         Hostile{"huge.ply", huge_binary_ply("4000000000"), 9,
                 "line 3 promises 4000000000 rows of at least 12 bytes, but 64 bytes are left"},
         Hostile{"overflow.ply", huge_binary_ply("9223372036854775807"), 9,
@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "has no properties"},
         Hostile{"endless_list.ply", endless_list_ply(), 0, "4294967295 corners are not allowed"},
         Hostile{"no_vertex.ply", "ply\nformat ascii 1.0\nelement face 0\nend_header\n", 0,
-                "there is no element 'vertex'; there is: face"},
+                "there is no element 'vertex'; the file has: face"},
         Hostile{"no_z.ply",
                 "ply\nformat ascii 1.0\nelement vertex 0\nproperty int x\nproperty int y\nelement face "
                 "0\nend_header\n",
@@ -186,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Hostile{"garbage.off", garbage(), 1, "is not allowed: OFF"},
         Hostile{"four.off", "4OFF\n1 0 0\n0 0 0 0\n", 1, "'4OFF' is not allowed"},
-        Hostile{"binary.off", std::string("OFF BINARY\n\0\0\0", 14), 1, "binary OFF is not read"},
+        Hostile{"binary.off", std::string("OFF BINARY\n\0\0\0", 14), 1, "binary OFF is not supported"},
         Hostile{"huge.off", "OFF\n4000000000 1 0\n0 0 0\n", 2,
                 "4000000000 vertex rows and 1 face are promised"},
         Hostile{"huge_faces.off", "OFF\n1 9223372036854775807 0\n0 0 0\n", 2, "9223372036854775807 faces"},

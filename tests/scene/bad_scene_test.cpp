@@ -160,7 +160,8 @@ const Case k_cases[] = {
     {{.body = "material = \"jelly\"\ngroup = \"g\"",
       .rest = "[[material]]\nname = \"cream\"\n[[body]]\nmaterial = \"cream\"\ngroup = \"g\"\n"
               "box = { count = [2, 2, 2], spacing = 1.0 }"},
-     "scene.toml:12:12: body[1].material: 'cream' is not allowed: group 'g' is of 'jelly' since body[0]"},
+     "scene.toml:12:12: body[1].material: 'cream' is not allowed: group 'g' has material 'jelly', given by "
+     "body[0]"},
     // Colliders and pins.
     {{.rest = "[[collider]]\nfriction = 0.1"},
      "scene.toml:8:1: collider[0]: has no shape: exactly one of plane, sphere, box, union is needed"},
@@ -249,8 +250,8 @@ TEST_F(bad_scene, refuses_duplicate_keys_and_broken_toml_with_line_and_column) {
 
 TEST_F(bad_scene, keeps_letters_beyond_ascii_to_comments_and_strings) {
   const std::string message =
-      "a character beyond ASCII is not allowed here, only in comments and in strings of one line "
-      "behind white space";
+      "a character beyond ASCII is not allowed here, only in comments and in strings of one line that "
+      "follow white space";
   EXPECT_EQ(problems("# \"γ\n[solver] # 'ρ\nσ = 2.0\n"),
             std::vector<std::string>{"scene.toml:3:1: " + message});
   EXPECT_EQ(problems("a = \"γ\\\"γ\" γ"), std::vector<std::string>{"scene.toml:1:12: " + message});
@@ -284,7 +285,7 @@ TEST_F(bad_scene, limits_what_is_within_what) {
     for (std::size_t i = 1; i < count; ++i) text += ".a";
     return text;
   };
-  const std::string too_many_keys = "keys within keys are not allowed here: at most 9";
+  const std::string too_many_keys = "keys are nested too deeply here: at most 9 levels are allowed";
   // So many that what goes into them by recursion would leave no stack.
   for (const std::size_t count : {std::size_t{10}, std::size_t{400'000}}) {
     EXPECT_EQ(problems(keys(count) + " = 1\n"),
@@ -294,9 +295,10 @@ TEST_F(bad_scene, limits_what_is_within_what) {
     // The last quotes belong to the string, which ends with the three that stand before the comma.
     EXPECT_EQ(problems("x = { k = \"\"\"k\"\"\"\"\", " + keys(count) + " = 1 }\n"),
               std::vector<std::string>{"scene.toml:1:39: " + too_many_keys});
-    EXPECT_EQ(problems("x = " + std::string(7 + count, '[')),
-              std::vector<std::string>{
-                  "scene.toml:1:21: tables and lists within each other are not allowed here: at most 16"});
+    EXPECT_EQ(
+        problems("x = " + std::string(7 + count, '[')),
+        std::vector<std::string>{
+            "scene.toml:1:21: tables and lists are nested too deeply here: at most 16 levels are allowed"});
   }
   EXPECT_EQ(
       problems(keys(9) + " = 1\n").back(),
@@ -371,7 +373,7 @@ TEST_F(bad_scene, lists_no_more_problems_than_anyone_reads) {
   for (int i = 0; i < 1500; ++i) text += "unknown_" + std::to_string(i) + " = 1\n";
   const auto found = problems(text);
   ASSERT_EQ(found.size(), 1001u);
-  EXPECT_EQ(found.back(), "scene.toml: and 500 problems more");
+  EXPECT_EQ(found.back(), "scene.toml: and 500 more problems");
 }
 
 TEST_F(bad_scene, cannot_be_a_folder_or_a_missing_file) {

@@ -37,7 +37,7 @@ CachedRun open_cached_run(const CachedRunOptions& options, const std::string& se
   nlohmann::ordered_json report = read_report(cache.report_file());
   std::vector<float> spacings = group_spacings(report, cache.report_file());
   if (spacings.size() != group_materials(scene).size()) {
-    throw IoError({cache.report_file().string(), 0, 0, "groups", "does not have the groups of scene.toml"});
+    throw IoError({cache.report_file().string(), 0, 0, "groups", "does not list the groups of scene.toml"});
   }
   if (writes) Cache::refuse_inputs(options.folder, InputFiles(scene), "", false);
   return {std::move(cache), std::move(scene), std::move(report), std::move(spacings),

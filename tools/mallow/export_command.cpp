@@ -196,7 +196,7 @@ void add_export_command(CLI::App& app) {
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"vdb", "vtp", "csv"}));
   command->add_option("--out", options->out, "Folder for surface/ and particles/; DIR/export if left out");
-  command->add_option("--threads", options->threads, "Threads; 0 takes all there are")
+  command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
       ->check(CLI::Range(0, 1024));
   command->footer(
       "Velocities: _VELOCITY in glb, Velocity in vtp, velocities in usda, v in vdb, vx vy vz in csv; "

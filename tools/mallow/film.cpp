@@ -67,7 +67,7 @@ void require_all_pictures(const Cache& cache) {
 void add_film_options(CLI::App& command, FilmOptions& options) {
   CLI::Option* file =
       command.add_option("--film", options.file, "MP4 file for the film, instead of film.mp4 in the folder");
-  command.add_flag("--no-film", options.no_film, "No film")->excludes(file);
+  command.add_flag("--no-film", options.no_film, "Make no film")->excludes(file);
 }
 
 void check_film(const FilmOptions& options) {
@@ -76,9 +76,10 @@ void check_film(const FilmOptions& options) {
     throw ConfigError("--film", "'" + options.file + "' is not allowed: a file that ends in .mp4");
   check_writable(options.file);
   if (is_installed(k_ffmpeg)) return;
-  std::fprintf(stderr,
-               "mallow: %s will not be made, because the program ffmpeg is not installed; all else is\n",
-               options.file.c_str());
+  std::fprintf(
+      stderr,
+      "mallow: %s will not be made, because the program ffmpeg is not installed; everything else will be\n",
+      options.file.c_str());
 }
 
 void check_pictures(const FilmOptions& options, const Cache& cache, int last) {

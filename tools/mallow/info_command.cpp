@@ -74,12 +74,12 @@ void info(const InfoOptions& options) {
 
 void add_info_command(CLI::App& app) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = app.add_subcommand("info", "Say what would run: particles, neighbours, phases, memory");
+  CLI::App* command =
+      app.add_subcommand("info", "Show what would run: particles, neighbours, phases, memory");
   add_scene_options(*command, options->scene);
-  command->add_option("--threads", options->threads, "Threads; 0 takes all there are")
+  command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
       ->check(CLI::Range(0, 1024));
-  command->add_flag("--print", options->print,
-                    "Print the scene with every value in it, defaults too, and nothing else");
+  command->add_flag("--print", options->print, "Print only the scene, with every value in it, defaults too");
   command->callback([options] { info(*options); });
 }
 

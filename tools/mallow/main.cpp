@@ -14,7 +14,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
   using namespace mallow::cli;
   CLI::App app("mallow: fast animation of viscoelastic materials", "mallow");
   app.set_version_flag("--version", MALLOW_VERSION);
-  app.footer("Exit codes: 0 done, 1 a run failed on the way, 2 the input cannot be used.");
+  app.footer("Exit codes: 0 done, 1 the run failed, 2 the input is wrong.");
   add_run_command(app);
   add_info_command(app);
   add_sample_command(app);

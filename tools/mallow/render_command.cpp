@@ -63,11 +63,13 @@ void render_cache(const RenderOptions& options) {
 void add_render_command(CLI::App& app) {
   const auto options = std::make_shared<RenderOptions>();
   CLI::App* command =
-      app.add_subcommand("render", "Take the pictures of an earlier run again, and make its film");
+      app.add_subcommand("render", "Render the pictures of an earlier run again, and make its film");
   command->add_option("DIR", options->folder, "The --out folder of a run")->required();
-  command->add_option("--set", options->overrides, "Change how pictures are taken: render.key=value")
+  command
+      ->add_option("--set", options->overrides,
+                   "Change how pictures look: render.key=value, or collider[0].visible=false")
       ->allow_extra_args(false);
-  command->add_option("--threads", options->threads, "Threads; 0 takes all there are")
+  command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
       ->check(CLI::Range(0, 1024));
   add_film_options(*command, options->film);
   command->callback([options] { render_cache(*options); });

@@ -157,7 +157,7 @@ void take_changes(const Scene& now, Scene& scene) {
   }
   if (!said.empty())
     std::fprintf(stderr,
-                 "mallow: warning: %s has changed since the run began; its motion goes on as it began:%s\n",
+                 "mallow: warning: %s has changed since the run began; the motion continues as it began:%s\n",
                  now.file.c_str(), said.c_str());
   scene.surface = now.surface;
   scene.render = now.render;
@@ -274,36 +274,41 @@ void add_run_command(CLI::App& app) {
       app.add_subcommand("run", "Simulate a scene; write particles, surfaces, pictures and a film");
   add_scene_options(*command, options->scene);
   command->get_option("SCENE")->required(false);
-  CLI::Option* frames =
-      command
-          ->add_option("--frames", options->frames, "Frames after frame 0, instead of the scene's run.frames")
-          ->check(CLI::NonNegativeNumber);
-  command->add_option("--steps", options->steps, "Exactly this many steps, instead of frames")
+  CLI::Option* frames = command
+                            ->add_option("--frames", options->frames,
+                                         "Number of frames after frame 0, instead of the scene's run.frames")
+                            ->check(CLI::NonNegativeNumber);
+  command->add_option("--steps", options->steps, "Number of steps to take, instead of frames")
       ->check(CLI::NonNegativeNumber)
       ->excludes(frames);
   CLI::Option* out =
-      command->add_option("--out", options->out, "Folder for the frames; without it none are written");
-  CLI::Option* resume = command
-                            ->add_option("--resume", options->resume,
-                                         "Go on with the run in this folder, to the same bits as if it had "
-                                         "never ended; with SCENE, tells what differs from it")
-                            ->excludes(out);
+      command->add_option("--out", options->out, "Folder for the frames; without it no frames are written");
+  CLI::Option* resume =
+      command
+          ->add_option("--resume", options->resume,
+                       "Continue the run in this folder; the result is the same to the last bit "
+                       "as without the break. With SCENE, list what differs from it")
+          ->excludes(out);
   command
       ->add_option("--checkpoint-every", options->checkpoint_every,
-                   "Frames between checkpoints, from which a run can be resumed")
+                   "Frames from one checkpoint to the next; a run can be resumed from a checkpoint")
       ->check(CLI::PositiveNumber);
   command
-      ->add_option("--checkpoint-seconds", options->checkpoint_seconds,
-                   "Seconds between checkpoints, 60 where no --checkpoint-every is given; 0: none by time")
+      ->add_option(
+          "--checkpoint-seconds", options->checkpoint_seconds,
+          "Seconds from one checkpoint to the next; 0: none by time. Default: 60, or none by time with "
+          "--checkpoint-every")
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--threads", options->threads,
-                   "Threads; 0 takes all there are. The result does not depend on it")
+                   "Number of threads; 0: one for each processor. The result does not depend on it")
       ->check(CLI::Range(0, 1024));
-  command->add_option("--state-out", options->state_out, "CSV file for the state after the last step");
-  command->add_option("--report", options->report, "JSON file for what ran and how long it took");
-  command->add_flag("--no-surface", options->no_surface, "No surfaces; pictures show the particles");
-  CLI::Option* no_images = command->add_flag("--no-images", options->no_images, "No pictures and no film");
+  command->add_option("--state-out", options->state_out,
+                      "Write the state after the last step to this CSV file");
+  command->add_option("--report", options->report, "Write what ran and how long it took to this JSON file");
+  command->add_flag("--no-surface", options->no_surface, "Make no surfaces; pictures show the particles");
+  CLI::Option* no_images =
+      command->add_flag("--no-images", options->no_images, "Make no pictures and no film");
   add_film_options(*command, options->film);
   // A film is made of pictures.
   command->get_option("--film")->excludes(no_images);

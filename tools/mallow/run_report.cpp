@@ -154,7 +154,7 @@ nlohmann::ordered_json read_report(const std::filesystem::path& file) {
     throw IoError({file.string(), 0, 0, "", "is too large for a report: at most 256 MiB are allowed"});
   const auto limit = [&](int depth, nlohmann::ordered_json::parse_event_t, nlohmann::ordered_json&) {
     if (depth > k_most_levels)
-      throw IoError({file.string(), 0, 0, "", "has lists within lists: at most 16 levels are allowed"});
+      throw IoError({file.string(), 0, 0, "", "is nested too deeply: at most 16 levels are allowed"});
     return true;
   };
   try {

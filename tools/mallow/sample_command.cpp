@@ -82,19 +82,19 @@ void add_sample_command(CLI::App& app) {
   const auto options = std::make_shared<SampleOptions>();
   CLI::App* command = app.add_subcommand("sample", "Fill a closed mesh with points");
   command->add_option("MESH", options->mesh, "Mesh file (OBJ, PLY, STL or OFF)")->required();
-  CLI::Option* count =
-      command->add_option("--count", options->count, "Wanted number of points, met within 1%");
+  CLI::Option* count = command->add_option("--count", options->count, "Number of points, met within 1%");
   CLI::Option* spacing =
       command->add_option("--spacing", options->spacing, "Distance of neighbouring points");
   count->excludes(spacing);
   command->add_option("--size", options->size, "Scale the mesh so that its longest side is this long");
   command->add_option("--center", options->center, "Move the middle of its bounds there: X Y Z")->expected(3);
-  command->add_option("--radius", options->radius, "Say how many points are within this distance of a point");
-  command->add_option("--out", options->out, "File for the points, .csv or .ply");
-  command->add_option("--threads", options->threads, "Threads; 0 takes all there are")
+  command->add_option("--radius", options->radius,
+                      "Print the mean number of points within this distance of a point");
+  command->add_option("--out", options->out, "Write the points to this file, .csv or .ply");
+  command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
       ->check(CLI::Range(0, 1024));
   command->callback([options] {
-    if (!options->count && !options->spacing) throw ConfigError("", "give one of --count and --spacing");
+    if (!options->count && !options->spacing) throw ConfigError("", "--count or --spacing is needed");
     sample_mesh(*options);
   });
 }

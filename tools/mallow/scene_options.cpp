@@ -24,8 +24,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
       ->check(CLI::IsMember(names));
   command.add_flag(
       "--allow-outside-paths", options.allow_outside_paths,
-      "Meshes and points that the scene names may lie outside of its folder; give it for scenes that you "
-      "trust");
+      "Allow the scene to name meshes and points outside its folder; only for scenes that you trust");
 }
 
 Scene read_scene(const SceneOptions& options) {

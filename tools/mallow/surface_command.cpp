@@ -49,7 +49,7 @@ void add_surface_command(CLI::App& app) {
   command->add_option("DIR", options->folder, "The --out folder of a run")->required();
   command->add_option("--set", options->overrides, "Change how surfaces are drawn: surface.key=value")
       ->allow_extra_args(false);
-  command->add_option("--threads", options->threads, "Threads; 0 takes all there are")
+  command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
       ->check(CLI::Range(0, 1024));
   command->callback([options] { draw_surfaces(*options); });
 }

@@ -50,7 +50,8 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh) {
 // Without a number of threads: with one, Embree caps TBB's threads for the whole process, OpenVDB's too, and
 // TBB prints a warning wherever something asks for more.
 Bodies::Bodies() : device_(rtcNewDevice("set_affinity=0")) {
-  if (!device_) throw Error("Embree gives no device: error " + std::to_string(rtcGetDeviceError(nullptr)));
+  if (!device_)
+    throw Error("Embree cannot create a device: error " + std::to_string(rtcGetDeviceError(nullptr)));
 }
 
 void Bodies::check() const {

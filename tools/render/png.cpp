@@ -27,7 +27,7 @@ struct Writer {
   explicit Writer(std::string* file)
       : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, file, fail, nullptr)) {
     if (png != nullptr) info = png_create_info_struct(png);
-    if (info == nullptr) throw Error("libpng gives no memory");
+    if (info == nullptr) throw Error("libpng cannot allocate memory");
   }
   ~Writer() { png_destroy_write_struct(&png, &info); }
   Writer(const Writer&) = delete;

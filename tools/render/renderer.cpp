@@ -29,7 +29,7 @@ void check(const Camera& camera) {
   Checks checks;
   checks.vector("camera.eye", camera.eye);
   checks.vector("camera.target", camera.target);
-  if (camera.eye == camera.target) checks.problem("camera.target", "is where the eye is");
+  if (camera.eye == camera.target) checks.problem("camera.target", "must not be where camera.eye is");
   const float angle = camera.field_of_view;
   checks.number("camera.field_of_view", angle, angle >= 1 && angle <= 120, "1 to 120 degrees");
   checks.finish();
@@ -202,7 +202,7 @@ Renderer::Renderer(const RenderConfig& config, int threads) {
   checks.number("render.width", config.width, config.width >= 16 && config.width <= 8192, "16 to 8192");
   checks.number("render.height", config.height, config.height >= 16 && config.height <= 8192, "16 to 8192");
   checks.number("render.samples", config.samples, config.samples >= 1 && config.samples <= 256, "1 to 256");
-  checks.number("threads", threads, threads >= 0, "0 (all of the machine) or more");
+  checks.number("threads", threads, threads >= 0, "0 (all processors) or more");
   checks.finish();
   state_ = std::make_unique<State>(config, threads);
 }
