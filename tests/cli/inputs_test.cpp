@@ -109,7 +109,7 @@ TEST_F(cli_inputs, no_file_is_written_twice_by_one_run) {
   fs::create_directory(at("out"));
   ASSERT_EQ(quick_run({scene_, "--out", at("out")}).exit_code, 0);
   expect_refused(quick_run({scene_, "--out", at("out"), "--overwrite", "--state-out", at("out/scene.toml")}),
-                 "is also scene.toml");
+                 "is also the run's scene.toml");
   EXPECT_EQ(
       quick_run({scene_, "--out", at("out"), "--overwrite", "--report", at("out/report.json")}).exit_code, 0);
 }
@@ -122,6 +122,15 @@ TEST_F(cli_inputs, what_was_written_by_hand_into_the_scene_of_a_run_stays) {
   ASSERT_EQ(run_mallow({"render", at("out"), "--no-film"}).exit_code, 0);
   ASSERT_EQ(run_mallow({"run", "--resume", at("out")}).exit_code, 0);
   EXPECT_EQ(read_text(at("out/scene.toml")), by_hand);
+
+  // What would not be true of the run does not stay, and that is said.
+  std::string untrue = by_hand;
+  untrue.replace(untrue.find("alpha = 0.7"), 11, "alpha = 0.5");
+  write("out/scene.toml", untrue);
+  const Outcome outcome = run_mallow({"run", "--resume", at("out")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("scene.toml is put back"), std::string::npos) << outcome.err;
+  EXPECT_NE(read_text(at("out/scene.toml")).find("alpha = 0.7"), std::string::npos);
 }
 
 TEST_F(cli_inputs, standard_output_that_is_a_file_is_not_replaced) {

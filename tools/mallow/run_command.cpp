@@ -69,9 +69,10 @@ void check_apart(const RunOptions& options) {
     throw ConfigError(name, "'" + file.string() + "' is also " + other->second + "; give another name");
   };
   if (!folder.empty())
-    for (const char* name : Cache::k_single_files) add(std::filesystem::path(folder) / name, name);
-  add(options.report, "--report", "report.json");
-  add(options.film.file, "--film", "film.mp4");
+    for (const char* name : Cache::k_single_files)
+      add(std::filesystem::path(folder) / name, std::string("the run's ") + name);
+  add(options.report, "--report", "the run's report.json");
+  add(options.film.file, "--film", "the run's film.mp4");
   add(options.state_out, "--state-out");
 }
 
@@ -147,14 +148,18 @@ bool counts_when_resumed(const std::string& key) {
 }
 
 /// Takes over what counts of a scene that is not the checkpoint's any more, and says on stderr what differs.
-void take_changes(const Scene& now, Scene& scene) {
+/// own: it is the scene.toml of the run, which then says again how the run began.
+void take_changes(const Scene& now, bool own, Scene& scene) {
   std::string said;
+  bool put_back = false;
   for (const SceneChange& change : scene_changes(scene, now)) {
     if (change.key == "run.frames") continue;  // to go on longer is no change of what is there
     const auto text = [](const std::string& value) { return value.empty() ? "left out" : value; };
     said += "\n  " + change.key + " is " + text(change.now) + ", was " + text(change.before) +
             (counts_when_resumed(change.key) ? ": from the next frame on" : ": without effect");
+    put_back = put_back || (own && !counts_when_resumed(change.key));
   }
+  if (put_back) said += "\n  scene.toml is put back to what has an effect";
   if (!said.empty())
     std::fprintf(stderr,
                  "mallow: warning: %s has changed since the run began; the motion continues as it began:%s\n",
@@ -172,11 +177,13 @@ Run resume(const RunOptions& options, int threads) {
   Cache cache = Cache::open_to_resume(options.resume);
   CheckpointedRun saved = load_newest_checkpoint(cache, threads);
   SceneOptions now = options.scene;
-  if (now.file.empty()) now.file = cache.scene_file().string();
+  std::error_code unknown;
+  const bool own = now.file.empty() || std::filesystem::equivalent(now.file, cache.scene_file(), unknown);
+  if (own) now.file = cache.scene_file().string();
   now.allow_outside_paths = true;  // what it names is not read: the particles are there
   const Scene scene_now = read_scene(now);
   refuse_inputs(options, scene_now);
-  take_changes(cache.moved_here(scene_now), saved.scene);
+  take_changes(cache.moved_here(scene_now), own, saved.scene);
   if (options.frames) saved.scene.run.frames = *options.frames;
 
   Run run{std::move(saved.scene), saved.plan, std::move(saved.report), std::move(saved.simulation),
