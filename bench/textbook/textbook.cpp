@@ -130,13 +130,15 @@ double Textbook::limited_time_step(double max_velocity) const {
   for (const Group& group : groups_) {
     const Material& material = group.material;
     time_step = std::min(time_step, sigma * sigma * group.rest_density / (25 * material.viscosity));
-    // Of the pressure as it acts: α k Δt² <= 0.1 σ² + 800 α μ Δt/ρ0, and at most 1.4 σ².
+    // x of pressure and a of shape matching as they act: x <= 1.4, 2 x + a <= 3.4, and x calmed by viscosity.
     const double share = groups_.size() > 1 ? 1 : group.alpha;
-    const double pressure = share * material.pressure_coefficient / (sigma * sigma);
-    if (pressure == 0) continue;
-    const double calm = 800 * share * material.viscosity / group.rest_density / (sigma * sigma);
-    time_step = std::min({time_step, (calm + std::sqrt(calm * calm + 0.4 * pressure)) / (2 * pressure),
-                          std::sqrt(1.4 / pressure)});
+    const double x = share * material.pressure_coefficient / (sigma * sigma);
+    if (x == 0) continue;
+    const double y = 800 * share * material.viscosity / group.rest_density / (sigma * sigma);
+    const double a = (1 - group.alpha) / (double{config_.time_step} *
+                                          double{material.elastic_time_step.value_or(config_.time_step)});
+    time_step = std::min({time_step, (y + std::sqrt(y * y + 0.2 * x)) / (2 * x), std::sqrt(1.4 / x),
+                          std::sqrt(3.4 / (2 * x + a))});
   }
   return time_step;
 }

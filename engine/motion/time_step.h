@@ -28,10 +28,11 @@ struct TimeStepLimits {
   float time_step;       ///< Δt0 [s]
   float support_radius;  ///< σ [m]
   bool acoustic;         ///< the limits of `pressures` count
-  /// Of each group: pressure and viscosity as they act, α k or k where other groups are pushed, and α μ/ρ0.
+  /// Of each group, as it acts.
   struct Pressure {
-    float coefficient;          ///< [m²/s²]
-    float kinematic_viscosity;  ///< [m²/s]
+    float coefficient;          ///< α k, or k where it pushes other groups [m²/s²]
+    float kinematic_viscosity;  ///< α μ/ρ0, or μ/ρ0 likewise [m²/s]
+    float stiffness;            ///< (1 − α)/(Δt0 Δt_SM) [1/s²]
   };
   std::span<const Pressure> pressures;
   float viscous_time;  ///< smallest σ² ρ0/μ [s]; infinite without viscosity

@@ -63,10 +63,7 @@ Energy Simulation::energy() {
   std::vector<Vec> pull;
   for (const Group& group : s.groups) {
     const double mass = static_cast<double>(group.mass);
-    const double dt0 = static_cast<double>(s.config.time_step);
-    const double elastic_step =
-        static_cast<double>(group.material.elastic_time_step.value_or(s.config.time_step));
-    const double stiffness = (1 - static_cast<double>(group.alpha)) / (dt0 * elastic_step);
+    const double stiffness = static_cast<double>(s.stiffness(group));
     const bool is_elastic = group.matches_shape() && group.shape.built;
     if (is_elastic) energy.elastic += stiffness * mass * match(s, group, pull);
     for (std::size_t row = group.begin; row < group.end; ++row) {

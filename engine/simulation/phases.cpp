@@ -28,7 +28,8 @@ TimeStepLimits limits(Simulation::State& state) {
     // Other groups feel the whole pressure, whatever this one's alpha.
     const float share = state.groups.size() > 1 ? 1.0f : group.alpha;
     state.pressures.push_back({.coefficient = share * material.pressure_coefficient,
-                               .kinematic_viscosity = share * material.viscosity / group.rest_density});
+                               .kinematic_viscosity = share * material.viscosity / group.rest_density,
+                               .stiffness = state.stiffness(group)});
     if (material.viscosity > 0)
       limits.viscous_time = std::min(limits.viscous_time, limits.support_radius * limits.support_radius *
                                                               group.rest_density / material.viscosity);
@@ -163,14 +164,13 @@ float choose_time_step(Simulation::State& state, StepReport& report) {
 void move_groups(Simulation::State& state, float time_step) {
   const SolverConfig& config = state.config;
   for (Group& group : state.groups) {
-    const float elastic_time_step = group.material.elastic_time_step.value_or(config.time_step);
     const bool measure = (state.step + 1) % config.update_interval == 0 && group.keeps_reference();
     const MotionInput input{
         .begin = group.begin,
         .end = group.end,
         .time_step = time_step,
         .alpha = group.alpha,
-        .elastic_factor = (1.0f - group.alpha) * time_step / (config.time_step * elastic_time_step),
+        .elastic_factor = time_step * state.stiffness(group),
         .gravity = config.gravity,
         .sph_acceleration = state.sph_ran && group.alpha > 0 ? &state.sph.acceleration : nullptr,
         .cross_group = state.cross_group(),

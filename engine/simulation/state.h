@@ -92,6 +92,11 @@ struct Simulation::State {
 
   /// Some acceleration of SPH counts: pairs within a group that is not purely elastic, or between groups.
   bool needs_sph() const;
+  /// Of a group's pull towards its goals, (1 − α)/(Δt0 Δt_SM) [1/s²]. [TK eq. 13]
+  float stiffness(const Group& group) const {
+    return (1.0f - group.alpha) /
+           (config.time_step * group.material.elastic_time_step.value_or(config.time_step));
+  }
   const VectorColumn* cross_group() const {
     return sph_ran && groups.size() > 1 ? &sph.cross_group : nullptr;
   }

@@ -106,7 +106,7 @@ TEST(contact, friction_takes_no_more_than_what_the_step_has_not_turned_round) {
 }
 
 TEST(time_step, is_the_full_one_for_slow_particles_and_0_999_of_a_radius_for_fast_ones) {
-  const TimeStepLimits::Pressure stiff[] = {{1e6f, 0}};
+  const TimeStepLimits::Pressure stiff[] = {{1e6f, 0, 0}};
   const TimeStepLimits limits{
       .time_step = 0.15f, .support_radius = 2, .acoustic = false, .pressures = stiff, .viscous_time = 0.001f};
   EXPECT_DOUBLE_EQ(limited_time_step(limits, 0), static_cast<double>(0.15f));
@@ -114,20 +114,23 @@ TEST(time_step, is_the_full_one_for_slow_particles_and_0_999_of_a_radius_for_fas
   EXPECT_DOUBLE_EQ(limited_time_step(limits, 100), 0.999 * 2 / 100);
 }
 
-TEST(time_step, acoustic_limit_is_that_of_pressure_as_viscosity_calms_it_and_of_viscous_diffusion) {
-  TimeStepLimits::Pressure pressure[] = {{1, 0}, {400, 0}, {0, 0}};
+TEST(time_step,
+     acoustic_limit_is_that_of_pressure_as_viscosity_calms_it_beside_elasticity_and_of_viscous_diffusion) {
+  TimeStepLimits::Pressure pressure[] = {{1, 0, 0}, {400, 0, 0}, {0, 0, 1e6f}};
   TimeStepLimits limits{.time_step = 0.15f,
                         .support_radius = 2,
                         .acoustic = true,
                         .pressures = pressure,
                         .viscous_time = std::numeric_limits<float>::infinity()};
-  // α k Δt² = 0.1 σ²
-  EXPECT_DOUBLE_EQ(limited_time_step(limits, 6), std::sqrt(0.1 * 4 / 400));
+  // α k Δt² = 0.05 σ²
+  EXPECT_NEAR(limited_time_step(limits, 6), std::sqrt(0.05 * 4 / 400), 1e-15);
   pressure[1].kinematic_viscosity = 0.01f;
   const double step = limited_time_step(limits, 6);
-  EXPECT_NEAR(400 * step * step, 0.1 * 4 + 800 * 0.01 * step, 1e-6);
+  EXPECT_NEAR(400 * step * step, 0.05 * 4 + 800 * 0.01 * step, 1e-6);
   pressure[1].kinematic_viscosity = 1;
   EXPECT_DOUBLE_EQ(limited_time_step(limits, 6), std::sqrt(1.4 * 4 / 400));
+  pressure[1].stiffness = 150;
+  EXPECT_NEAR(limited_time_step(limits, 6), std::sqrt(3.4 / (2 * 100 + 150)), 1e-15);
   limits.viscous_time = 0.4f;
   EXPECT_DOUBLE_EQ(limited_time_step(limits, 6), static_cast<double>(0.4f) / 25);
 }

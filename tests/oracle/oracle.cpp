@@ -263,7 +263,11 @@ double Oracle::time_step(double max_velocity) const {
       const double share = groups_.size() > 1 ? 1 : group.alpha;
       const double a = share * material.pressure_coefficient / (sigma * sigma);
       const double b = 800 * share * material.viscosity / group.rest_density / (sigma * sigma);
-      if (a > 0) dt = std::min({dt, (b + std::sqrt(b * b + 0.4 * a)) / (2 * a), std::sqrt(1.4 / a)});
+      const double dt_sm = material.elastic_time_step.value_or(config_.time_step);
+      const double pull = (1 - group.alpha) / (longest * dt_sm);
+      if (a > 0)
+        dt = std::min({dt, (b + std::sqrt(b * b + 0.2 * a)) / (2 * a), std::sqrt(1.4 / a),
+                       std::sqrt(3.4 / (2 * a + pull))});
     }
   }
   if (!(dt >= longest / 1000)) throw std::runtime_error("the time step would fall below a thousandth");

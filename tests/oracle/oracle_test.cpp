@@ -278,8 +278,8 @@ TEST(oracle, time_step_is_bounded_by_support_radius_sound_and_viscosity) {
   EXPECT_NEAR(bounded(16, 0.5f, 0, false, 1), 0.15f, 1e-15);
   EXPECT_NEAR(bounded(16, 0.5f, 20, false, 1), 0.999 * 2 / 20, 1e-15);
   EXPECT_NEAR(bounded(16, 0.5f, 20, false, 0), 0.15f, 1e-15);
-  EXPECT_NEAR(bounded(400, 0, 3, true, 1), std::sqrt(0.1 * 4 / 400), 1e-15);
-  EXPECT_NEAR(bounded(400, 0, 3, true, 0.25f), std::sqrt(0.1 * 4 / 100), 1e-15);
+  EXPECT_NEAR(bounded(400, 0, 3, true, 1), std::sqrt(0.05 * 4 / 400), 1e-15);
+  EXPECT_NEAR(bounded(400, 0, 3, true, 0.25f), std::sqrt(0.05 * 4 / 100), 1e-15);
   EXPECT_NEAR(bounded(400, 0.5f, 3, true, 1), std::sqrt(1.4 * 4 / 400), 1e-15);
   EXPECT_NEAR(bounded(16, 20, 0, true, 1), 4 / (25 * 20.0), 1e-15);
   EXPECT_NEAR(bounded(16, 20, 3, true, 0), 0.15f, 1e-15);
