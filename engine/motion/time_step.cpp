@@ -95,4 +95,15 @@ double limited_time_step(const TimeStepLimits& limits, double max_velocity) {
   return step;
 }
 
+double steps_until(double left, double longest) {
+  // Δt0 is a float, and what is asked for may be a decimal: they differ by 6e-8 of either.
+  constexpr double k_rounding = 1e-6;
+  return std::max(1.0, std::ceil(left / longest * (1 - k_rounding)));
+}
+
+float share_of(double left, double steps) {
+  // Contact divides by Δt: a time so short that no float holds it still is a step.
+  return std::max(static_cast<float>(left / steps), std::numeric_limits<float>::min());
+}
+
 }  // namespace mallow

@@ -40,4 +40,11 @@ struct TimeStepLimits {
 /// Δt of model section 3.
 double limited_time_step(const TimeStepLimits& limits, double max_velocity);
 
+/// The fewest equal steps of at most `longest` seconds that `left` seconds take, at least 1. A step may be
+/// longer than `longest` by a millionth: what rounding makes of a time that a whole number of steps fills
+/// must not cost one more.
+double steps_until(double left, double longest);
+/// The length of each of so many equal steps: what they share evenly leaves no sliver for the last.
+float share_of(double left, double steps);
+
 }  // namespace mallow

@@ -143,8 +143,10 @@ void call_force(Simulation::State& state) {
               {a.x(), n, a.stride()});
 }
 
-float choose_time_step(Simulation::State& state, StepReport& report) {
-  report.time_step = static_cast<double>(state.config.time_step);
+namespace {
+
+/// The longest step that velocities and accelerations allow.
+float longest_time_step(Simulation::State& state, StepReport& report) {
   if (!state.sph_ran) return state.config.time_step;
   const Fastest fastest =
       fastest_particle(state.store, state.config.time_step, state.sph.acceleration, state.config.gravity,
@@ -157,8 +159,28 @@ float choose_time_step(Simulation::State& state, StepReport& report) {
     refuse_short_step(state, step, velocity, fastest.row);
   report.max_velocity = velocity;
   report.limited = static_cast<float>(step) < state.config.time_step;
-  report.time_step = static_cast<double>(static_cast<float>(step));
   return static_cast<float>(step);
+}
+
+}  // namespace
+
+void Simulation::State::require_ahead(double end) const {
+  if (end > time) return;
+  std::ostringstream text;
+  text << end << " is not allowed: a time after the present one, " << time << " s";
+  throw ConfigError("end", text.str());
+}
+
+ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& report) {
+  float time_step = longest_time_step(state, report);
+  bool lands = false;
+  if (const double left = end - state.time; std::isfinite(left)) {
+    const double steps = steps_until(left, static_cast<double>(time_step));
+    time_step = share_of(left, steps);
+    lands = steps == 1;
+  }
+  report.time_step = static_cast<double>(time_step);
+  return {time_step, lands ? end : state.time + report.time_step};
 }
 
 void move_groups(Simulation::State& state, float time_step) {
@@ -194,13 +216,13 @@ void move_groups(Simulation::State& state, float time_step) {
   }
 }
 
-void finish_step(Simulation::State& state, float time_step) {
+void finish_step(Simulation::State& state, const ChosenStep& step) {
   state.store.position.swap(state.store.next_position);
   state.store.velocity.swap(state.store.next_velocity);
-  move_colliders(static_cast<double>(time_step), state.colliders);
-  move_colliders(static_cast<double>(time_step), state.near_colliders);
-  state.time += static_cast<double>(time_step);
-  state.last_time_step = static_cast<double>(time_step);
+  move_colliders(static_cast<double>(step.time_step), state.colliders);
+  move_colliders(static_cast<double>(step.time_step), state.near_colliders);
+  state.time = step.end;
+  state.last_time_step = static_cast<double>(step.time_step);
   ++state.step;
 }
 

@@ -31,8 +31,9 @@ const Preset& preset(Quality quality) {
   return quality == Quality::realtime ? k_realtime : quality == Quality::balanced ? k_balanced : k_accurate;
 }
 
-/// Voxels that a surface can have along its longest side.
+/// Voxels that a surface can have along its longest side, and along a spacing.
 constexpr int k_fewest_voxels = 8, k_most_voxels = 1024;
+constexpr float k_fewest_per_spacing = 0.5f, k_most_per_spacing = 16;
 
 }  // namespace
 
@@ -86,8 +87,11 @@ Material with_quality(const Material& material, const SolverConfig& config, Qual
 SurfaceConfig with_quality(const SurfaceConfig& config, Quality quality) {
   const Preset& p = preset(quality);
   SurfaceConfig result = config;
-  result.voxels = std::clamp(static_cast<int>(std::lround(p.voxels * static_cast<float>(config.voxels))),
-                             k_fewest_voxels, k_most_voxels);
+  result.voxels_per_spacing =
+      std::clamp(p.voxels * config.voxels_per_spacing, k_fewest_per_spacing, k_most_per_spacing);
+  if (config.voxels)
+    result.voxels = std::clamp(static_cast<int>(std::lround(p.voxels * static_cast<float>(*config.voxels))),
+                               k_fewest_voxels, k_most_voxels);
   if (config.voxel_size) result.voxel_size = *config.voxel_size / p.voxels;
   return result;
 }

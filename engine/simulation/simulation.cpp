@@ -1,11 +1,15 @@
+#include <limits>
+
+#include "core/checks.h"
 #include "simulation/state.h"
 
 namespace mallow {
 
 // Algorithm 3.3 of [TK], as the model settles it. Surfacing is not a phase: it reads the views between steps.
-StepReport Simulation::step() {
+StepReport Simulation::step_towards(double end) {
   prepare();
   State& s = *state_;
+  s.require_ahead(end);
   Sph& sph = s.sph;
   const VectorColumn& x = s.store.position;
   StepReport report;
@@ -27,7 +31,7 @@ StepReport Simulation::step() {
   }
 
   call_force(s);                                                // x, v -> user part of a_ext
-  const float time_step = choose_time_step(s, report);          // v, a -> Δt                   [TK eq. 12]
+  const ChosenStep step = choose_time_step(s, end, report);     // v, a, time left -> Δt        [TK eq. 12]
   timer.lap(Phase::time_step);
 
   for (Group& g : s.groups)
@@ -41,9 +45,23 @@ StepReport Simulation::step() {
     if (g.matches_shape()) compute_goals(x, g.begin, s.threads, s.level, g.shape);    // R_j -> g − x       [TK eq. 7]
   timer.lap(Phase::goals);
 
-  move_groups(s, time_step);                                    // a, g − x -> v', x'           [TK eq. 10, 11, 13]
-  finish_step(s, time_step);                                    // v', x' -> v, x; c ← c + 1
+  move_groups(s, step.time_step);                               // a, g − x -> v', x'           [TK eq. 10, 11, 13]
+  finish_step(s, step);                                         // v', x' -> v, x; c ← c + 1
   timer.lap(Phase::motion);
+  return report;
+}
+
+StepReport Simulation::step() {
+  return step_towards(std::numeric_limits<double>::infinity());
+}
+
+AdvanceReport Simulation::advance(double seconds) {
+  Checks checks;
+  checks.number("seconds", seconds, seconds >= 0, "a finite number, 0 or above");
+  checks.finish();
+  AdvanceReport report;
+  const double end = time() + seconds;
+  while (time() < end) report.add(step_towards(end));
   return report;
 }
 

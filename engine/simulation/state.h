@@ -89,6 +89,8 @@ struct Simulation::State {
   bool in_force_callback = false;
   /// Throws ConfigError in a force callback, which sees a step half done: nothing may change then.
   void refuse_in_callback() const;
+  /// Throws ConfigError where a step cannot lead towards `end`, as that is not after the present time.
+  void require_ahead(double end) const;
 
   /// Some acceleration of SPH counts: pairs within a group that is not purely elastic, or between groups.
   bool needs_sph() const;
@@ -115,13 +117,19 @@ int update_references(Simulation::State& state);
 void sort_fluids(Simulation::State& state);
 /// positions, velocities -> user accelerations.
 void call_force(Simulation::State& state);
-/// velocities, accelerations -> Δt, with V in the report. [TK eq. 12, model 3] Throws StepError.
-float choose_time_step(Simulation::State& state, StepReport& report);
+/// Δt [s] and the time that it leads to.
+struct ChosenStep {
+  float time_step;
+  double end;
+};
+/// velocities, accelerations, time left until `end` -> Δt, with V in the report. [TK eq. 12, model 3] Throws
+/// StepError.
+ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& report);
 /// everything -> next positions and velocities, mean_external. [TK eq. 10, 11, 13, model 4, 5] Throws
 /// StepError.
 void move_groups(Simulation::State& state, float time_step);
 /// next positions and velocities become the present ones; time, step and colliders move on.
-void finish_step(Simulation::State& state, float time_step);
+void finish_step(Simulation::State& state, const ChosenStep& step);
 
 /// Takes the positions of a group as its reference shape and sorts its rows for that.
 void take_reference(Simulation::State& state, Group& group);

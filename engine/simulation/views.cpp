@@ -46,6 +46,16 @@ const char* name(Phase phase) {
   return k_names[static_cast<std::size_t>(phase)];
 }
 
+void AdvanceReport::add(const StepReport& step) {
+  ++steps;
+  smallest_step = steps == 1 ? step.time_step : std::min(smallest_step, step.time_step);
+  largest_step = std::max(largest_step, step.time_step);
+  max_velocity = std::max(max_velocity, step.max_velocity);
+  if (step.limited) ++limited_steps;
+  updated_references += step.updated_references;
+  for (std::size_t i = 0; i < k_phase_count; ++i) seconds[i] += step.seconds[i];
+}
+
 std::size_t Simulation::particle_count() const {
   return state_->store.size();
 }

@@ -33,7 +33,7 @@ using PhaseTimes = std::array<double, k_phase_count>;
 struct StepReport {
   double time_step = 0;          ///< Δt taken [s]
   double max_velocity = 0;       ///< V of eq. 12 [m/s]; 0 where no SPH acts
-  bool limited = false;          ///< Δt is below Δt0
+  bool limited = false;          ///< a limit kept Δt below Δt0; not where only a time to land on did
   bool neighbors_found = false;  ///< neighbour lists were found anew, not kept (SolverConfig::neighbor_slack)
   int updated_references = 0;    ///< groups whose reference shape was updated at the start of this step
   PhaseTimes seconds{};
@@ -48,6 +48,19 @@ struct Energy {
   /// a(x)), a of gravity and shape matching, Δt the last step. ½ m v² + U swings by itself, by a quarter
   /// where a body is as stiff as its step.
   double conserved = 0;
+};
+
+/// What the steps of Simulation::advance() did.
+struct AdvanceReport {
+  std::int64_t steps = 0;
+  double smallest_step = 0;             ///< Δt [s]
+  double largest_step = 0;              ///< Δt [s]
+  double max_velocity = 0;              ///< largest V of eq. 12 [m/s]
+  std::int64_t limited_steps = 0;       ///< StepReport::limited
+  std::int64_t updated_references = 0;  ///< updates of reference shapes, summed over groups
+  PhaseTimes seconds{};
+
+  void add(const StepReport& step);
 };
 
 /// What a simulation runs and holds; see Simulation::info().

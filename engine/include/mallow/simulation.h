@@ -110,6 +110,15 @@ class Simulation {
   /// One step of algorithm 3.3 of the paper. Throws StepError and keeps the state where Δt would fall below
   /// Δt0/1000 or a number is not finite: it names the particle and the phase.
   StepReport step();
+  /// One step on the way to the time `end` [s], after time(): the fewest equal steps that the limits on Δt
+  /// allow share what is left, and this is the first of them. A varying Δt lets the energy of a swinging body
+  /// drift, so the last step is no sliver; where one step is enough, time() is `end` after it, to the last
+  /// bit. Throws ConfigError where `end` is not after time(), and what step() throws.
+  StepReport step_towards(double end);
+  /// As many steps as `seconds` take, in [0, ∞): time() is time() + seconds after them, to the last bit.
+  /// Throws ConfigError where that is no such number, and what step() throws: then the steps before that one
+  /// were taken, as time() tells.
+  AdvanceReport advance(double seconds);
 
   std::size_t particle_count() const;
   std::size_t group_count() const;
