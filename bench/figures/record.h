@@ -21,8 +21,8 @@ struct Run {
 using FrameVisitor = std::function<void(const Scene& scene, const SimulationInfo& info, int number,
                                         const ParticleFrame& frame)>;
 
-/// Runs a take and measures what the figure asks for, in frame 0 and after every step: in the scenes of the
-/// figures every step is a frame.
+/// Runs a take and measures what the figure asks for, at the start and after every step, which counts as a
+/// frame here however long it is.
 Run record(const Figure& figure, const Take& take, int threads, const FrameVisitor& visit);
 
 }  // namespace mallow::bench

@@ -36,15 +36,22 @@ class ValueReader {
       complain();
   }
 
-  void operator()(float* number) const {
+  bool operator()(double* number) const {
     double given = 0;
     if (const std::int64_t* whole = node_.get_if<std::int64_t>())
       given = static_cast<double>(*whole);
     else if (const double* real = node_.get_if<double>())
       given = *real;
     else
-      return complain();
-    if (!std::isfinite(given) || !holds(field_.range, given)) return complain();
+      return complain(), false;
+    if (!std::isfinite(given) || !holds(field_.range, given)) return complain(), false;
+    *number = given;
+    return true;
+  }
+
+  void operator()(float* number) const {
+    double given = 0;
+    if (!(*this)(&given)) return;
     const float rounded = static_cast<float>(given);
     if (std::isinf(rounded))
       return complain("a number of single precision, at most " +

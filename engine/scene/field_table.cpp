@@ -44,6 +44,7 @@ struct ValueText {
   std::string operator()(const bool* flag) const { return *flag ? "true" : "false"; }
   std::string operator()(const int* number) const { return std::to_string(*number); }
   std::string operator()(const float* number) const { return number_text(*number); }
+  std::string operator()(const double* number) const { return number_text(*number); }
   std::string operator()(const Vec3* v) const { return list_text(std::array{v->x(), v->y(), v->z()}); }
   std::string operator()(const Count3* count) const { return list_text(*count); }
   std::string operator()(const std::string* text) const { return text->empty() ? "" : toml_string(*text); }
@@ -71,9 +72,10 @@ struct Allowed {
   std::string range;
   std::string operator()(const bool*) const { return "true or false"; }
   std::string operator()(const int*) const { return "a whole number" + range; }
-  std::string operator()(const float*) const {
+  std::string operator()(const double*) const {
     return (range.empty() ? "a finite number" : "a number") + range;
   }
+  std::string operator()(const float*) const { return (*this)(static_cast<const double*>(nullptr)); }
   std::string operator()(const Vec3*) const {
     return (range.empty() ? "3 finite numbers [x, y, z]" : "3 numbers") + range;
   }

@@ -35,9 +35,9 @@ using Count3 = std::array<int, 3>;
 
 /// Where the value of a field lives; the type says what TOML may hold.
 using Target =
-    std::variant<bool*, int*, std::optional<int>*, float*, std::optional<float>*, Vec3*, std::optional<Vec3>*,
-                 Count3*, std::string*, std::filesystem::path*, AlphaSchedule*, Formulation*, SurfaceKind*,
-                 Finish*, std::optional<InstructionLevel>*>;
+    std::variant<bool*, int*, std::optional<int>*, float*, std::optional<float>*, std::optional<double>*,
+                 Vec3*, std::optional<Vec3>*, Count3*, std::string*, std::filesystem::path*, AlphaSchedule*,
+                 Formulation*, SurfaceKind*, Finish*, std::optional<InstructionLevel>*>;
 
 /// In place of Field::left_out: a scene without the key is refused.
 inline constexpr char k_required[] = "required";

@@ -191,7 +191,8 @@ FieldTable fields(SurfaceConfig& config) {
 FieldTable fields(RunConfig& config) {
   return {
       {"frames", &config.frames, between(0, k_largest_int), "", "frames that are written"},
-      {"frame_time", &config.frame_time, k_positive, "s", "simulated time of a frame", "one step a frame"},
+      {"frame_time", &config.frame_time, k_positive, "s", "simulated time from one frame to the next",
+       "solver.time_step"},
   };
 }
 

@@ -11,9 +11,9 @@ Scene changed(const Scene& scene, const Change& change) {
   result.solver = change(scene.solver);
   for (SceneMaterial& material : result.materials)
     material.material = change(material.material, scene.solver);
-  // Without a frame time, a step is a frame: frames must not grow or shrink with the steps.
+  // A frame time that is left out is the full step of the scene as written, not of the one it is turned into.
   if (result.solver.time_step != scene.solver.time_step)
-    result.run.frame_time = scene.run.frame_time.value_or(scene.solver.time_step);
+    result.run.frame_time = scene.run.frame_time.value_or(static_cast<double>(scene.solver.time_step));
   return result;
 }
 

@@ -26,8 +26,8 @@ Simulation elastic(float time_step, const Vec3& velocity = {0, 0, 0}) {
 
 /// A paste that falls onto a floor; its steps are limited by the speed of sound.
 Simulation limited(int threads = 1) {
-  Simulation s({.support_radius = 2, .threads = threads});
-  s.add_body(cube(6, {0, 0, 0.6f}), Material{.alpha = 0.7f, .pressure_coefficient = 100});
+  Simulation s({.time_step = 0.15f, .support_radius = 2, .threads = threads});
+  s.add_body(cube(6, {0, 0, 0.6f}), Material{.alpha = 0.7f, .pressure_coefficient = 1600});
   s.add_collider({.shape = Plane{}, .friction = 0.3f});
   return s;
 }

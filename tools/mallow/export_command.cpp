@@ -71,12 +71,10 @@ class Series {
   }
 
  private:
-  /// Where a frame is one step, the steps taken count: they may be shorter than the scene's.
+  /// Frame k shows the time k · frame_time; one that is alone goes with any.
   double frame_time(const Scene& scene) const {
-    if (scene.run.frame_time) return *scene.run.frame_time;
-    if (usda_frames_.size() < 2) return scene.solver.time_step;
-    return (vtp_frames_.back().time - vtp_frames_.front().time) /
-           (usda_frames_.back().number - usda_frames_.front().number);
+    const int last = usda_frames_.back().number;
+    return last > 0 ? vtp_frames_.back().time / last : 1.0 / scene.render.frames_per_second;
   }
 
   fs::path out_;

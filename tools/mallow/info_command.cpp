@@ -61,12 +61,8 @@ void info(const InfoOptions& options) {
   std::printf("pins             %zu\n", scene.pins.size());
   std::printf("instructions     %s\n", name(info.instruction_level));
   std::printf("memory           %.1f MiB\n", static_cast<double>(info.bytes) / (1024.0 * 1024.0));
-  if (scene.run.frame_time) {
-    std::printf("frames           %d of %g s\n", scene.run.frames,
-                static_cast<double>(*scene.run.frame_time));
-  } else {
-    std::printf("frames           %d of one step\n", scene.run.frames);
-  }
+  std::printf("frames           %d of %g s\n", scene.run.frames,
+              scene.run.frame_time.value_or(static_cast<double>(simulation.config().time_step)));
   print_groups(scene, info);
 }
 

@@ -112,6 +112,7 @@ CheckpointInterval checkpoint_interval(const RunOptions& options, CheckpointInte
 void describe(const Scene& scene, int threads, Simulation& simulation, RunReport& report) {
   report.threads = threads;
   report.info = simulation.info();
+  report.frame_time = scene.run.frame_time.value_or(static_cast<double>(simulation.config().time_step));
   for (const std::size_t material : group_materials(scene))
     report.group_materials.push_back(scene.materials[material].name);
 }

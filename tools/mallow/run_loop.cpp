@@ -122,14 +122,6 @@ std::shared_ptr<const ParticleFrame> first_frame(const Simulation& simulation, c
   throw RunFailure(said + "; to go on: mallow run --resume " + shell_word(cache->folder().string()));
 }
 
-/// Whether the simulation has come to frame `number`; without a frame time every step is a frame.
-bool at_frame(const Simulation& simulation, const Scene& scene, int number) {
-  if (!scene.run.frame_time) return simulation.step_count() >= number;
-  // The step that ends nearest to the frame's time is its last one.
-  const double half_step = 0.5 * static_cast<double>(simulation.config().time_step);
-  return simulation.time() >= number * static_cast<double>(*scene.run.frame_time) - half_step;
-}
-
 }  // namespace
 
 void run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan, const Cache* cache,
@@ -147,16 +139,17 @@ void run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan,
   const auto ended = [&] { return plan.steps ? !steps_left() : report.frames >= plan.frames; };
   while (!ended()) {
     const int number = report.frames + 1;
-    while (!at_frame(simulation, scene, number) && steps_left()) {
+    const double frame_end = number * report.frame_time;
+    while (simulation.time() < frame_end && steps_left()) {
       if (interrupted()) stop(simulation, cache, writer ? &*writer : nullptr, report);
       {
         const StageTimer timer(report.stage_seconds, Stage::motion);
-        report.add(simulation.step());
+        report.add(simulation.step_towards(frame_end));
       }
       if (writer) writer->after_step(simulation);
       if (plan.steps) progress.show(report.steps);
     }
-    if (!at_frame(simulation, scene, number)) break;
+    if (simulation.time() < frame_end) break;
     if (writer) writer->write(number, std::make_shared<const ParticleFrame>(snapshot(simulation)));
     report.frames = number;
     if (writer) writer->after_frame(simulation);

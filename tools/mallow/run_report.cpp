@@ -123,6 +123,7 @@ nlohmann::ordered_json to_json(const RunReport& report) {
           {"instruction_level", name(report.info.instruction_level)},
           {"bytes", report.info.bytes},
           {"frames", report.frames},
+          {"frame_time", report.frame_time},
           {"steps", report.steps},
           {"simulated_time", report.simulated_time},
           {"time_step",

@@ -46,11 +46,12 @@ struct RunReport {
   bool complete = false;
   std::string error;  ///< why the run ended early; empty where it did not
   int frames = 0;     ///< frames of the film after frame 0
+  double frame_time = 0;  ///< simulated time from one to the next [s]
   std::int64_t steps = 0;
   double simulated_time = 0;  ///< [s]
   double smallest_step = 0;   ///< Δt [s]
   double largest_step = 0;
-  std::int64_t limited_steps = 0;  ///< steps with Δt below Δt0
+  std::int64_t limited_steps = 0;  ///< steps that a limit kept below Δt0
   struct ReferenceUpdate {
     std::int64_t step;  ///< counted from 1
     int groups;

@@ -107,10 +107,11 @@ std::string facts(const json& report) {
     html += fact("changed", "<code>" + escaped(setting.get<std::string>()) + "</code>");
   }
   html += fact("particles", std::to_string(report.at("particles").get<long long>()));
-  html += fact("frames", std::to_string(report.at("frames").get<long long>()));
+  html += fact("frames", format("%lld, %.4g s from one to the next", report.at("frames").get<long long>(),
+                                report.at("frame_time").get<double>()));
   html += fact("steps", std::to_string(report.at("steps").get<long long>()));
   html += fact("simulated time", format("%.4g s", report.at("simulated_time").get<double>()));
-  html += fact("time step", format("%.4g s (smallest %.4g s, %lld steps below the upper bound)",
+  html += fact("time step", format("%.4g s (smallest %.4g s, %lld steps shortened by a limit)",
                                    step.at("mean").get<double>(), step.at("smallest").get<double>(),
                                    step.at("limited_steps").get<long long>()));
   html += fact("reference updates", std::to_string(report.at("reference_updates").size()));

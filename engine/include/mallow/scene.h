@@ -65,9 +65,12 @@ struct ScenePin {
   int line = 0;  ///< of the scene file; 0 where it did not come from one
 };
 
+/// Frame k of a run shows the time k · frame_time, whatever steps lead there: Simulation::step_towards(). So
+/// frames are as far apart in an impact, where steps are short, as elsewhere, and the frames of runs with
+/// other settings can be compared.
 struct RunConfig {
-  int frames = 240;                      ///< >= 0
-  std::optional<float> frame_time = {};  ///< [s], > 0; left out: one step a frame
+  int frames = 240;                       ///< >= 0
+  std::optional<double> frame_time = {};  ///< [s], > 0; left out: Δt0, SolverConfig::time_step
 };
 
 /// How pictures are taken.
@@ -115,7 +118,8 @@ std::string describe_scene_keys();
 
 /// The same scene in steps of `factor` times its own, see mallow/quality.h; frames stay as long as they were.
 Scene at_time_step(const Scene& scene, float factor);
-/// The same scene turned between speed and accuracy, see mallow/quality.h; frames stay as long as they were.
+/// The same scene turned between speed and accuracy, see mallow/quality.h; frames stay as long as they were, and
+/// no step is longer than one.
 Scene with_quality(const Scene& scene, Quality quality);
 
 /// The points of a body as the scene would add them. Throws ConfigError or IoError.
