@@ -22,7 +22,7 @@ struct SurfaceScene {
 SurfaceScene cube_scene(const LatticeScene& lattice) {
   return {sample(Lattice{.count = lattice.count, .spacing = lattice.spacing, .jitter = 0}).positions,
           lattice.spacing,
-          {}};
+          {.voxels = 128}};
 }
 
 SurfaceScene balls_scene() {
@@ -43,7 +43,7 @@ struct Drawing {
   Drawing(SurfaceScene of, int on_threads) : scene(std::move(of)), threads(on_threads) {
     const Mesh whole = surface(scene.positions, scene.spacing, scene.config, threads);
     const Aabb box = bounds(whole);
-    frame.voxel_size = static_cast<double>((box.max - box.min).maxCoeff()) / scene.config.voxels;
+    frame.voxel_size = static_cast<double>((box.max - box.min).maxCoeff()) / scene.config.voxels.value();
     frame.origin = (box.min.cast<double>() / frame.voxel_size).array().floor() * frame.voxel_size;
     fill();
     draw();
@@ -55,7 +55,7 @@ struct Drawing {
   }
   Json about() const {
     return {{"particles", scene.positions.size()},
-            {"voxels", scene.config.voxels},
+            {"voxels", scene.config.voxels.value()},
             {"blocks", field.blocks().size()},
             {"triangles", mesh.triangles.size()},
             {"bytes", field.bytes() + mesher.bytes()}};
@@ -74,7 +74,7 @@ void add_scene(const std::string& name, const MakeScene& make, int threads, Kern
     return Timed{.run = [=] { draw(); },
                  .items = static_cast<double>(scene->positions.size()),
                  .about = {{"particles", scene->positions.size()},
-                           {"voxels", scene->config.voxels},
+                           {"voxels", scene->config.voxels.value()},
                            {"triangles", draw().triangles.size()},
                            {"bytes", surfacer->bytes()}}};
   });

@@ -64,7 +64,7 @@ double voxel_size(const ParticleFrame& frame, float spacing, const SurfaceConfig
     box.max = box.max.cwiseMax(x);
   }
   return static_cast<double>((box.max - box.min).maxCoeff() + 2 * config.particle_radius * spacing) /
-         config.voxels;
+         config.voxels.value();
 }
 
 Frames draw_frames(const Scene& scene, const Table1Settings& settings, int threads) {

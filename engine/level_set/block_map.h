@@ -18,6 +18,7 @@ inline constexpr std::uint32_t k_no_block = UINT32_MAX;
 class BlockMap {
  public:
   using Coord = Eigen::Vector3i;
+  static constexpr int k_cube_side = 4;
 
   void clear();
   /// All blocks of a box, its corners included. Numbers hold until the next insert.
@@ -33,7 +34,6 @@ class BlockMap {
   std::size_t bytes() const;
 
  private:
-  static constexpr int k_cube_side = 4;
   static constexpr std::uint64_t k_free = UINT64_MAX;
   struct Cube {
     std::uint64_t key = k_free;

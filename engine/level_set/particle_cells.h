@@ -11,12 +11,15 @@
 
 namespace mallow {
 
-/// The particles within a radius of a box, in radii from its lowest corner.
+/// The particles within a radius of a box, in radii from its lowest corner, in the order of their numbers: so
+/// sums over them have the same bits wherever other particles are, though these move the cells.
 struct NearParticles {
   std::vector<PlaceRun> runs;
-  std::vector<std::uint32_t> places;  ///< in sorted order
+  std::vector<std::uint32_t> places;
   std::vector<float> x, y, z;
   std::size_t count = 0;
+  /// Particles by number, a bit each, and words of these that are not 0; between searches all are 0.
+  std::vector<std::uint64_t> numbers, words;
 
   ConstVectors positions() const { return {x.data(), y.data(), z.data()}; }
 };
@@ -49,16 +52,20 @@ class ParticleCells {
   void find_near_cluster(std::size_t c, Eigen::Vector3d& corner, NearParticles& near) const;
 
   std::size_t bytes() const {
-    return positions_.bytes() + grid_.bytes() + particle_.capacity() * sizeof(std::uint32_t);
+    return positions_.bytes() + grid_.bytes() +
+           (particle_.capacity() + place_of_.capacity()) * sizeof(std::uint32_t);
   }
 
  private:
   bool thin_crowds();
+  void sort_into_cells(int threads);
+  void order_by_number(NearParticles& near) const;
   void find_near(const Bounds& box, const Eigen::Vector3d& corner, NearParticles& near) const;
 
   float radius_ = 0;
   VectorColumn positions_;
   std::vector<std::uint32_t> particle_;  ///< of each position, as given; empty: as they are
+  std::vector<std::uint32_t> place_of_;  ///< by number of a particle, where it has a place
   CellGrid grid_;
 };
 

@@ -22,8 +22,12 @@ void check(const SurfaceConfig& config, int threads) {
   Checks checks;
   if (config.voxel_size)
     checks.number("surface.voxel_size", *config.voxel_size, *config.voxel_size > 0, "a number above 0");
+  else if (config.voxels)
+    checks.number("surface.voxels", *config.voxels, *config.voxels >= 8 && *config.voxels <= 1024,
+                  "8 to 1024");
   else
-    checks.number("surface.voxels", config.voxels, config.voxels >= 8 && config.voxels <= 1024, "8 to 1024");
+    checks.number("surface.voxels_per_spacing", config.voxels_per_spacing,
+                  config.voxels_per_spacing >= 0.5f && config.voxels_per_spacing <= 16, "0.5 to 16");
   checks.number("surface.kernel_radius", config.kernel_radius,
                 config.kernel_radius >= 1 && config.kernel_radius <= 4, "1 to 4 spacings");
   if (config.kind == SurfaceKind::anisotropic)
@@ -74,22 +78,41 @@ void check(const SurfaceParticles& particles) {
   checks.finish();
 }
 
-/// One grid for all groups, so that the voxels are those of the whole picture.
-VoxelFrame make_frame(std::span<const Vec3> positions, double margin, const SurfaceConfig& config) {
+/// The box of all particles and of the surface around them.
+struct Extent {
+  Eigen::Vector3d low;      ///< of the particles [m]
+  double longest_side = 0;  ///< with the surface [m]
+};
+
+Extent extent_of(std::span<const Vec3> positions, double margin) {
   Eigen::Vector3d low = positions[0].cast<double>(), high = low;
   for (const Vec3& x : positions) {
     low = low.cwiseMin(x.cast<double>());
     high = high.cwiseMax(x.cast<double>());
   }
-  const double longest_side = (high - low).maxCoeff() + 2 * margin;
+  return {low, (high - low).maxCoeff() + 2 * margin};
+}
+
+/// Side of the voxels of a surface [m]. A float, where it does not follow the box: a whole number of such
+/// sides is exact in double, and so are places on the grid wherever its origin is.
+double voxel_size(const SurfaceConfig& config, float spacing, const Extent& extent) {
+  if (config.voxel_size) return static_cast<double>(*config.voxel_size);
+  if (config.voxels) return extent.longest_side / *config.voxels;
+  return static_cast<double>(spacing / config.voxels_per_spacing);
+}
+
+/// The grid of a surface. Its origin is a corner of a fixed lattice, a cube of BlockMap wide: voxels, blocks
+/// and the order of blocks stay where they are while particles come and go.
+VoxelFrame make_frame(const SurfaceConfig& config, float spacing, const Extent& extent) {
+  constexpr int k_lattice = BlockMap::k_cube_side * k_block_side;
   VoxelFrame frame;
-  frame.voxel_size =
-      config.voxel_size ? static_cast<double>(*config.voxel_size) : longest_side / config.voxels;
-  frame.origin = (low / frame.voxel_size).array().floor() * frame.voxel_size;
-  if (longest_side / frame.voxel_size > k_max_side) {
+  frame.voxel_size = voxel_size(config, spacing, extent);
+  const double side = k_lattice * frame.voxel_size;
+  frame.origin = (extent.low / side).array().floor() * side;
+  if (extent.longest_side / frame.voxel_size > k_max_side) {
     std::ostringstream text;
     text << "voxels of " << frame.voxel_size << " m are too small for these particles: the grid would be "
-         << longest_side / frame.voxel_size << " voxels long, and " << k_max_side << " are allowed";
+         << extent.longest_side / frame.voxel_size << " voxels long, and " << k_max_side << " are allowed";
     throw ConfigError("surface.voxel_size", text.str());
   }
   return frame;
@@ -200,9 +223,11 @@ void Surfacer::Work::draw(const SurfaceParticles& particles) {
     return;
   }
   const float widest = *std::max_element(particles.spacings.begin(), particles.spacings.end());
-  const VoxelFrame frame = make_frame(particles.positions, config.particle_radius * widest, config);
-  for (std::size_t s = 0; s < surfaces; ++s)
-    draw_one(particles, s, config.joined ? widest : particles.spacings[s], frame);
+  const Extent extent = extent_of(particles.positions, static_cast<double>(config.particle_radius * widest));
+  for (std::size_t s = 0; s < surfaces; ++s) {
+    const float spacing = config.joined ? widest : particles.spacings[s];
+    draw_one(particles, s, spacing, make_frame(config, spacing, extent));
+  }
 }
 
 Surfacer::Surfacer(const SurfaceConfig& config, int threads, std::shared_ptr<Executor> executor) {

@@ -13,8 +13,7 @@ inline constexpr std::size_t k_block_voxels = 512;
 
 /// Where the voxels of a grid lie: voxel (i, j, k) is the point origin + voxel_size · (i, j, k).
 struct VoxelFrame {
-  Eigen::Vector3d origin{
-      0, 0, 0};           ///< [m], a whole multiple of voxel_size, so that frames of a film share one grid
+  Eigen::Vector3d origin{0, 0, 0};  ///< [m], on a lattice that is whole in blocks: frames of a film share it
   double voxel_size = 1;  ///< [m]
 
   Vec3 point(const Eigen::Vector3d& voxel) const { return (origin + voxel_size * voxel).cast<float>(); }

@@ -172,9 +172,12 @@ FieldTable fields(Aabb& box) {
 
 FieldTable fields(SurfaceConfig& config) {
   return {
+      {"voxels_per_spacing", &config.voxels_per_spacing, between(0.5, 16), "",
+       "voxels along one spacing of the particles, if voxel_size and voxels are left out"},
+      {"voxel_size", &config.voxel_size, k_positive, "m", "side of a voxel", "from voxels_per_spacing"},
       {"voxels", &config.voxels, between(8, 1024), "",
-       "voxels along the longest side of the box around the particles, if voxel_size is left out"},
-      {"voxel_size", &config.voxel_size, k_positive, "m", "side of a voxel", "from voxels"},
+       "voxels along the longest side of the box around the particles, if voxel_size is left out",
+       "from voxels_per_spacing"},
       {"kernel_radius", &config.kernel_radius, between(1, 4), "h", "radius in which particles are blended"},
       {"particle_radius", &config.particle_radius, between(0.1, 1), "h",
        "distance of the surface from the outermost particles"},

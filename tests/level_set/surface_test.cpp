@@ -202,6 +202,8 @@ TEST(surface, refuses_grids_that_are_too_large) {
   expect_words(config_error([&] { surface(cube, 1, {.voxel_size = 1e-30f}); }),
                {"surface.voxel_size", "1e-30"});
   expect_words(config_error([&] { surface(cube, 1e30f, {.voxel_size = 1}); }), {"surface.voxel_size"});
+  expect_words(config_error([&] { surface(cube, 1, {.memory_limit = 1e-4f}); }),
+               {"surface.memory_limit allows 0.0001 GiB"});
   const std::vector<Vec3> apart{{0, 0, 0}, {1e9f, 0, 0}};
   expect_words(config_error([&] { surface(apart, 1, {.voxel_size = 0.5f}); }), {"voxels long", "4194304"});
 }
@@ -226,6 +228,9 @@ TEST(surface, refuses_bad_values_and_says_which) {
                {"velocities: 3 are not allowed", "27", "groups[0]: 2 is not allowed"});
   expect_words(config_error([&] { Surfacer({}).draw({points, {}, {}, {}}); }), {"spacings"});
   expect_words(config_error([&] { surface({}, 1, {.voxel_size = 0.0f}); }), {"surface.voxel_size: 0"});
+  for (const float share : {0.4f, 16.5f, std::numeric_limits<float>::quiet_NaN()})
+    expect_words(config_error([&] { surface({}, 1, {.voxels_per_spacing = share}); }),
+                 {"surface.voxels_per_spacing: ", "is not allowed: 0.5 to 16"});
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include <cstring>
+#include <functional>
 #include <map>
 #include <random>
 
@@ -149,6 +150,84 @@ TEST(surfacer, groups_have_surfaces_of_their_own_or_one_that_they_share) {
       ASSERT_EQ(mesh->material_ids[v], x > 4) << x;
     }
   }
+}
+
+/// The vertices on one side of a plane, in the order of the mesh.
+struct PartOfMesh {
+  std::vector<Vec3> vertices, normals, velocities;
+  bool operator==(const PartOfMesh&) const = default;
+};
+PartOfMesh part_of(const Mesh& mesh, const std::function<bool(const Vec3&)>& is_in) {
+  PartOfMesh part;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (!is_in(mesh.vertices[v])) continue;
+    part.vertices.push_back(mesh.vertices[v]);
+    part.normals.push_back(mesh.normals[v]);
+    part.velocities.push_back(mesh.velocities[v]);
+  }
+  return part;
+}
+
+TEST(surfacer, what_stands_still_keeps_every_bit_of_its_mesh_while_something_flies_off) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> jitter(-0.15f, 0.15f), speed(-1, 1);
+  std::vector<Vec3> cube, velocities;
+  for (const Vec3& x : sample(Lattice{.count = {6, 6, 6}, .spacing = 0.1f}).positions) {
+    cube.push_back(x + 0.1f * Vec3(jitter(random), jitter(random), jitter(random)));
+    velocities.emplace_back(speed(random), speed(random), speed(random));
+  }
+  const std::vector<Vec3> ball_points = ball(2);
+  velocities.resize(cube.size() + ball_points.size(), Vec3(1, 2, 3));
+  const std::vector<float> spacings{0.1f};
+  // As a scene says nothing, where sums are interpolated, and with all that follows the mesh.
+  for (const SurfaceConfig& config :
+       {SurfaceConfig{}, SurfaceConfig{.voxels_per_spacing = 6}, SurfaceConfig{.voxels_per_spacing = 11.3f},
+        SurfaceConfig{.voxel_size = 0.03f}, SurfaceConfig{.kind = SurfaceKind::spheres},
+        SurfaceConfig{.adaptivity = 0.2f, .smoothing = 3}}) {
+    Surfacer surfacer(config);
+    PartOfMesh first;
+    for (const Vec3& away : {Vec3(1, 0, 0), Vec3(1.37f, 0.1f, 0.02f), Vec3(0, 0, -1),
+                             Vec3(-1.7f, -2.2f, -0.9f), Vec3(7, 1, 3), Vec3(-200, 30, 1000)}) {
+      std::vector<Vec3> points = cube;
+      for (const Vec3& x : ball_points) points.push_back(Vec3(0.3f, 0.3f, 0.3f) + away + 0.1f * x);
+      const Mesh& mesh = surfacer.draw({points, velocities, {}, spacings});
+      const PartOfMesh part = part_of(
+          mesh, [](const Vec3& x) { return (x - Vec3(0.3f, 0.3f, 0.3f)).cwiseAbs().maxCoeff() < 0.45f; });
+      if (first.vertices.empty()) first = part;
+      ASSERT_GT(part.vertices.size(), 100u);
+      EXPECT_TRUE(part == first) << "the ball is " << away.transpose() << " away";
+    }
+  }
+}
+
+TEST(surfacer, voxels_follow_the_spacing_and_not_the_box) {
+  std::vector<Vec3> points = ball(4);
+  const Mesh alone = surface(points, 1, {});
+  EXPECT_EQ(alone.vertices, surface(points, 1, {.voxel_size = 1.0f / 2.7f}).vertices);
+  EXPECT_NEAR(static_cast<double>(surface(points, 1, {.voxels_per_spacing = 5.4f}).vertices.size()),
+              4 * static_cast<double>(alone.vertices.size()),
+              0.1 * static_cast<double>(alone.vertices.size()));
+  // The same body in millimetres.
+  std::vector<Vec3> small = points;
+  for (Vec3& x : small) x *= 0.001953125f;
+  EXPECT_EQ(surface(small, 0.001953125f, {}).vertices.size(), alone.vertices.size());
+}
+
+TEST(surfacer, each_group_has_voxels_for_its_own_spacing_and_joined_ones_for_the_widest) {
+  const std::vector<Vec3> coarse = ball(4);
+  std::vector<Vec3> fine, points = coarse;
+  for (const Vec3& x : ball(4)) fine.push_back(0.25f * x + Vec3(20, 0, 0));
+  points.insert(points.end(), fine.begin(), fine.end());
+  std::vector<std::uint8_t> groups(coarse.size(), 0);
+  groups.resize(points.size(), 1);
+  const std::vector<float> spacings{1, 0.25f};
+  const Mesh both = Surfacer({}).draw({points, {}, groups, spacings});
+  std::vector<Vec3> expected = surface(coarse, 1, {}).vertices;
+  for (const Vec3& x : surface(fine, 0.25f, {}).vertices) expected.push_back(x);
+  EXPECT_EQ(both.vertices, expected);
+  const Mesh joined = Surfacer({.joined = true}).draw({points, {}, groups, spacings});
+  EXPECT_EQ(joined.vertices,
+            Surfacer({.voxel_size = 1 / 2.7f, .joined = true}).draw({points, {}, groups, spacings}).vertices);
 }
 
 TEST(surfacer, voxels_are_counted_along_all_groups_together) {

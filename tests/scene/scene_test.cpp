@@ -83,8 +83,9 @@ union = [
 box = { min = [0, 0, 0], max = [1, 1, 0] }
 velocity = [0, 0, 2]
 [surface]
-voxels = 64
+voxels_per_spacing = 3.5
 voxel_size = 0.5
+voxels = 64
 kernel_radius = 3
 particle_radius = 0.25
 [run]
@@ -115,6 +116,8 @@ TEST_F(scene, fills_in_the_defaults_of_the_configs) {
   EXPECT_EQ(read.solver.gravity, SolverConfig{}.gravity);
   EXPECT_EQ(read.run.frames, RunConfig{}.frames);
   EXPECT_FALSE(read.run.frame_time);
+  EXPECT_FALSE(read.surface.voxels || read.surface.voxel_size);
+  EXPECT_EQ(read.surface.voxels_per_spacing, SurfaceConfig{}.voxels_per_spacing);
   ASSERT_EQ(read.materials.size(), 1u);
   EXPECT_EQ(read.materials[0].material.update_threshold, Material{}.update_threshold);
   EXPECT_EQ(read.materials[0].finish, Finish::jelly);
@@ -191,6 +194,7 @@ TEST_F(every_key, reaches_its_member) {
 
   EXPECT_EQ(read.pins.at(0).box.max, Vec3(1, 1, 0));
   EXPECT_EQ(read.pins.at(0).velocity, Vec3(0, 0, 2));
+  EXPECT_EQ(read.surface.voxels_per_spacing, 3.5f);
   EXPECT_EQ(read.surface.voxels, 64);
   EXPECT_EQ(read.surface.voxel_size, 0.5f);
   EXPECT_EQ(read.surface.kernel_radius, 3.0f);
@@ -275,15 +279,15 @@ TEST_F(scene, prints_numbers_that_read_back_to_the_bit) {
     const Scene again = read_scene(write("printed.toml", print_scene(read)));
     EXPECT_EQ(again.solver.time_step, value);
   }
-}
-
-TEST_F(scene, takes_the_short_form_of_an_implicit_shape) {
-  const Scene read =
   for (const double value : {0.1, 1.0 / 24, 0.041666667, 1e-300, 1e300}) {
     Scene read = SceneFixture::read(k_small_scene);
     read.run.frame_time = value;
     EXPECT_EQ(read_scene(write("printed.toml", print_scene(read))).run.frame_time, value);
   }
+}
+
+TEST_F(scene, takes_the_short_form_of_an_implicit_shape) {
+  const Scene read =
       SceneFixture::read(k_small_scene, {"body[0]={ material = \"jelly\", implicit = \"moai\" }"});
   const auto& source = std::get<ImplicitSource>(read.bodies[0].source);
   EXPECT_EQ(source.shape, "moai");

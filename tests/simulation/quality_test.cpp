@@ -86,6 +86,15 @@ TEST(quality, of_a_surface_keeps_voxels_within_what_is_allowed) {
   EXPECT_EQ(with_quality(SurfaceConfig{.voxels = 8}, Quality::realtime).voxels, 8);
   EXPECT_EQ(with_quality(SurfaceConfig{.voxels = 1024}, Quality::accurate).voxels, 1024);
   EXPECT_EQ(with_quality(SurfaceConfig{.voxels = 128}, Quality::balanced).voxels, 128);
+  for (const Quality quality : qualities()) {
+    const float finer = static_cast<float>(*with_quality(SurfaceConfig{.voxels = 128}, quality).voxels) / 128;
+    const SurfaceConfig turned = with_quality(SurfaceConfig{}, quality);
+    EXPECT_EQ(turned.voxels_per_spacing, finer * SurfaceConfig{}.voxels_per_spacing);
+    EXPECT_FALSE(turned.voxels || turned.voxel_size);
+  }
+  EXPECT_EQ(with_quality(SurfaceConfig{.voxels_per_spacing = 16}, Quality::accurate).voxels_per_spacing, 16);
+  EXPECT_EQ(with_quality(SurfaceConfig{.voxels_per_spacing = 0.5f}, Quality::realtime).voxels_per_spacing,
+            0.5f);
   const float coarse = *with_quality(SurfaceConfig{.voxel_size = 0.3f}, Quality::realtime).voxel_size;
   EXPECT_GT(coarse, 0.3f);
 }

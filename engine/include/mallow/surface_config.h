@@ -15,11 +15,16 @@ enum class SurfaceKind {
 
 /// How a surface is drawn around particles.
 struct SurfaceConfig {
-  /// Voxels along the longest side of the particles' bounding box, in [8, 1024]; used where voxel_size is
-  /// left out.
-  int voxels = 128;
-  /// Side of a voxel [m], > 0.
+  /// Voxels a spacing, in [0.5, 16], of the particles that a surface is drawn around: where groups have
+  /// surfaces of their own each has voxels for its own spacing, and joined ones have them for the widest.
+  /// Counts where voxel_size and voxels are left out.
+  float voxels_per_spacing = 2.7f;
+  /// Side of a voxel [m], > 0, whatever the spacing is.
   std::optional<float> voxel_size = {};
+  /// Voxels along the longest side of the particles' bounding box, in [8, 1024]; counts where voxel_size is
+  /// left out. The paper counts so [TK Table 1]. Voxels grow and shrink with the box then, in every frame
+  /// anew: where something flies off, the surface of all else gets coarser and flickers.
+  std::optional<int> voxels = {};
   /// Radius of the kernels that blend the particles, in spacings, in [1, 4]; from 2 on where they are
   /// anisotropic.
   float kernel_radius = 2.0f;
