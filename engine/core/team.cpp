@@ -164,21 +164,28 @@ namespace {
 /// Without a lock, because a process may be forked off at any time.
 class Teams final : public Executor {
  public:
-  int concurrency() const override { return processor_count(); }
+  int concurrency() const override { return processors_; }
 
   void run(int threads, LoopTask task) override {
-    Team* team = take();
-    if (!team) return;
-    team->run(threads, task);
-    give_back(team);
+    // Threads that share a processor gain nothing: each caller leaves one to each of the others.
+    const int others = callers_.fetch_add(1, std::memory_order_relaxed);
+    const int most = std::min(threads, processors_ - others);
+    if (Team* const team = most > 1 ? take() : nullptr) {
+      team->run(most, task);
+      give_back(team);
+    } else {
+      task(0);
+    }
+    callers_.fetch_sub(1, std::memory_order_relaxed);
   }
 
   /// Ends the threads of all teams that have no caller.
   void end() {
     for (std::atomic<Team*>& place : idle_) delete place.exchange(nullptr);
   }
-  /// In a process that was forked off: their threads are not here.
+  /// In a process that was forked off: neither their threads nor other callers are here.
   void forget() {
+    callers_.store(0);
     for (std::atomic<Team*>& place : idle_) place.store(nullptr);
   }
 
@@ -197,7 +204,9 @@ class Teams final : public Executor {
     delete team;
   }
 
-  std::array<std::atomic<Team*>, 64> idle_{};
+  const int processors_ = processor_count();
+  alignas(64) std::atomic<int> callers_{0};  ///< that are in a loop
+  alignas(64) std::array<std::atomic<Team*>, 64> idle_{};
 };
 
 /// Never destroyed: threads may step simulations while the program ends.

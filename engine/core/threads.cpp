@@ -2,15 +2,10 @@
 
 namespace mallow {
 
-Threads::Threads(int requested) {
-  static const std::shared_ptr<Executor> team = team_executor();
-  *this = Threads(requested, team);
-}
+Threads::Threads(int requested) : Threads(requested, nullptr) {}
 
 Threads::Threads(int requested, const std::shared_ptr<Executor>& executor)
-    : executor_(executor.get()), count_(requested) {
-  if (!executor_) *this = Threads(requested);
-  if (requested == 0) count_ = std::max(1, executor_->concurrency());
-}
+    : executor_(executor ? executor.get() : team_executor().get()),
+      count_(requested > 0 ? requested : std::max(1, executor_->concurrency())) {}
 
 }  // namespace mallow

@@ -88,7 +88,8 @@ bool ParticleCells::thin_crowds() {
   return true;
 }
 
-/// Puts what a search found in the order of numbers. Marks in two levels of bits cost a third of std::sort.
+/// Puts what a search found in the order of numbers. Marks in two levels of bits take about a twentieth of
+/// the time of a surface; std::sort took a third.
 void ParticleCells::order_by_number(NearParticles& near) const {
   near.numbers.resize(std::max(near.numbers.size(), place_of_.size() / 64 + 1));
   near.words.resize(std::max(near.words.size(), near.numbers.size() / 64 + 1));

@@ -49,8 +49,9 @@ class Executor {
 
 /// The engine's own threads, the default. A loop is never kept waiting for a thread that the system has not
 /// let run yet: those that come in time help, the caller does the rest. Idle threads spin for 50 µs, then
-/// sleep. Every thread that steps simulations gets helpers of its own; they are kept for later and end with
-/// the program. A process that was forked off starts new ones.
+/// sleep. Simulations on several threads at once share the processors: together they use no more threads than
+/// there are. Threads are kept for later loops and end with the program; a process that was forked off starts
+/// new ones.
 std::shared_ptr<Executor> team_executor();
 
 /// OpenMP's threads, for programs that use OpenMP anyway. A loop of OpenMP ends when all its threads have
