@@ -1,7 +1,9 @@
-#include <map>
+#include <algorithm>
 #include <numbers>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "files/byte_reader.h"
 #include "files/byte_writer.h"
@@ -14,11 +16,6 @@ namespace mallow {
 namespace {
 
 namespace gltf = mallow_tinygltf;
-
-/// glTF's core has no translucency; jelly is told from clay by what it mirrors.
-double roughness(Finish finish) {
-  return finish == Finish::clay ? 0.9 : 0.5;
-}
 
 /// Numbers of a glTF: one buffer, a view of it and an accessor for each column.
 class GltfColumns {
@@ -60,18 +57,37 @@ class GltfColumns {
   std::string bytes_;
 };
 
-/// Corners of the triangles of each material id.
-std::map<std::uint8_t, std::vector<std::uint32_t>> corners_by_material(const Mesh& mesh) {
-  std::map<std::uint8_t, std::vector<std::uint32_t>> corners;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    std::vector<std::uint32_t>& of_material = corners[triangle_material(mesh, t)];
-    of_material.insert(of_material.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
+/// Those vertices of a mesh that some of its triangles have, and the triangles' corners among them.
+struct Part {
+  std::vector<std::uint32_t> vertices;  ///< ascending
+  std::vector<std::uint32_t> corners;
+};
+
+Part part_of(const Mesh& mesh, const std::vector<std::size_t>& triangles) {
+  Part part;
+  for (const std::size_t t : triangles)
+    part.corners.insert(part.corners.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
+  part.vertices = part.corners;
+  std::sort(part.vertices.begin(), part.vertices.end());
+  part.vertices.erase(std::unique(part.vertices.begin(), part.vertices.end()), part.vertices.end());
+  for (std::uint32_t& corner : part.corners) {
+    const auto at = std::lower_bound(part.vertices.begin(), part.vertices.end(), corner);
+    corner = static_cast<std::uint32_t>(at - part.vertices.begin());
   }
-  return corners;
+  return part;
 }
 
-gltf::Material material_of(const Appearance& appearance) {
+std::vector<Vec3> picked(const std::vector<Vec3>& vectors, const std::vector<std::uint32_t>& rows) {
+  std::vector<Vec3> result;
+  if (vectors.empty()) return result;
+  for (const std::uint32_t row : rows) result.push_back(vectors[row]);
+  return result;
+}
+
+gltf::Material material_of(const NamedMaterial& named) {
+  const Appearance& appearance = named.appearance;
   gltf::Material material;
+  material.name = named.name;
   const Vec3& color = appearance.color;
   material.pbrMetallicRoughness.baseColorFactor = {color.x(), color.y(), color.z(), 1.0};
   material.pbrMetallicRoughness.metallicFactor = 0;
@@ -79,38 +95,56 @@ gltf::Material material_of(const Appearance& appearance) {
   return material;
 }
 
-gltf::Mesh shared_vertices(const Mesh& mesh, std::span<const Appearance> palette, gltf::Model& model) {
-  GltfColumns columns(model);
+gltf::Primitive primitive_of(const Mesh& mesh, const Part& part, GltfColumns& columns, gltf::Model& model) {
   gltf::Primitive primitive;
   primitive.mode = TINYGLTF_MODE_TRIANGLES;
-  const int positions = primitive.attributes["POSITION"] = columns.add_vectors(mesh.vertices);
-  const Aabb box = bounds(mesh);
+  Mesh points;
+  points.vertices = picked(mesh.vertices, part.vertices);
+  const int positions = primitive.attributes["POSITION"] = columns.add_vectors(points.vertices);
+  const Aabb box = bounds(points);
   gltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(positions)];
   accessor.minValues.assign(box.min.begin(), box.min.end());
   accessor.maxValues.assign(box.max.begin(), box.max.end());
-  if (!mesh.normals.empty()) primitive.attributes["NORMAL"] = columns.add_vectors(mesh.normals);
+  if (!mesh.normals.empty())
+    primitive.attributes["NORMAL"] = columns.add_vectors(picked(mesh.normals, part.vertices));
   // glTF knows no velocities; names of an application's own begin with an underscore.
-  if (!mesh.velocities.empty()) primitive.attributes["_VELOCITY"] = columns.add_vectors(mesh.velocities);
+  if (!mesh.velocities.empty())
+    primitive.attributes["_VELOCITY"] = columns.add_vectors(picked(mesh.velocities, part.vertices));
+  primitive.indices = columns.add_corners(part.corners);
+  return primitive;
+}
 
-  gltf::Mesh parts;
-  for (const auto& [id, corners] : corners_by_material(mesh)) {
-    primitive.indices = columns.add_corners(corners);
-    primitive.material = static_cast<int>(model.materials.size());
-    model.materials.push_back(material_of(palette[id]));
-    model.materials.back().name = "material " + std::to_string(id);
-    parts.primitives.push_back(primitive);
+/// A node and a mesh for each group, as programs show names of those and not of primitives.
+void add_groups(const Mesh& mesh, std::span<const MeshGroup> groups, gltf::Model& model) {
+  const NamedGroups named = name_groups(groups, [](const std::string& name) { return name; });
+  std::vector<int> material_index(named.materials.size(), -1);
+  GltfColumns columns(model);
+  for (const auto& [id, triangles] : triangles_by_material(mesh)) {
+    const std::size_t material = named.material_of[id];
+    if (material_index[material] < 0) {
+      material_index[material] = static_cast<int>(model.materials.size());
+      model.materials.push_back(material_of(named.materials[material]));
+    }
+    gltf::Mesh part;
+    part.name = named.names[id];
+    part.primitives.push_back(primitive_of(mesh, part_of(mesh, triangles), columns, model));
+    part.primitives.back().material = material_index[material];
+    gltf::Node node;
+    node.name = part.name;
+    node.mesh = static_cast<int>(model.meshes.size());
+    model.meshes.push_back(std::move(part));
+    model.nodes[0].children.push_back(static_cast<int>(model.nodes.size()));
+    model.nodes.push_back(std::move(node));
   }
   columns.finish();
-  return parts;
 }
 
 }  // namespace
 
-void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh,
-                    std::span<const Appearance> palette) {
+void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshGroup> groups) {
   require_valid(mesh);
   require_finite(mesh);
-  require_appearances(mesh, palette);
+  require_groups(mesh, groups);
 
   gltf::Model model;
   model.asset.version = "2.0";
@@ -119,10 +153,7 @@ void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh,
   node.name = "surface";
   constexpr double k_half = 0.5 * std::numbers::sqrt2;
   node.rotation = {-k_half, 0, 0, k_half};  // a quarter turn about x, as x y z w
-  if (!mesh.triangles.empty()) {
-    node.mesh = 0;
-    model.meshes.push_back(shared_vertices(mesh, palette, model));
-  }
+  if (!mesh.triangles.empty()) add_groups(mesh, groups, model);
   model.scenes.emplace_back().nodes.push_back(0);
   model.defaultScene = 0;
 

@@ -63,29 +63,4 @@ void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh) {
   write_whole(file, bytes);
 }
 
-void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh) {
-  require_valid(mesh);
-  std::string text = "# mallow mesh\n";
-  const auto append_vectors = [&](const char* keyword, const std::vector<Vec3>& vectors) {
-    for (const Vec3& vector : vectors) {
-      text += keyword;
-      for (const float value : vector) append_number(text += ' ', value, k_float_digits);
-      text += '\n';
-    }
-  };
-  append_vectors("v", mesh.vertices);
-  append_vectors("vn", mesh.normals);
-  for (const auto& triangle : mesh.triangles) {
-    text += 'f';
-    for (const std::uint32_t vertex : triangle) {
-      const std::string index = std::to_string(std::uint64_t{vertex} + 1);
-      text += ' ' + index;
-      if (!mesh.normals.empty()) text += "//" + index;
-    }
-    text += '\n';
-  }
-  require_readable_size(file, text.size());
-  write_whole(file, text);
-}
-
 }  // namespace mallow

@@ -2,10 +2,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <span>
+#include <string>
+#include <vector>
 
-#include "mallow/appearance.h"
-#include "mallow/mesh.h"
+#include "mallow/files.h"
 
 namespace mallow {
 
@@ -13,7 +16,35 @@ namespace mallow {
 /// smallest of three that differ, as they may where surfaces are joined.
 std::uint8_t triangle_material(const Mesh& mesh, std::size_t triangle);
 
-/// Throws ConfigError unless colours are in [0, 1] and there is an appearance for each triangle's material.
-void require_appearances(const Mesh& mesh, std::span<const Appearance> palette);
+/// Triangles of each material id that has any, ascending.
+std::map<std::uint8_t, std::vector<std::size_t>> triangles_by_material(const Mesh& mesh);
+
+/// Throws ConfigError unless names are UTF-8, colours in [0, 1], and there is a group for each triangle's
+/// material.
+void require_groups(const Mesh& mesh, std::span<const MeshGroup> groups);
+void require_groups(std::span<const MeshGroup> groups);
+
+struct NamedMaterial {
+  std::string name;   ///< as the format allows it
+  std::string title;  ///< as the scene has it
+  Appearance appearance;
+};
+
+/// Groups of a mesh under names that a format allows and that differ from each other.
+struct NamedGroups {
+  std::vector<std::string> names;        ///< of each group, as the format allows it
+  std::vector<std::string> titles;       ///< of each group, as the scene has it
+  std::vector<NamedMaterial> materials;  ///< each once
+  std::vector<std::size_t> material_of;  ///< of each group
+};
+
+/// allowed: makes a name one that the format allows, and is not empty; a number goes behind those that are
+/// the same then.
+using NameRule = std::function<std::string(const std::string& name)>;
+NamedGroups name_groups(std::span<const MeshGroup> groups, const NameRule& allowed);
+
+/// Roughness in [0, 1] of a dielectric that looks like the finish: files know no translucency; jelly is told
+/// from clay by what it mirrors.
+double roughness(Finish finish);
 
 }  // namespace mallow

@@ -1,23 +1,21 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include "files/byte_reader.h"
-#include "files/byte_writer.h"
 #include "files/mesh_materials.h"
+#include "files/usda_text.h"
 #include "files/valid_columns.h"
 #include "mallow/errors.h"
 #include "mallow/files.h"
 
-/// USD's text files: openusd.org, "USDA File Format Specification" and the schemas UsdGeomMesh,
-/// UsdGeomPrimvar and UsdGeomImageable.
+/// A mesh in USD's text: openusd.org, "USDA File Format Specification" and the schemas UsdGeomMesh,
+/// UsdGeomSubset, UsdGeomPrimvar and UsdPreviewSurface.
 namespace mallow {
 namespace {
-
-/// Says of an array that it has a value for each vertex, or for each face.
-constexpr const char* k_per_vertex = " (\n        interpolation = \"vertex\"\n    )\n";
-constexpr const char* k_per_face = " (\n        interpolation = \"uniform\"\n    )\n";
 
 void append_value(std::string& text, const Vec3& vector) {
   append_shortest(text += '(', vector.x());
@@ -30,12 +28,10 @@ void append_value(std::string& text, std::uint32_t number) {
   append_shortest(text, number);
 }
 
-/// `declaration = [...]` of values 0 to count - 1.
+/// Writes `[...]` of values 0 to count - 1.
 template <class Value>
-void append_array(std::string& text, const char* declaration, std::size_t count, const Value& value) {
-  text += "    ";
-  text += declaration;
-  text += " = [";
+void append_list(std::string& text, std::size_t count, const Value& value) {
+  text += '[';
   for (std::size_t i = 0; i < count; ++i) {
     if (i > 0) text += ", ";
     append_value(text, value(i));
@@ -43,136 +39,154 @@ void append_array(std::string& text, const char* declaration, std::size_t count,
   text += ']';
 }
 
-void append_vectors(std::string& text, const char* declaration, std::span<const Vec3> vectors) {
-  append_array(text, declaration, vectors.size(), [&](std::size_t i) -> const Vec3& { return vectors[i]; });
+/// Attributes whose values belong to a frame, or always hold.
+class Attributes {
+ public:
+  Attributes(std::string& text, std::optional<int> frame) : text_(text), frame_(frame) {}
+
+  /// values 0 to count - 1
+  template <class Value>
+  void add(const UsdAttribute& attribute, std::size_t count, const Value& value) {
+    const std::string indent(attribute.depth * 4, ' ');
+    text_ += indent + attribute.declaration;
+    if (frame_) {
+      append_interpolation(text_, attribute);
+      text_ += '\n' + indent + attribute.declaration + ".timeSamples = {\n" + indent + "    " +
+               std::to_string(*frame_) + ": ";
+      append_list(text_, count, value);
+      text_ += ",\n" + indent + "}\n";
+      return;
+    }
+    append_list(text_ += " = ", count, value);
+    append_interpolation(text_, attribute);
+    text_ += '\n';
+  }
+
+ private:
+  std::string& text_;
+  std::optional<int> frame_;
+};
+
+void append_columns(const Mesh& mesh, const UsdOptions& options, bool in_a_series, Attributes& attributes) {
+  const auto turned = [&](const Vec3& v) { return options.up == UpAxis::y ? with_y_up(v) : v; };
+  const auto speed = static_cast<float>(options.speed);
+  if (!mesh.vertices.empty()) {
+    const Aabb box = bounds(mesh);
+    const Vec3 a = turned(box.min), b = turned(box.max);
+    const std::array<Vec3, 2> corners = {a.cwiseMin(b), a.cwiseMax(b)};
+    attributes.add(k_usd_extent, 2, [&](std::size_t i) { return corners[i]; });
+  } else if (in_a_series) {
+    // As USD has the box of nothing.
+    constexpr float k_most = std::numeric_limits<float>::max();
+    attributes.add(k_usd_extent, 2,
+                   [&](std::size_t i) -> Vec3 { return Vec3::Constant(i == 0 ? k_most : -k_most); });
+  }
+  attributes.add(k_usd_counts, mesh.triangles.size(), [](std::size_t) { return 3u; });
+  attributes.add(k_usd_corners, 3 * mesh.triangles.size(),
+                 [&](std::size_t i) { return mesh.triangles[i / 3][i % 3]; });
+  attributes.add(k_usd_points, mesh.vertices.size(), [&](std::size_t i) { return turned(mesh.vertices[i]); });
+  // A frame of nothing says so of all columns, as without a sample that before it would hold.
+  const bool all = in_a_series && mesh.vertices.empty();
+  if (!mesh.normals.empty() || all)
+    attributes.add(k_usd_normals, mesh.normals.size(),
+                   [&](std::size_t i) { return turned(mesh.normals[i]); });
+  if (!mesh.velocities.empty() || all) {
+    attributes.add(k_usd_velocities, mesh.velocities.size(),
+                   [&](std::size_t i) -> Vec3 { return speed * turned(mesh.velocities[i]); });
+  }
 }
 
-/// Groups and their colours, as arrays that programs show without a material.
-void append_primvars(std::string& text, const Mesh& mesh, std::span<const Appearance> palette) {
-  if (mesh.triangles.empty()) return;
-  const auto append_colors = [&](std::size_t count) {
-    append_array(text, "color3f[] primvars:displayColor", count,
-                 [&](std::size_t i) -> const Vec3& { return palette[i].color; });
-  };
-  if (mesh.material_ids.empty()) {
-    append_colors(1);
-    text += " (\n        interpolation = \"constant\"\n    )\n";
-    return;
-  }
-  // Faces, not vertices, have them: a colour between two groups is that of neither.
-  const auto group = [&](std::size_t t) { return std::uint32_t{triangle_material(mesh, t)}; };
-  append_colors(palette.size());
-  text += k_per_face;
-  append_array(text, "int[] primvars:displayColor:indices", mesh.triangles.size(), group);
+/// Colours as an array that programs show without a material. Faces, not vertices, have them: a colour
+/// between two groups is that of neither.
+void append_primvars(std::string& text, const Mesh& mesh, std::span<const MeshGroup> groups,
+                     Attributes& attributes) {
+  if (groups.empty()) return;
+  text += "        color3f[] primvars:displayColor = ";
+  append_list(text, groups.size(), [&](std::size_t g) { return groups[g].appearance.color; });
+  append_interpolation(text, {2, "", groups.size() > 1 ? "uniform" : "constant"});
   text += '\n';
-  append_array(text, "int[] primvars:group", mesh.triangles.size(), group);
-  text += k_per_face;
+  if (groups.size() == 1) return;
+  const auto group = [&](std::size_t t) { return std::uint32_t{triangle_material(mesh, t)}; };
+  attributes.add(k_usd_color_indices, mesh.triangles.size(), group);
+  attributes.add(k_usd_group, mesh.triangles.size(), group);
 }
 
-/// The reference of a file beside or below: without "./" USD would look for it along a search path.
-std::string asset_path(const std::filesystem::path& file) {
-  const std::string path = (file.is_absolute() ? "" : "./") + file.generic_string();
-  if (path.find('@') == std::string::npos) return '@' + path + '@';
-  if (path.find("@@@") != std::string::npos) fail_file(file, "cannot be named in USD: @@@ ends a path there");
-  return "@@@" + path + "@@@";
+void append_binding(std::string& text, const std::string& indent, const std::string& material) {
+  text += indent + "rel material:binding = </surface/materials/" + material + ">\n";
 }
 
-std::string prim_name(int frame) {
-  const std::string digits = std::to_string(frame);
-  return "frame_" + std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;
-}
-
-void append_time_sample(std::string& text, int frame, const char* value) {
-  text += "            " + std::to_string(frame) + ": \"" + value + "\",\n";
-}
-
-/// A frame is there from its time to that of the next. A sample holds until the next one, the first also
-/// before it: that is why all but the first frame begin with one at the time of the first.
-void append_visibility(std::string& text, std::span<const UsdFrame> frames, std::size_t f) {
-  if (frames.size() == 1) return;
-  // For programs that pay no heed to time: the first frame alone.
-  if (f > 0) text += "        token visibility = \"invisible\"\n";
-  text += "        token visibility.timeSamples = {\n";
-  if (f > 0) append_time_sample(text, frames[0].number, "invisible");
-  append_time_sample(text, frames[f].number, "inherited");
-  if (f + 1 < frames.size()) append_time_sample(text, frames[f + 1].number, "invisible");
-  text += "        }\n";
-}
-
-void require_ascending(std::span<const UsdFrame> frames) {
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    if (frames[f].number >= 0 && (f == 0 || frames[f].number > frames[f - 1].number)) continue;
-    throw ConfigError("frames[" + std::to_string(f) + "].number",
-                      std::to_string(frames[f].number) + " is not allowed: from 0 on, ascending");
+/// The faces of each group, and its material; of groups without a face too, so that frames have the same.
+void append_subsets(std::string& text, const Mesh& mesh, const NamedGroups& named, Attributes& attributes) {
+  const auto triangles = triangles_by_material(mesh);
+  text += "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";
+  for (std::size_t g = 0; g < named.names.size(); ++g) {
+    text += "\n        def GeomSubset \"" + named.names[g] +
+            "\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n";
+    append_display_name(text, 3, named.names[g], named.titles[g]);
+    text += "        )\n        {\n";
+    text += "            uniform token elementType = \"face\"\n";
+    text += "            uniform token familyName = \"materialBind\"\n";
+    static const std::vector<std::size_t> k_none;
+    const auto found = triangles.find(static_cast<std::uint8_t>(g));
+    const std::vector<std::size_t>& faces = found == triangles.end() ? k_none : found->second;
+    attributes.add(k_usd_subset_indices, faces.size(),
+                   [&](std::size_t i) { return static_cast<std::uint32_t>(faces[i]); });
+    append_binding(text, "            ", named.materials[named.material_of[g]].name);
+    text += "        }\n";
   }
 }
 
-void require_positive(const char* field, double rate) {
-  if (std::isfinite(rate) && rate > 0) return;
-  throw ConfigError(field, std::to_string(rate) + " is not allowed: > 0");
+void append_materials(std::string& text, const NamedGroups& named) {
+  if (named.materials.empty()) return;
+  text += "\n    def Scope \"materials\"\n    {\n";
+  for (std::size_t m = 0; m < named.materials.size(); ++m) {
+    const NamedMaterial& material = named.materials[m];
+    if (m > 0) text += '\n';
+    text += "        def Material \"" + material.name + '"';
+    if (material.name != material.title) {
+      append_display_name(text += " (\n", 3, material.name, material.title);
+      text += "        )";
+    }
+    text += "\n        {\n            token outputs:surface.connect = </surface/materials/" + material.name +
+            "/preview.outputs:surface>\n\n            def Shader \"preview\"\n            {\n"
+            "                uniform token info:id = \"UsdPreviewSurface\"\n"
+            "                color3f inputs:diffuseColor = ";
+    append_value(text, material.appearance.color);
+    append_shortest(text += "\n                float inputs:roughness = ",
+                    roughness(material.appearance.finish));
+    text += "\n                token outputs:surface\n            }\n        }\n";
+  }
+  text += "    }\n";
 }
 
 }  // namespace
 
-void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh,
-                     std::span<const Appearance> palette) {
+void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshGroup> groups,
+                     const UsdOptions& options, std::optional<int> frame) {
   require_valid(mesh);
   require_finite(mesh);
-  require_appearances(mesh, palette);
+  require_groups(mesh, groups);
+  require_valid(options);
+  if (frame && *frame < 0) throw ConfigError("frame", std::to_string(*frame) + " is not allowed: from 0 on");
 
-  std::string text =
-      "#usda 1.0\n(\n    defaultPrim = \"surface\"\n    metersPerUnit = 1\n    upAxis = \"Z\"\n)\n\n"
-      "def Mesh \"surface\"\n{\n"
-      "    uniform bool doubleSided = 0\n"  // surfaces are closed
-      "    uniform token orientation = \"rightHanded\"\n"
-      "    uniform token subdivisionScheme = \"none\"\n";
-  if (!mesh.vertices.empty()) {
-    const Aabb box = bounds(mesh);
-    append_vectors(text, "float3[] extent", std::array{box.min, box.max});
-    text += '\n';
-  }
-  append_array(text, "int[] faceVertexCounts", mesh.triangles.size(), [](std::size_t) { return 3u; });
-  text += '\n';
-  append_array(text, "int[] faceVertexIndices", 3 * mesh.triangles.size(),
-               [&](std::size_t i) { return mesh.triangles[i / 3][i % 3]; });
-  text += '\n';
-  append_vectors(text, "point3f[] points", mesh.vertices);
-  text += '\n';
-  if (!mesh.normals.empty()) {
-    append_vectors(text, "normal3f[] normals", mesh.normals);
-    text += k_per_vertex;
-  }
-  if (!mesh.velocities.empty()) {
-    append_vectors(text, "vector3f[] velocities", mesh.velocities);
-    text += '\n';
-  }
-  append_primvars(text, mesh, palette);
+  const NamedGroups named = name_groups(groups, usd_name);
+  std::string text = usd_header(options, frame, frame) + "def Xform \"surface\"\n{\n    def Mesh \"mesh\"";
+  if (groups.size() == 1) text += " (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )";
+  text +=
+      "\n    {\n"
+      "        uniform bool doubleSided = 0\n"  // surfaces are closed
+      "        uniform token orientation = \"rightHanded\"\n"
+      "        uniform token subdivisionScheme = \"none\"\n";
+  Attributes attributes(text, frame);
+  append_columns(mesh, options, frame.has_value(), attributes);
+  append_primvars(text, mesh, groups, attributes);
+  if (groups.size() == 1) append_binding(text, "        ", named.materials[0].name);
+  if (groups.size() > 1) append_subsets(text, mesh, named, attributes);
+  text += "    }\n";
+  append_materials(text, named);
   text += "}\n";
   require_readable_size(file, text.size());
   write_whole(file, text);
-}
-
-void write_usda_series(const std::filesystem::path& file, std::span<const UsdFrame> frames,
-                       const UsdTimeline& timeline) {
-  require_ascending(frames);
-  require_positive("timeline.time_codes_per_second", timeline.time_codes_per_second);
-  require_positive("timeline.frames_per_second", timeline.frames_per_second);
-
-  std::string text = "#usda 1.0\n(\n    defaultPrim = \"surface\"\n";
-  if (!frames.empty()) {
-    text += "    endTimeCode = " + std::to_string(frames.back().number) + '\n';
-    text += "    startTimeCode = " + std::to_string(frames.front().number) + '\n';
-  }
-  append_shortest(text += "    framesPerSecond = ", timeline.frames_per_second);
-  append_shortest(text += "\n    timeCodesPerSecond = ", timeline.time_codes_per_second);
-  text += "\n    metersPerUnit = 1\n    upAxis = \"Z\"\n)\n\ndef Xform \"surface\"\n{\n";
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    text += "    def \"" + prim_name(frames[f].number) +
-            "\" (\n        prepend references = " + asset_path(frames[f].file) + "\n    )\n    {\n";
-    append_visibility(text, frames, f);
-    text += "    }\n";
-  }
-  write_whole(file, text + "}\n");
 }
 
 }  // namespace mallow

@@ -9,8 +9,9 @@ namespace {
 
 namespace gltf = mallow_tinygltf;
 
-const std::vector<Appearance> k_palette = {
-    {{0.8f, 0.24f, 0.09f}}, {{0, 1, 0.5f}}, {{0.1f, 0.2f, 0.3f}, Finish::clay}};
+const std::vector<MeshGroup> k_groups = {{{{0.8f, 0.24f, 0.09f}}, "left cube", "paste"},
+                                         {{{0, 1, 0.5f}}},
+                                         {{{0.1f, 0.2f, 0.3f}, Finish::clay}, "Würfel \"2\"", "clay"}};
 
 gltf::Model read_glb(const std::filesystem::path& file) {
   gltf::Model model;
@@ -53,39 +54,69 @@ Mesh two_tetrahedra() {
   return mesh;
 }
 
-TEST(glb, gives_back_vertices_normals_velocities_and_a_primitive_per_material) {
+TEST(glb, gives_back_vertices_normals_velocities_and_a_named_mesh_per_group) {
   const TemporaryFolder folder;
   const Mesh mesh = two_tetrahedra();
-  write_mesh_glb(folder / "a.glb", mesh, k_palette);
+  write_mesh_glb(folder / "a.glb", mesh, k_groups);
   const gltf::Model model = read_glb(folder / "a.glb");
-  ASSERT_EQ(model.meshes.size(), 1u);
-  ASSERT_EQ(model.meshes[0].primitives.size(), 2u);
+  ASSERT_EQ(model.meshes.size(), 2u);
+  EXPECT_EQ(model.nodes.at(0).name, "surface");
+  EXPECT_EQ(model.nodes[0].children, (std::vector<int>{1, 2}));
   for (std::size_t part = 0; part < 2; ++part) {
-    const gltf::Primitive& primitive = model.meshes[0].primitives[part];
+    const MeshGroup& group = k_groups[2 * part];
+    EXPECT_EQ(model.nodes.at(part + 1).mesh, static_cast<int>(part));
+    EXPECT_EQ(model.nodes[part + 1].name, group.name);
+    EXPECT_EQ(model.meshes[part].name, group.name);
+    ASSERT_EQ(model.meshes[part].primitives.size(), 1u);
+    const gltf::Primitive& primitive = model.meshes[part].primitives[0];
     EXPECT_EQ(primitive.mode, TINYGLTF_MODE_TRIANGLES);
-    EXPECT_EQ(numbers<Vec3>(model, primitive.attributes.at("POSITION")), mesh.vertices);
-    EXPECT_EQ(numbers<Vec3>(model, primitive.attributes.at("NORMAL")), mesh.normals);
-    EXPECT_EQ(numbers<Vec3>(model, primitive.attributes.at("_VELOCITY")), mesh.velocities);
-    const auto triangles = numbers<std::uint32_t>(model, primitive.indices);
-    ASSERT_EQ(triangles.size(), 12u);
-    for (std::size_t k = 0; k < 12; ++k) EXPECT_EQ(triangles[k], mesh.triangles[4 * part + k / 3][k % 3]);
-    const auto& color =
-        model.materials.at(static_cast<std::size_t>(primitive.material)).pbrMetallicRoughness.baseColorFactor;
+    const auto half = [&](const std::vector<Vec3>& vectors) {
+      const auto first = vectors.begin() + static_cast<std::ptrdiff_t>(4 * part);
+      return std::vector<Vec3>(first, first + 4);
+    };
+    const std::vector<Vec3> vertices = half(mesh.vertices);
+    EXPECT_EQ(numbers<Vec3>(model, primitive.attributes.at("POSITION")), vertices);
+    EXPECT_EQ(numbers<Vec3>(model, primitive.attributes.at("NORMAL")), half(mesh.normals));
+    EXPECT_EQ(numbers<Vec3>(model, primitive.attributes.at("_VELOCITY")), half(mesh.velocities));
+    const auto corners = numbers<std::uint32_t>(model, primitive.indices);
+    ASSERT_EQ(corners.size(), 12u);
+    for (std::size_t k = 0; k < 12; ++k)
+      EXPECT_EQ(corners[k] + 4 * part, mesh.triangles[4 * part + k / 3][k % 3]);
+    const gltf::Material& material = model.materials.at(static_cast<std::size_t>(primitive.material));
+    EXPECT_EQ(material.name, group.material);
     for (int k = 0; k < 3; ++k)
-      EXPECT_EQ(static_cast<float>(color.at(static_cast<std::size_t>(k))), k_palette[2 * part].color[k]);
+      EXPECT_EQ(
+          static_cast<float>(material.pbrMetallicRoughness.baseColorFactor.at(static_cast<std::size_t>(k))),
+          group.appearance.color[k]);
+    const gltf::Accessor& positions = accessor_of(model, primitive.attributes.at("POSITION"));
+    Mesh points;
+    points.vertices = vertices;
+    const Aabb box = bounds(points);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(static_cast<float>(positions.minValues.at(static_cast<std::size_t>(k))), box.min[k]);
+      EXPECT_EQ(static_cast<float>(positions.maxValues.at(static_cast<std::size_t>(k))), box.max[k]);
+    }
   }
-  const gltf::Accessor& positions =
-      accessor_of(model, model.meshes[0].primitives[0].attributes.at("POSITION"));
-  const Aabb box = bounds(mesh);
-  for (int k = 0; k < 3; ++k) {
-    EXPECT_EQ(static_cast<float>(positions.minValues.at(static_cast<std::size_t>(k))), box.min[k]);
-    EXPECT_EQ(static_cast<float>(positions.maxValues.at(static_cast<std::size_t>(k))), box.max[k]);
-  }
+}
+
+TEST(glb, groups_share_a_material_of_one_name_and_look) {
+  const TemporaryFolder folder;
+  const Appearance red{{1, 0, 0}}, blue{{0, 0, 1}};
+  const auto names = [&](const MeshGroup& first, const MeshGroup& last) {
+    write_mesh_glb(folder / "a.glb", two_tetrahedra(), std::array{first, MeshGroup{}, last});
+    std::vector<std::string> found;
+    for (const gltf::Material& material : read_glb(folder / "a.glb").materials)
+      found.push_back(material.name);
+    return found;
+  };
+  EXPECT_EQ(names({red, "a", "jelly"}, {red, "b", "jelly"}), (std::vector<std::string>{"jelly"}));
+  EXPECT_EQ(names({red, "a", "jelly"}, {blue, "b", "jelly"}), (std::vector<std::string>{"jelly", "jelly_1"}));
+  EXPECT_EQ(names({red}, {red}), (std::vector<std::string>{"paste", "material 2"}));
 }
 
 TEST(glb, clay_is_rougher_than_jelly) {
   const TemporaryFolder folder;
-  write_mesh_glb(folder / "a.glb", two_tetrahedra(), k_palette);
+  write_mesh_glb(folder / "a.glb", two_tetrahedra(), k_groups);
   const gltf::Model model = read_glb(folder / "a.glb");
   ASSERT_EQ(model.materials.size(), 2u);
   EXPECT_EQ(model.materials[0].pbrMetallicRoughness.roughnessFactor, 0.5);
@@ -94,30 +125,30 @@ TEST(glb, clay_is_rougher_than_jelly) {
     EXPECT_EQ(material.pbrMetallicRoughness.metallicFactor, 0);
 }
 
-TEST(glb, a_triangle_is_of_the_material_of_most_of_its_corners) {
+TEST(glb, a_triangle_is_of_the_group_of_most_of_its_corners) {
   const TemporaryFolder folder;
   struct Case {
     std::array<std::uint8_t, 3> corners;
-    const char* material;
+    const char* group;
   };
   for (const Case& one :
-       {Case{{0, 0, 2}, "material 0"}, Case{{0, 2, 0}, "material 0"}, Case{{0, 2, 2}, "material 2"},
-        Case{{2, 0, 2}, "material 2"}, Case{{2, 1, 0}, "material 0"}, Case{{1, 2, 0}, "material 0"}}) {
+       {Case{{0, 0, 2}, "left cube"}, Case{{0, 2, 0}, "left cube"}, Case{{0, 2, 2}, "Würfel \"2\""},
+        Case{{2, 0, 2}, "Würfel \"2\""}, Case{{2, 1, 0}, "left cube"}, Case{{1, 2, 0}, "left cube"}}) {
     const Mesh triangle{.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
                         .triangles = {{0, 1, 2}},
                         .normals = {},
                         .velocities = {},
                         .material_ids = {one.corners.begin(), one.corners.end()}};
-    write_mesh_glb(folder / "a.glb", triangle, k_palette);
+    write_mesh_glb(folder / "a.glb", triangle, k_groups);
     const gltf::Model model = read_glb(folder / "a.glb");
     ASSERT_EQ(model.materials.size(), 1u);
-    EXPECT_EQ(model.materials[0].name, one.material);
+    EXPECT_EQ(model.meshes.at(0).name, one.group);
   }
 }
 
 TEST(glb, a_bare_mesh_has_positions_only) {
   const TemporaryFolder folder;
-  write_mesh_glb(folder / "a.glb", tetrahedron(), k_palette);
+  write_mesh_glb(folder / "a.glb", tetrahedron(), k_groups);
   const gltf::Model model = read_glb(folder / "a.glb");
   ASSERT_EQ(model.meshes.at(0).primitives.size(), 1u);
   EXPECT_EQ(model.meshes[0].primitives[0].attributes.size(), 1u);
@@ -138,26 +169,31 @@ TEST(glb, a_mesh_without_triangles_is_a_scene_without_a_mesh) {
 
 TEST(glb, what_gltf_cannot_say_is_refused_by_name) {
   const TemporaryFolder folder;
-  const auto field = [&](const Mesh& mesh, std::span<const Appearance> palette) {
+  const auto field = [&](const Mesh& mesh, std::span<const MeshGroup> groups) {
     try {
-      write_mesh_glb(folder / "a.glb", mesh, palette);
+      write_mesh_glb(folder / "a.glb", mesh, groups);
     } catch (const ConfigError& error) {
       return error.problems().at(0).field;
     }
     return std::string("nothing");
   };
   const Mesh mesh = two_tetrahedra();
-  EXPECT_EQ(field(mesh, std::span(k_palette).first(2)), "palette");
-  EXPECT_EQ(field(mesh, std::array{Appearance{}, Appearance{{0, 2, 0}}, Appearance{}}), "palette[1].color");
+  EXPECT_EQ(field(mesh, std::span(k_groups).first(2)), "groups");
+  EXPECT_EQ(field(mesh, std::array{MeshGroup{}, MeshGroup{{{0, 2, 0}}}, MeshGroup{}}),
+            "groups[1].appearance.color");
+  // A byte of its own, a cut character, one longer than need be, a half of a pair, and one beyond the last.
+  for (const char* name : {"\x80", "caf\xC3", "\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80"})
+    EXPECT_EQ(field(mesh, std::array{MeshGroup{}, MeshGroup{}, MeshGroup{{}, name}}), "groups[2].name")
+        << name;
   Mesh wrong = mesh;
   wrong.velocities.pop_back();
-  EXPECT_EQ(field(wrong, k_palette), "mesh.velocities");
+  EXPECT_EQ(field(wrong, k_groups), "mesh.velocities");
   wrong = mesh;
   wrong.vertices[3].y() = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(field(wrong, k_palette), "mesh.vertices[3]");
+  EXPECT_EQ(field(wrong, k_groups), "mesh.vertices[3]");
   wrong = mesh;
   wrong.triangles[5][2] = 8;
-  EXPECT_EQ(field(wrong, k_palette), "mesh.triangles[5]");
+  EXPECT_EQ(field(wrong, k_groups), "mesh.triangles[5]");
   EXPECT_EQ(folder.entries(), 0u);
 }
 

@@ -27,6 +27,52 @@ TEST(mesh_file, obj_gives_the_same_mesh_back) {
   EXPECT_NE(content_of(folder / "a.obj").find("f 1//1 3//3 2//2\n"), std::string::npos);
 }
 
+TEST(mesh_file, obj_says_which_axis_is_up_and_turns_to_y) {
+  const TemporaryFolder folder;
+  Mesh mesh = tetrahedron();
+  mesh.normals = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {0.6f, 0, -0.8f}};
+  write_mesh_obj(folder / "z.obj", mesh);
+  EXPECT_NE(content_of(folder / "z.obj").find("# z is up\n"), std::string::npos);
+  write_mesh_obj(folder / "y.obj", mesh, {.up = UpAxis::y});
+  const std::string text = content_of(folder / "y.obj");
+  EXPECT_NE(text.find("# y is up\n"), std::string::npos);
+  EXPECT_NE(text.find("\nvn 0 1 0\nvn 1 0 0\nvn 0 0 -1\n"), std::string::npos) << text;
+  const Mesh read = read_mesh(folder / "y.obj");
+  EXPECT_EQ(read.triangles, mesh.triangles);
+  for (std::size_t v = 0; v < 4; ++v) {
+    const Vec3& z_up = mesh.vertices[v];
+    EXPECT_EQ(read.vertices.at(v), Vec3(z_up.x(), z_up.z(), -z_up.y()));
+  }
+}
+
+TEST(mesh_file, obj_names_groups_and_materials_that_are_in_the_mtl) {
+  const TemporaryFolder folder;
+  Mesh mesh = tetrahedron();
+  mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {3, 2, 1}, {1, 2, 0}};
+  mesh.material_ids = {2, 0, 0, 2};  // triangles of groups 0, 2, 0, 0
+  const std::vector<MeshGroup> groups = {{{{0.5f, 0, 1}}, "left cube", "soft\tjelly#1"},
+                                         {},
+                                         {{{0.2f, 0.2f, 0.2f}, Finish::clay}, "left\ncube", "Ton"}};
+  write_mtl(folder / "m.mtl", groups);
+  write_mesh_obj(folder / "a.obj", mesh, {.groups = groups, .material_library = "m.mtl"});
+  const std::string text = content_of(folder / "a.obj");
+  EXPECT_NE(text.find("mtllib m.mtl\n"), std::string::npos);
+  EXPECT_NE(text.find("g left_cube\nusemtl soft_jelly_1\nf 1 2 3\nf 4 3 2\nf 2 3 1\n"
+                      "g left_cube_1\nusemtl Ton\nf 1 2 4\n"),
+            std::string::npos)
+      << text;
+  const Mesh read = read_mesh(folder / "a.obj");
+  EXPECT_EQ(read.vertices, mesh.vertices);
+  EXPECT_EQ(read.triangles, (Triangles{{0, 1, 2}, {3, 2, 1}, {1, 2, 0}, {0, 1, 3}}));
+  EXPECT_EQ(
+      content_of(folder / "m.mtl"),
+      "# mallow materials\n# Kd is sRGB\n"
+      "\nnewmtl soft_jelly_1\nKd 0.735357 0 1\nKs 0.5 0.5 0.5\nNs 250\nPr 0.5\nPm 0\nd 1\nillum 2\n"
+      "\nnewmtl material_1\nKd 0.906332 0.906332 0.906332\nKs 0.5 0.5 0.5\nNs 250\nPr 0.5\nPm 0\nd 1\n"
+      "illum 2\n"
+      "\nnewmtl Ton\nKd 0.484529 0.484529 0.484529\nKs 0.1 0.1 0.1\nNs 10\nPr 0.9\nPm 0\nd 1\nillum 2\n");
+}
+
 TEST(mesh_file, ply_gives_the_same_mesh_back_with_normals_velocities_and_materials) {
   const TemporaryFolder folder;
   Mesh mesh = tetrahedron();
@@ -61,6 +107,10 @@ TEST(mesh_file, columns_of_the_wrong_length_are_not_written) {
   mesh.normals.clear();
   mesh.material_ids.resize(5);
   EXPECT_THROW(write_mesh_ply(folder / "a.ply", mesh), ConfigError);
+  mesh.material_ids = {0, 0, 0, 0};
+  EXPECT_THROW(write_mesh_obj(folder / "a.obj", mesh, {.material_library = "a\nv 1 2 3"}), ConfigError);
+  mesh.material_ids = {1, 1, 1, 1};
+  EXPECT_THROW(write_mesh_obj(folder / "a.obj", mesh, {.groups = std::array{MeshGroup{}}}), ConfigError);
   EXPECT_EQ(folder.entries(), 0u);
 }
 

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <charconv>
 #include <limits>
+#include <sstream>
 
 #include "files/file_fixture.h"
 #include "files/other_reader.h"
@@ -8,7 +10,12 @@ namespace mallow {
 namespace {
 
 const std::vector<Vec3> k_colors = {{0.8f, 0.24f, 0.09f}, {0, 1, 0.5f}, {0.1f, 0.2f, 0.3f}};
-const std::vector<Appearance> k_palette = {{k_colors[0]}, {k_colors[1]}, {k_colors[2]}};
+const std::vector<MeshGroup> k_groups = {{{k_colors[0]}, "cube", "jelly"},
+                                         {{k_colors[1]}, "2 \"balls\"", "clay"},
+                                         {{k_colors[2]}, "pool", "jelly"}};
+/// Of one group, whose material is bound to the whole mesh.
+const std::vector<MeshGroup> k_group = {{{k_colors[0], Finish::clay}, "cube", "soft clay"}};
+constexpr const char* k_mesh = "/surface/mesh";
 
 Mesh triangle() {
   Mesh mesh;
@@ -66,96 +73,269 @@ TEST(usda, a_mesh_is_the_text_that_usd_expects) {
   const TemporaryFolder folder;
   Mesh mesh = triangle();
   mesh.velocities = {{0, 0, 0}, {1, 2, 3}, {0, 0, -9.8f}};
-  mesh.material_ids = {1, 1, 0};
-  write_mesh_usda(folder / "a.usda", mesh, k_palette);
+  write_mesh_usda(folder / "a.usda", mesh, k_group);
   EXPECT_EQ(content_of(folder / "a.usda"), R"(#usda 1.0
 (
     defaultPrim = "surface"
+    framesPerSecond = 30
     metersPerUnit = 1
-    upAxis = "Z"
-)
-
-def Mesh "surface"
-{
-    uniform bool doubleSided = 0
-    uniform token orientation = "rightHanded"
-    uniform token subdivisionScheme = "none"
-    float3[] extent = [(0, 0.1, -2), (7, 1e+10, 1e-20)]
-    int[] faceVertexCounts = [3]
-    int[] faceVertexIndices = [0, 1, 2]
-    point3f[] points = [(0, 0.1, -2), (0.33333334, 1e+10, 1e-20), (7, 8, -0.5)]
-    vector3f[] velocities = [(0, 0, 0), (1, 2, 3), (0, 0, -9.8)]
-    color3f[] primvars:displayColor = [(0.8, 0.24, 0.09), (0, 1, 0.5), (0.1, 0.2, 0.3)] (
-        interpolation = "uniform"
-    )
-    int[] primvars:displayColor:indices = [1]
-    int[] primvars:group = [1] (
-        interpolation = "uniform"
-    )
-}
-)");
-}
-
-TEST(usda, a_series_shows_each_frame_until_the_next) {
-  const TemporaryFolder folder;
-  const std::vector<UsdFrame> frames = {{"s/a.usda", 0}, {"s/b.usda", 1}, {"s/c@.usda", 1000003}};
-  write_usda_series(folder / "a.usda", frames, {.time_codes_per_second = 0.1, .frames_per_second = 24});
-  EXPECT_EQ(content_of(folder / "a.usda"), R"(#usda 1.0
-(
-    defaultPrim = "surface"
-    endTimeCode = 1000003
-    startTimeCode = 0
-    framesPerSecond = 24
-    timeCodesPerSecond = 0.1
-    metersPerUnit = 1
+    timeCodesPerSecond = 30
     upAxis = "Z"
 )
 
 def Xform "surface"
 {
-    def "frame_000000" (
-        prepend references = @./s/a.usda@
+    def Mesh "mesh" (
+        prepend apiSchemas = ["MaterialBindingAPI"]
     )
     {
-        token visibility.timeSamples = {
-            0: "inherited",
-            1: "invisible",
-        }
+        uniform bool doubleSided = 0
+        uniform token orientation = "rightHanded"
+        uniform token subdivisionScheme = "none"
+        float3[] extent = [(0, 0.1, -2), (7, 1e+10, 1e-20)]
+        int[] faceVertexCounts = [3]
+        int[] faceVertexIndices = [0, 1, 2]
+        point3f[] points = [(0, 0.1, -2), (0.33333334, 1e+10, 1e-20), (7, 8, -0.5)]
+        vector3f[] velocities = [(0, 0, 0), (1, 2, 3), (0, 0, -9.8)]
+        color3f[] primvars:displayColor = [(0.8, 0.24, 0.09)] (
+            interpolation = "constant"
+        )
+        rel material:binding = </surface/materials/soft_clay>
     }
-    def "frame_000001" (
-        prepend references = @./s/b.usda@
-    )
+
+    def Scope "materials"
     {
-        token visibility = "invisible"
-        token visibility.timeSamples = {
-            0: "invisible",
-            1: "inherited",
-            1000003: "invisible",
-        }
-    }
-    def "frame_1000003" (
-        prepend references = @@@./s/c@.usda@@@
-    )
-    {
-        token visibility = "invisible"
-        token visibility.timeSamples = {
-            0: "invisible",
-            1000003: "inherited",
+        def Material "soft_clay" (
+            displayName = "soft clay"
+        )
+        {
+            token outputs:surface.connect = </surface/materials/soft_clay/preview.outputs:surface>
+
+            def Shader "preview"
+            {
+                uniform token info:id = "UsdPreviewSurface"
+                color3f inputs:diffuseColor = (0.8, 0.24, 0.09)
+                float inputs:roughness = 0.9
+                token outputs:surface
+            }
         }
     }
 }
 )");
 }
 
+/// Where a frame's values are samples at its time, of all that changes with its topology, and with y up.
+TEST(usda, a_frame_of_several_groups_is_the_text_that_usd_expects) {
+  const TemporaryFolder folder;
+  Mesh mesh = triangle();
+  mesh.normals = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}};
+  mesh.velocities = {{0, 0, 0}, {1, 2, 3}, {0, 0, -9.5f}};
+  mesh.material_ids = {1, 1, 0};
+  write_mesh_usda(folder / "a.usda", mesh, std::span(k_groups).first(2),
+                  {.up = UpAxis::y, .frames_per_second = 24, .speed = 2}, 12);
+  const std::string text = content_of(folder / "a.usda");
+  const std::string begin = R"(#usda 1.0
+(
+    defaultPrim = "surface"
+    endTimeCode = 12
+    framesPerSecond = 24
+    metersPerUnit = 1
+    startTimeCode = 12
+    timeCodesPerSecond = 24
+    upAxis = "Y"
+)
+
+def Xform "surface"
+{
+    def Mesh "mesh"
+    {
+        uniform bool doubleSided = 0
+        uniform token orientation = "rightHanded"
+        uniform token subdivisionScheme = "none"
+        float3[] extent.timeSamples = {
+            12: [(0, -2, -1e+10), (7, 1e-20, -0.1)],
+        }
+        int[] faceVertexCounts.timeSamples = {
+            12: [3],
+        }
+        int[] faceVertexIndices.timeSamples = {
+            12: [0, 1, 2],
+        }
+        point3f[] points.timeSamples = {
+            12: [(0, -2, -0.1), (0.33333334, 1e-20, -1e+10), (7, -0.5, -8)],
+        }
+        normal3f[] normals (
+            interpolation = "vertex"
+        )
+        normal3f[] normals.timeSamples = {
+            12: [(0, 1, 0), (0, 0, -1), (1, 0, 0)],
+        }
+        vector3f[] velocities.timeSamples = {
+            12: [(0, 0, 0), (2, 6, -4), (0, -19, 0)],
+        }
+        color3f[] primvars:displayColor = [(0.8, 0.24, 0.09), (0, 1, 0.5)] (
+            interpolation = "uniform"
+        )
+        int[] primvars:displayColor:indices.timeSamples = {
+            12: [1],
+        }
+        int[] primvars:group (
+            interpolation = "uniform"
+        )
+        int[] primvars:group.timeSamples = {
+            12: [1],
+        }
+        uniform token subsetFamily:materialBind:familyType = "partition"
+
+        def GeomSubset "cube" (
+            prepend apiSchemas = ["MaterialBindingAPI"]
+        )
+        {
+            uniform token elementType = "face"
+            uniform token familyName = "materialBind"
+            int[] indices.timeSamples = {
+                12: [],
+            }
+            rel material:binding = </surface/materials/jelly>
+        }
+
+        def GeomSubset "_2__balls_" (
+            prepend apiSchemas = ["MaterialBindingAPI"]
+            displayName = "2 \"balls\""
+        )
+        {
+            uniform token elementType = "face"
+            uniform token familyName = "materialBind"
+            int[] indices.timeSamples = {
+                12: [0],
+            }
+            rel material:binding = </surface/materials/clay>
+        }
+    }
+
+    def Scope "materials"
+    {
+        def Material "jelly"
+        {
+)";
+  EXPECT_EQ(text.substr(0, begin.size()), begin);
+}
+
+TEST(usda, a_series_is_one_mesh_with_the_files_of_its_frames_as_value_clips) {
+  const TemporaryFolder folder;
+  const std::vector<UsdFrame> frames = {{"s/a.usda", 0}, {"s/b.usda", 1}, {"s/c@.usda", 1000003}};
+  write_usda_series(folder / "a.usda", frames, k_groups, {.frames_per_second = 24});
+  const std::string header = R"(#usda 1.0
+(
+    defaultPrim = "surface"
+    endTimeCode = 1000003
+    framesPerSecond = 24
+    metersPerUnit = 1
+    startTimeCode = 0
+    timeCodesPerSecond = 24
+    upAxis = "Z"
+)
+
+)";
+  EXPECT_EQ(content_of(folder / "a.usda"), header + R"(def Xform "surface" (
+    clips = {
+        dictionary default = {
+            double2[] active = [(0, 0), (1, 1), (1000003, 2)]
+            asset[] assetPaths = [@./s/a.usda@, @./s/b.usda@, @@@./s/c@.usda@@@]
+            asset manifestAssetPath = @./a.manifest.usda@
+            string primPath = "/surface"
+            double2[] times = [(0, 0), (1, 1), (1000003, 1000003)]
+        }
+    }
+    prepend references = @./s/a.usda@
+)
+{
+    def Mesh "mesh"
+    {
+    }
+}
+)");
+  EXPECT_EQ(usda_manifest(folder / "a.usda"), folder / "a.manifest.usda");
+  EXPECT_EQ(content_of(folder / "a.manifest.usda"), header + R"(def Xform "surface"
+{
+    def Mesh "mesh"
+    {
+        float3[] extent
+        int[] faceVertexCounts
+        int[] faceVertexIndices
+        point3f[] points
+        normal3f[] normals (
+            interpolation = "vertex"
+        )
+        vector3f[] velocities
+        int[] primvars:displayColor:indices
+        int[] primvars:group (
+            interpolation = "uniform"
+        )
+
+        def GeomSubset "cube"
+        {
+            int[] indices
+        }
+
+        def GeomSubset "_2__balls_"
+        {
+            int[] indices
+        }
+
+        def GeomSubset "pool"
+        {
+            int[] indices
+        }
+    }
+}
+)");
+}
+
+/// The attributes of a text of USD that have samples, as `prim/type name`.
+std::vector<std::string> attributes_of(const std::string& text, const std::string& ending) {
+  std::vector<std::string> found;
+  std::string prim;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (const std::size_t def = line.find("def "); def != std::string::npos)
+      prim = line.substr(def, line.rfind('"') - def);
+    const std::size_t begin = line.find_first_not_of(' ');
+    const std::size_t end = line.size() - std::min(line.size(), ending.size());
+    if (line.find("[] ") != std::string::npos && line.substr(end) == ending)
+      found.push_back(prim + '/' + line.substr(begin, end - begin));
+  }
+  return found;
+}
+
+/// A value clip gives what the manifest names and no more, and holds nothing from the clip before.
+TEST(usda, a_manifest_names_what_has_samples_in_frames_of_a_full_mesh_and_of_nothing) {
+  const TemporaryFolder folder;
+  for (const std::vector<MeshGroup>& groups : {k_groups, k_group}) {
+    Mesh mesh = full_mesh();
+    if (groups.size() == 1) mesh.material_ids.clear();
+    write_usda_series(folder / "a.usda", std::vector<UsdFrame>{{"s/a.usda", 0}}, groups);
+    std::string manifest = content_of(folder / "a.manifest.usda");
+    for (std::size_t at = manifest.find(" (\n"); at != std::string::npos; at = manifest.find(" (\n", at))
+      manifest.erase(at, 2);
+    const std::vector<std::string> named = attributes_of(manifest, "");
+    EXPECT_EQ(named.size(), groups.size() == 1 ? 6u : 11u);
+    for (const Mesh& frame : {mesh, Mesh{}}) {
+      write_mesh_usda(folder / "b.usda", frame, groups, {}, 0);
+      EXPECT_EQ(attributes_of(content_of(folder / "b.usda"), ".timeSamples = {"), named);
+    }
+  }
+}
+
 TEST(usda, tinyusdz_reads_the_mesh_that_was_written) {
   const TemporaryFolder folder;
   const Mesh mesh = full_mesh();
-  write_mesh_usda(folder / "a.usda", mesh, k_palette);
+  write_mesh_usda(folder / "a.usda", mesh, k_groups);
   READ_WITH_TINYUSDZ(read, folder / "a.usda");
   ASSERT_EQ(read.at("error"), "");
   ASSERT_EQ(read.at("meshes").size(), 1u);
   const nlohmann::json& found = read.at("meshes")[0];
-  EXPECT_EQ(found.at("path"), "/surface");
+  EXPECT_EQ(found.at("path"), k_mesh);
   EXPECT_EQ(found.at("points"), numbers(mesh.vertices));
   EXPECT_EQ(found.at("normals"), numbers(mesh.normals));
   EXPECT_EQ(found.at("counts"), (nlohmann::json{3, 3}));
@@ -173,64 +353,70 @@ TEST(usda, tinyusdz_reads_the_mesh_that_was_written) {
     EXPECT_TRUE(has(layer, line)) << line << layer;
 }
 
-TEST(usda, tinyusdz_plays_the_frames_of_a_series) {
+/// It knows no value clips: what it shows of a series is the first frame, under the prim that the others
+/// change.
+TEST(usda, tinyusdz_finds_one_mesh_in_a_series_and_each_frame_by_itself) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "s");
-  const std::array<Mesh, 2> meshes = {triangle(), full_mesh()};
-  write_mesh_usda(folder / "s/frame_000000.usda", meshes[0], k_palette);
-  write_mesh_usda(folder / "s/frame_000001.usda", meshes[1], k_palette);
+  Mesh other = full_mesh();
+  other.triangles.pop_back();
+  const std::array<Mesh, 2> meshes = {full_mesh(), other};
+  const UsdOptions options{.frames_per_second = 25, .speed = 0.5};
+  write_mesh_usda(folder / "s/frame_000000.usda", meshes[0], k_groups, options, 0);
+  write_mesh_usda(folder / "s/frame_000001.usda", meshes[1], k_groups, options, 1);
   write_usda_series(folder / "a.usda",
-                    std::vector<UsdFrame>{{"s/frame_000000.usda", 0}, {"s/frame_000001.usda", 1}},
-                    {.time_codes_per_second = 6.5, .frames_per_second = 25});
+                    std::vector<UsdFrame>{{"s/frame_000000.usda", 0}, {"s/frame_000001.usda", 1}}, k_groups,
+                    options);
+  const auto expect_mesh = [](const nlohmann::json& read, const Mesh& mesh) {
+    ASSERT_EQ(read.at("error"), "");
+    ASSERT_EQ(read.at("meshes").size(), 1u);
+    const nlohmann::json& found = read.at("meshes")[0];
+    EXPECT_EQ(found.at("path"), k_mesh);
+    EXPECT_EQ(found.at("points"), numbers(mesh.vertices));
+    EXPECT_EQ(found.at("normals"), numbers(mesh.normals));
+    EXPECT_EQ(found.at("corners").size(), 3 * mesh.triangles.size());
+  };
   READ_WITH_TINYUSDZ(read, folder / "a.usda");
-  ASSERT_EQ(read.at("error"), "");
-  ASSERT_EQ(read.at("meshes").size(), 2u);
-  for (std::size_t f = 0; f < 2; ++f) {
-    const nlohmann::json& found = read.at("meshes")[f];
-    EXPECT_EQ(found.at("path"), "/surface/frame_00000" + std::to_string(f));
-    EXPECT_EQ(found.at("points"), numbers(meshes[f].vertices));
-    EXPECT_EQ(found.at("corners").size(), 3 * meshes[f].triangles.size());
-  }
+  expect_mesh(read, meshes[0]);
   const nlohmann::json& root = read.at("root");
-  for (const char* line : {"timeCodesPerSecond = 6.5\n", "framesPerSecond = 25\n", "startTimeCode = 0\n",
-                           "endTimeCode = 1\n", "upAxis = \"Z\"\n", "metersPerUnit = 1\n"})
+  for (const char* line :
+       {"timeCodesPerSecond = 25\n", "framesPerSecond = 25\n", "startTimeCode = 0\n", "endTimeCode = 1\n",
+        "upAxis = \"Z\"\n", "metersPerUnit = 1\n",
+        "assetPaths = [@./s/frame_000000.usda@, @./s/frame_000001.usda@]\n",
+        "asset manifestAssetPath = @./a.manifest.usda@\n", "string primPath = \"/surface\"\n"})
     EXPECT_TRUE(has(root, line)) << line << root;
-  // The samples stay with the mesh once the references are part of the layer.
-  const std::string& layer = read.at("layer").get_ref<const std::string&>();
-  const std::size_t second = layer.find("def Mesh \"frame_000001\"");
-  ASSERT_LT(second, layer.size());
-  EXPECT_TRUE(
-      has(layer.substr(0, second),
-          "visibility.timeSamples = {\n            0: \"inherited\",\n            1: \"invisible\",\n"))
-      << layer;
-  EXPECT_TRUE(
-      has(layer.substr(second),
-          "visibility.timeSamples = {\n            0: \"invisible\",\n            1: \"inherited\",\n"))
-      << layer;
-  EXPECT_TRUE(has(layer.substr(second), "token visibility = \"invisible\"\n")) << layer;
+  READ_WITH_TINYUSDZ(second, folder / "s/frame_000001.usda");
+  expect_mesh(second, meshes[1]);
+  for (const char* text :
+       {"vector3f[] velocities.timeSamples = {\n            1: [(0, 0, -4.9), (0.0005, 0, 0), ",
+        "int[] primvars:displayColor:indices.timeSamples = {\n            1: [2],\n",
+        "def Material \"jelly\"", "rel material:binding = </surface/materials/clay>"})
+    EXPECT_TRUE(has(second.at("layer"), text)) << text << second.at("layer");
+  READ_WITH_TINYUSDZ(manifest, folder / "a.manifest.usda");
+  EXPECT_TRUE(has(manifest.at("root"), "point3f[] points\n")) << manifest;
 }
 
 /// So that what it reads without complaint says something.
-TEST(usda, tinyusdz_refuses_a_series_with_a_broken_sample_and_a_mesh_with_a_wrong_corner) {
+TEST(usda, tinyusdz_refuses_a_frame_with_a_broken_sample_and_a_mesh_with_a_wrong_corner) {
   const TemporaryFolder folder;
   const auto damaged = [&](const char* right, const char* wrong) {
     std::string text = content_of(folder / "a.usda");
     text.replace(text.find(right), std::string(right).size(), wrong);
     return folder.file("b.usda", text);
   };
-  write_usda_series(folder / "a.usda", std::vector<UsdFrame>{{"s/a.usda", 0}, {"s/b.usda", 1}}, {});
-  READ_WITH_TINYUSDZ(no_value, damaged("1: \"invisible\"", "1: "));
+  write_mesh_usda(folder / "a.usda", triangle(), k_group, {}, 7);
+  READ_WITH_TINYUSDZ(no_value, damaged("7: [3]", "7: "));
   EXPECT_NE(no_value.at("error"), "");
-  READ_WITH_TINYUSDZ(no_time, damaged("1: \"invisible\"", "one: \"invisible\""));
+  READ_WITH_TINYUSDZ(no_time, damaged("7: [3]", "seven: [3]"));
   EXPECT_NE(no_time.at("error"), "");
-  write_mesh_usda(folder / "a.usda", triangle(), k_palette);
+  write_mesh_usda(folder / "a.usda", triangle(), k_group);
   READ_WITH_TINYUSDZ(wrong_corner, damaged("[0, 1, 2]", "[0, 1, 3]"));
   EXPECT_NE(wrong_corner.at("error"), "");
 }
 
 TEST(usda, tinyusdz_reads_a_bare_mesh_and_one_of_nothing) {
   const TemporaryFolder folder;
-  write_mesh_usda(folder / "bare.usda", tetrahedron(), std::span(k_palette).first(1));
+  write_mesh_usda(folder / "bare.usda", tetrahedron(), k_group);
   READ_WITH_TINYUSDZ(bare, folder / "bare.usda");
   EXPECT_EQ(bare.at("error"), "");
   expect_values(bare.at("layer"), "color3f[] primvars:displayColor", {k_colors[0]});
@@ -251,28 +437,32 @@ TEST(usda, what_usd_cannot_say_is_refused_by_name) {
     }
     return std::string("nothing");
   };
-  const auto mesh_field = [&](const Mesh& mesh, std::span<const Appearance> palette) {
-    return field([&] { write_mesh_usda(folder / "a.usda", mesh, palette); });
+  const auto mesh_field = [&](const Mesh& mesh, std::span<const MeshGroup> groups,
+                              const UsdOptions& options = {}, std::optional<int> frame = {}) {
+    return field([&] { write_mesh_usda(folder / "a.usda", mesh, groups, options, frame); });
   };
-  EXPECT_EQ(mesh_field(full_mesh(), std::span(k_palette).first(2)), "palette");
-  EXPECT_EQ(mesh_field(triangle(), {}), "palette");
-  EXPECT_EQ(mesh_field(triangle(), std::array{Appearance{{0, 2, 0}}}), "palette[0].color");
+  EXPECT_EQ(mesh_field(full_mesh(), std::span(k_groups).first(2)), "groups");
+  EXPECT_EQ(mesh_field(triangle(), {}), "groups");
+  EXPECT_EQ(mesh_field(triangle(), std::array{MeshGroup{{{0, 2, 0}}}}), "groups[0].appearance.color");
+  EXPECT_EQ(mesh_field(triangle(), k_group, {}, -1), "frame");
+  EXPECT_EQ(mesh_field(triangle(), k_group, {.speed = 0}), "options.speed");
   Mesh wrong = full_mesh();
   wrong.velocities.pop_back();
-  EXPECT_EQ(mesh_field(wrong, k_palette), "mesh.velocities");
+  EXPECT_EQ(mesh_field(wrong, k_groups), "mesh.velocities");
   wrong = full_mesh();
   wrong.normals[2].y() = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(mesh_field(wrong, k_palette), "mesh.normals[2]");
+  EXPECT_EQ(mesh_field(wrong, k_groups), "mesh.normals[2]");
 
-  const auto series_field = [&](const std::vector<UsdFrame>& frames, const UsdTimeline& timeline) {
-    return field([&] { write_usda_series(folder / "a.usda", frames, timeline); });
+  const auto series_field = [&](const std::vector<UsdFrame>& frames, const UsdOptions& options) {
+    return field([&] { write_usda_series(folder / "a.usda", frames, k_groups, options); });
   };
   EXPECT_EQ(series_field({{"a.usda", 1}, {"b.usda", 1}}, {}), "frames[1].number");
   EXPECT_EQ(series_field({{"a.usda", -1}}, {}), "frames[0].number");
-  EXPECT_EQ(series_field({}, {.time_codes_per_second = 0}), "timeline.time_codes_per_second");
   EXPECT_EQ(series_field({}, {.frames_per_second = std::numeric_limits<double>::infinity()}),
-            "timeline.frames_per_second");
-  EXPECT_THROW(write_usda_series(folder / "a.usda", std::vector<UsdFrame>{{"a@@@.usda", 0}}, {}), IoError);
+            "options.frames_per_second");
+  for (const char* name : {"a@@@.usda", "a\n.usda"}) {
+    EXPECT_THROW(write_usda_series(folder / "a.usda", std::vector<UsdFrame>{{name, 0}}, k_groups), IoError);
+  }
   EXPECT_EQ(folder.entries(), 0u);
 }
 

@@ -21,6 +21,14 @@ Rows column(const std::vector<T>& values) {
   return rows;
 }
 
+/// What VTK found, as floats: some of its readers give coordinates in double from version 9.2 on.
+Rows as_floats(const nlohmann::json& found) {
+  Rows rows = found.get<Rows>();
+  for (auto& row : rows)
+    for (double& value : row) value = double{static_cast<float>(value)};
+  return rows;
+}
+
 Mesh full_tetrahedron() {
   constexpr float s = std::numbers::inv_sqrt3_v<float>;
   Mesh mesh = tetrahedron();
@@ -35,10 +43,10 @@ TEST(vtk_file, vtk_reads_the_mesh_that_was_written_as_vtp) {
   const Mesh mesh = full_tetrahedron();
   write_mesh_vtp(folder / "a.vtp", mesh);
   READ_WITH_VTK(read, folder / "a.vtp");
-  EXPECT_EQ(read.at("points"), rows(mesh.vertices));
+  EXPECT_EQ(as_floats(read.at("points")), rows(mesh.vertices));
   EXPECT_EQ(read.at("cells"), nlohmann::json(mesh.triangles));
-  EXPECT_EQ(read.at("arrays").at("Normals"), rows(mesh.normals));
-  EXPECT_EQ(read.at("arrays").at("Velocity"), rows(mesh.velocities));
+  EXPECT_EQ(as_floats(read.at("arrays").at("Normals")), rows(mesh.normals));
+  EXPECT_EQ(as_floats(read.at("arrays").at("Velocity")), rows(mesh.velocities));
   EXPECT_EQ(read.at("arrays").at("Material"), column(mesh.material_ids));
 }
 
@@ -47,9 +55,9 @@ TEST(vtk_file, vtk_reads_the_particles_that_were_written_as_vtp) {
   const ParticleFrame frame = three_particles();
   write_particles_vtp(folder / "a.vtp", frame);
   READ_WITH_VTK(read, folder / "a.vtp");
-  EXPECT_EQ(read.at("points"), rows(frame.positions));
+  EXPECT_EQ(as_floats(read.at("points")), rows(frame.positions));
   EXPECT_EQ(read.at("cells"), (nlohmann::json{{0}, {1}, {2}}));
-  EXPECT_EQ(read.at("arrays").at("Velocity"), rows(frame.velocities));
+  EXPECT_EQ(as_floats(read.at("arrays").at("Velocity")), rows(frame.velocities));
   EXPECT_EQ(read.at("arrays").at("Group"), column(frame.groups));
   EXPECT_EQ(read.at("arrays").at("Id"), (Rows{{0}, {1}, {2}}));
 }
@@ -74,9 +82,25 @@ TEST(vtk_file, vtk_reads_an_obj_with_its_normals) {
   const Mesh mesh = full_tetrahedron();
   write_mesh_obj(folder / "a.obj", mesh);
   READ_WITH_VTK(read, folder / "a.obj");
-  EXPECT_EQ(read.at("points"), rows(mesh.vertices));
+  EXPECT_EQ(as_floats(read.at("points")), rows(mesh.vertices));
   EXPECT_EQ(read.at("cells"), nlohmann::json(mesh.triangles));
-  EXPECT_EQ(read.at("arrays").at("Normals"), rows(mesh.normals));
+  EXPECT_EQ(as_floats(read.at("arrays").at("Normals")), rows(mesh.normals));
+}
+
+TEST(vtk_file, vtk_reads_an_obj_with_y_up_and_named_groups) {
+  const TemporaryFolder folder;
+  Mesh mesh = full_tetrahedron();
+  mesh.material_ids = {1, 1, 0, 0};  // two triangles of group 1, then two of group 0
+  const std::array groups = {MeshGroup{{{1, 0, 0}}, "a cube", "clay"}, MeshGroup{{{0, 1, 0}}, "b", "jelly"}};
+  write_mtl(folder / "a.mtl", groups);
+  write_mesh_obj(folder / "a.obj", mesh, {.up = UpAxis::y, .groups = groups, .material_library = "a.mtl"});
+  READ_WITH_VTK(read, folder / "a.obj");
+  Rows turned;
+  for (const Vec3& v : mesh.vertices) turned.push_back({v.x(), v.z(), -v.y()});
+  EXPECT_EQ(as_floats(read.at("points")), turned);
+  const std::vector<std::array<std::uint32_t, 3>> by_group = {mesh.triangles[2], mesh.triangles[3],
+                                                              mesh.triangles[0], mesh.triangles[1]};
+  EXPECT_EQ(read.at("cells"), nlohmann::json(by_group));
 }
 
 TEST(vtk_file, vtk_reads_a_glb_and_turns_its_z_up) {
@@ -84,7 +108,7 @@ TEST(vtk_file, vtk_reads_a_glb_and_turns_its_z_up) {
   Mesh mesh = full_tetrahedron();
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   mesh.material_ids.clear();
-  write_mesh_glb(folder / "a.glb", mesh, std::array{Appearance{{1, 0.5f, 0}}});
+  write_mesh_glb(folder / "a.glb", mesh, std::array{MeshGroup{{{1, 0.5f, 0}}}});
   READ_WITH_VTK(read, folder / "a.glb");
   EXPECT_EQ(read.at("cells"), nlohmann::json(mesh.triangles));
   ASSERT_EQ(read.at("points").size(), 4u);
@@ -113,12 +137,12 @@ TEST(vtk_file, columns_of_the_wrong_length_are_not_written) {
 
 TEST(vtk_file, pvd_names_every_file_with_its_time) {
   const TemporaryFolder folder;
-  write_pvd(folder / "a.pvd", std::vector<TimedFile>{{"s/frame_000000.vtp", 0}, {"a&\"b<.vtp", 0.1 + 0.2}});
+  write_pvd(folder / "a.pvd", std::vector<TimedFile>{{"s/frame_000000.vtp", 0}, {"a&\"b<\n.vtp", 0.1 + 0.2}});
   EXPECT_EQ(content_of(folder / "a.pvd"),
             "<?xml version=\"1.0\"?>\n"
             "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n"
             "<DataSet timestep=\"0\" part=\"0\" file=\"s/frame_000000.vtp\"/>\n"
-            "<DataSet timestep=\"0.30000000000000004\" part=\"0\" file=\"a&amp;&quot;b&lt;.vtp\"/>\n"
+            "<DataSet timestep=\"0.30000000000000004\" part=\"0\" file=\"a&amp;&quot;b&lt;&#10;.vtp\"/>\n"
             "</Collection>\n</VTKFile>\n");
 }
 

@@ -27,7 +27,8 @@ class Cache {
   /// What there is one of.
   static constexpr std::array k_single_files = {
       k_run_mark,     "scene.toml", "report.json",        "checkpoint",          "checkpoint.previous",
-      "summary.html", "film.mp4",   "export/surface.pvd", "export/surface.usda", "export/particles.pvd"};
+      "summary.html", "film.mp4",   "export/surface.pvd", "export/surface.usda", "export/particles.pvd",
+      "export/surface.manifest.usda", "export/surface/materials.mtl"};
 
   /// An empty cache in a folder that does not exist yet or is empty. With `overwrite` an earlier cache there
   /// is removed: the files named above and no others. Throws IoError where the folder holds something else,

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,20 +27,44 @@ namespace fs = std::filesystem;
 struct ExportOptions : CachedRunOptions {
   std::vector<std::string> surface;    ///< formats
   std::vector<std::string> particles;  ///< formats
+  std::string up = "z";
   std::string out;
 };
+
+/// Beside the OBJ files, which all name it.
+constexpr const char* k_materials = "materials.mtl";
 
 bool contains(const std::vector<std::string>& formats, const char* format) {
   return std::find(formats.begin(), formats.end(), format) != formats.end();
 }
 
-/// USD's seconds are those of the simulation, as velocities are per second of it; players show a frame after
-/// the other as the film does. frame_time: between frames [s].
-UsdTimeline usd_timeline(const Scene& scene, double frame_time) {
-  const double film = scene.render.frames_per_second;
-  const double rate = 1 / frame_time;
+/// What files say of each group of the scene.
+std::vector<MeshGroup> mesh_groups(const CachedRun& run) {
+  const std::vector<Appearance> appearances = group_appearances(run.scene);
+  const std::vector<std::size_t> materials = group_materials(run.scene);
+  std::vector<MeshGroup> groups;
+  for (std::size_t g = 0; g < materials.size(); ++g) {
+    groups.push_back({appearances[g], run.report.at("groups").at(g).value("name", ""),
+                      run.scene.materials[materials[g]].name});
+  }
+  return groups;
+}
+
+/// Simulated seconds from a frame to the next, as the particles say.
+double frame_time(const CachedRun& run) {
+  const std::vector<int> frames = run.cache.particle_frames();
+  const double film = 1.0 / run.scene.render.frames_per_second;
+  if (frames.size() < 2) return film;
+  const auto time = [&](int frame) { return read_particles(run.cache.particles_file(frame)).time; };
+  const double mean = (time(frames.back()) - time(frames.front())) / (frames.back() - frames.front());
   // A scene in real time says 0.0333, or a float next to 1/30, but means the film's rate.
-  return {std::abs(rate - film) < 2e-3 * film ? film : rate, film};
+  return std::abs(mean - film) < 2e-3 * film ? film : mean;
+}
+
+/// A frame of USD is one of the film, and its seconds are the film's.
+UsdOptions usd_options(const CachedRun& run, UpAxis up) {
+  const double rate = run.scene.render.frames_per_second;
+  return {.up = up, .frames_per_second = rate, .speed = frame_time(run) * rate};
 }
 
 /// Frames of one kind in all of their formats: OUT/surface/frame_000000.glb and what plays them where a
@@ -62,21 +87,15 @@ class Series {
     vtp_frames_.push_back({fs::path(kind_) / frame_name(number, "vtp"), time});
     usda_frames_.push_back({fs::path(kind_) / frame_name(number, "usda"), number});
   }
-  void finish(const Scene& scene) const {
+  void finish(std::span<const MeshGroup> groups, const UsdOptions& usd) const {
     const std::string name = (out_ / kind_).string();
     if (contains(formats_, "vtp")) write_pvd(name + ".pvd", vtp_frames_);
-    if (contains(formats_, "usda"))
-      write_usda_series(name + ".usda", usda_frames_, usd_timeline(scene, frame_time(scene)));
+    if (contains(formats_, "usda")) write_usda_series(name + ".usda", usda_frames_, groups, usd);
+    if (contains(formats_, "obj")) write_mtl(out_ / kind_ / k_materials, groups);
     if (!formats_.empty()) std::printf("%s %zu\n", kind_, vtp_frames_.size());
   }
 
  private:
-  /// Frame k shows the time k · frame_time; one that is alone goes with any.
-  double frame_time(const Scene& scene) const {
-    const int last = usda_frames_.back().number;
-    return last > 0 ? vtp_frames_.back().time / last : 1.0 / scene.render.frames_per_second;
-  }
-
   fs::path out_;
   const char* kind_;
   const std::vector<std::string>& formats_;
@@ -118,6 +137,63 @@ RunLock lock_folder(const fs::path& out) {
   return RunLock::for_exports(out);
 }
 
+void turn(std::vector<Vec3>& vectors) {
+  for (Vec3& vector : vectors) vector = with_y_up(vector);
+}
+
+/// Writes a frame in one of the formats.
+class FrameWriter {
+ public:
+  FrameWriter(const CachedRun& run, UpAxis up)
+      : run_(run),
+        usd_(usd_options(run, up)),
+        groups_(mesh_groups(run)),
+        surfacer_(run.scene.surface, run.threads),
+        voxel_size_(2 * *std::max_element(run.spacings.begin(), run.spacings.end())) {}
+
+  const UsdOptions& usd() const { return usd_; }
+  std::span<const MeshGroup> groups() const { return groups_; }
+
+  ParticleFrame read_particles(int number) const {
+    ParticleFrame frame = mallow::read_particles(run_.cache.particles_file(number));
+    if (usd_.up == UpAxis::z) return frame;
+    turn(frame.positions);
+    turn(frame.velocities);
+    return frame;
+  }
+  void write_particles(const ParticleFrame& frame, const std::string& format, const fs::path& file) const {
+    if (format == "vdb") write_particles_vdb(file, frame, voxel_size_, run_.threads);
+    if (format == "vtp") write_particles_vtp(file, frame);
+    if (format == "csv") write_state_csv(file, frame);
+  }
+  /// mesh: as the cache has it
+  void write_surface(const Mesh& mesh, int number, const std::string& format, const fs::path& file) const {
+    if (format == "obj")
+      write_mesh_obj(file, mesh, {.up = usd_.up, .groups = groups_, .material_library = k_materials});
+    if (format == "glb") write_mesh_glb(file, mesh, groups_);
+    if (format == "vtp") write_mesh_vtp(file, turned(mesh));
+    if (format == "usda") write_mesh_usda(file, mesh, groups_, usd_, number);
+  }
+  /// Level sets are no part of a cache: they are drawn again, with the run's settings.
+  void write_level_set(const ParticleFrame& frame, const fs::path& file) {
+    surfacer_.draw({.positions = frame.positions, .groups = frame.groups, .spacings = run_.spacings});
+    write_whole(file, surfacer_.level_set_vdb());
+  }
+
+ private:
+  Mesh turned(Mesh mesh) const {
+    if (usd_.up == UpAxis::z) return mesh;
+    for (std::vector<Vec3>* vectors : {&mesh.vertices, &mesh.normals, &mesh.velocities}) turn(*vectors);
+    return mesh;
+  }
+
+  const CachedRun& run_;
+  UsdOptions usd_;
+  std::vector<MeshGroup> groups_;
+  Surfacer surfacer_;
+  float voxel_size_;
+};
+
 void export_frames(const ExportOptions& options) {
   check_formats(options);
   const CachedRun run = open_cached_run(options, "");
@@ -128,46 +204,26 @@ void export_frames(const ExportOptions& options) {
   const RunLock lock = lock_folder(out);
   Series surfaces(out, "surface", options.surface);
   Series particles(out, "particles", options.particles);
-  const std::vector<Appearance> palette = group_appearances(run.scene);
-  const float voxel_size = 2 * *std::max_element(run.spacings.begin(), run.spacings.end());
-
-  // Level sets are no part of a cache: they are drawn again, with the run's settings.
-  Surfacer surfacer(run.scene.surface, run.threads);
-  const auto draw_level_set = [&](const ParticleFrame& frame) {
-    surfacer.draw({.positions = frame.positions, .groups = frame.groups, .spacings = run.spacings});
-    return surfacer.level_set_vdb();
-  };
-  const auto write_surface = [&](const Mesh& mesh, const std::string& format, const fs::path& file) {
-    if (format == "obj") write_mesh_obj(file, mesh);
-    if (format == "glb") write_mesh_glb(file, mesh, palette);
-    if (format == "vtp") write_mesh_vtp(file, mesh);
-    if (format == "usda") write_mesh_usda(file, mesh, palette);
-  };
-  const auto write_points = [&](const ParticleFrame& frame, const std::string& format, const fs::path& file) {
-    if (format == "vdb") write_particles_vdb(file, frame, voxel_size, run.threads);
-    if (format == "vtp") write_particles_vtp(file, frame);
-    if (format == "csv") write_state_csv(file, frame);
-  };
+  FrameWriter writer(run, options.up == "y" ? UpAxis::y : UpAxis::z);
   try {
     for_each_frame(cache.particle_frames(), "exporting", [&](int number) {
-      const ParticleFrame frame =
-          read_particles(cache.particles_file(number));  // tells the time of surfaces too
+      const ParticleFrame frame = writer.read_particles(number);  // tells the time of surfaces too
       if (!options.particles.empty()) {
         particles.add(number, frame.time, [&](const std::string& format, const fs::path& file) {
-          write_points(frame, format, file);
+          writer.write_particles(frame, format, file);
         });
       }
       if (options.surface.empty() || !fs::exists(cache.surface_file(number))) return;
       const Mesh mesh = read_mesh(cache.surface_file(number));
       surfaces.add(number, frame.time, [&](const std::string& format, const fs::path& file) {
         if (format == "vdb")
-          write_whole(file, draw_level_set(frame));
+          writer.write_level_set(frame, file);
         else
-          write_surface(mesh, format, file);
+          writer.write_surface(mesh, number, format, file);
       });
     });
-    surfaces.finish(run.scene);
-    particles.finish(run.scene);
+    surfaces.finish(writer.groups(), writer.usd());
+    particles.finish(writer.groups(), writer.usd());
   } catch (const std::exception& error) {
     throw RunFailure(error.what());
   }
@@ -193,13 +249,21 @@ void add_export_command(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"vdb", "vtp", "csv"}));
+  command
+      ->add_option(
+          "--up", options->up,
+          "The axis that points up in the files: z, as in the scene, or y; in glb it is y, as glTF has it")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->capture_default_str();
   command->add_option("--out", options->out, "Folder for surface/ and particles/; DIR/export if left out");
   command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
       ->check(CLI::Range(0, 1024));
   command->footer(
       "Velocities: _VELOCITY in glb, Velocity in vtp, velocities in usda, v in vdb, vx vy vz in csv; "
       "an OBJ has none.\n"
-      "surface.pvd and surface.usda play the frames; a time code of USD is a frame.");
+      "Groups and materials have the names of the scene in obj (materials.mtl), glb and usda.\n"
+      "surface.pvd plays the frames at their simulated times; surface.usda plays them as the film does: a\n"
+      "time code is a frame, and velocities are per second of the film.");
   command->callback([options] { export_frames(*options); });
 }
 

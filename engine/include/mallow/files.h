@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -75,19 +76,63 @@ void write_state_csv(const std::filesystem::path& file, const ParticleFrame& fra
 
 /// Binary PLY with normals, velocities and material ids where the mesh has them.
 void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh);
-/// Wavefront OBJ.
-void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh);
-/// glTF 2.0 binary: a primitive and a material for every material id, velocities as attribute _VELOCITY. A
-/// triangle is of the material that most of its corners are of, of the smallest id of three that differ.
-/// Vertices stay as they are; a node turns their z, which is up, to glTF's y. A mesh without triangles gives
-/// a scene without a mesh, as glTF knows no empty one. palette: the appearance of each material id; throws
-/// ConfigError where one is missing or out of range, or a number is not finite, as JSON could not say it.
-void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const Appearance> palette);
-/// USD's text: a Mesh /surface with normals and velocities where the mesh has them, z up, in metres.
-/// Triangles have the primvars group, the material id, where the mesh has any, and displayColor. Takes a
-/// palette and throws as write_mesh_glb() does.
-void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh,
-                     std::span<const Appearance> palette);
+
+/// What files say of a group, to which Mesh::material_ids assign vertices.
+struct MeshGroup {
+  Appearance appearance;
+  std::string name = {};  ///< of the group; empty: "group 0", by its number
+  std::string material =
+      {};  ///< of its material, which groups share where it is the same; empty: "material 0"
+};
+
+/// The axis that points up in a file; in the engine it is z.
+enum class UpAxis : std::uint8_t { y, z };
+/// A vector of the engine, with z up, as one with y up: a quarter turn about x.
+inline Vec3 with_y_up(const Vec3& v) {
+  return {v.x(), v.z(), 0 - v.y()};  // no -0
+}
+
+struct ObjOptions {
+  UpAxis up = UpAxis::z;                        ///< a comment in the file says which one it is
+  std::span<const MeshGroup> groups = {};       ///< `g` and `usemtl` for each; empty: neither
+  std::filesystem::path material_library = {};  ///< of write_mtl(), in the OBJ's folder; empty: no `usemtl`
+};
+/// Wavefront OBJ, with normals where the mesh has them. A triangle is of the group that most of its corners
+/// are of, of the smallest id of three that differ; triangles of a group stand together, in their order. What
+/// a name may not hold there (blanks, #, \) becomes _. Throws ConfigError as write_mesh_glb() where there are
+/// groups.
+void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh, const ObjOptions& options = {});
+/// The materials of groups for OBJ files. Colours are sRGB, as most programs take them (three.js, MeshLab,
+/// VTK); Blender takes them as linear. Throws ConfigError where a colour is out of range.
+void write_mtl(const std::filesystem::path& file, std::span<const MeshGroup> groups);
+
+/// glTF 2.0 binary: for each group that has triangles a node and a mesh with its name, and a material with
+/// that of the scene; velocities as attribute _VELOCITY. A triangle is of a group as in write_mesh_obj(). The
+/// node above them turns z, which is up in the mesh, to glTF's y. A mesh without triangles gives a scene
+/// without a mesh, as glTF knows no empty one. groups: one for each material id; throws ConfigError where one
+/// is missing, a colour is out of range or a name is not UTF-8, or a number is not finite, as JSON could not
+/// say it.
+void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshGroup> groups);
+
+/// How meshes stand in the space and time of USD, where a time code is a frame.
+struct UsdOptions {
+  UpAxis up = UpAxis::z;
+  double frames_per_second = 30;  ///< how fast a player shows them, > 0
+  /// Simulated seconds in a second of USD, that is in `frames_per_second` frames; > 0. Velocities are
+  /// multiplied by it, so that they are per second of USD and lead from one frame to the next.
+  double speed = 1;
+};
+/// USD's text: a Mesh /surface/mesh with normals and velocities where the mesh has them, in metres, and a
+/// UsdPreviewSurface /surface/materials/NAME for each material, which is bound to the mesh or, where there
+/// are several groups, to a GeomSubset of its faces for each, with its name; faces have the primvar
+/// displayColor and, of several groups, the primvar group. Characters that USD does not allow in a name
+/// become
+/// _, and displayName keeps the name as it was. frame: its time code, at which all that changes between
+/// frames has time samples; left out: values that always hold. Takes groups and throws as write_mesh_glb()
+/// does.
+void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshGroup> groups,
+                     const UsdOptions& options = {}, std::optional<int> frame = {});
+
 /// VTK's XML PolyData, triangles with the point arrays Normals, Velocity and Material where the mesh has
 /// them.
 void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh);
@@ -107,21 +152,19 @@ struct TimedFile {
 /// ParaView's collection (PVD): what plays VTP files at their times.
 void write_pvd(const std::filesystem::path& file, std::span<const TimedFile> frames);
 
-/// A file of write_mesh_usda() in a series.
+/// A file that write_mesh_usda() wrote for a frame.
 struct UsdFrame {
   std::filesystem::path file;  ///< relative to the series
   int number = 0;              ///< its time code, >= 0
 };
-/// How USD's time codes, which number the frames, stand to seconds.
-struct UsdTimeline {
-  double time_codes_per_second = 30;  ///< of the motion, which velocities are given for, > 0
-  double frames_per_second = 30;      ///< that a player shows, > 0
-};
-/// USD's text that plays files of write_mesh_usda(): a prim /surface/frame_000000 refers to each, and time
-/// samples of its visibility show it from its frame to the next, as triangles come and go from one to the
-/// other. frames: ascending; throws ConfigError where not.
+/// "surface.manifest.usda" for "surface.usda".
+std::filesystem::path usda_manifest(const std::filesystem::path& series);
+/// USD's text that plays the files of frames as one Mesh whose values change. The files are value clips of
+/// the prim /surface: a program opens only those of the frames that it shows, and one that knows no value
+/// clips shows the first frame. The manifest, which names the attributes that change, is written too. frames:
+/// ascending; throws ConfigError where not. groups and options: those of the frames.
 void write_usda_series(const std::filesystem::path& file, std::span<const UsdFrame> frames,
-                       const UsdTimeline& timeline);
+                       std::span<const MeshGroup> groups, const UsdOptions& options = {});
 
 /// A saved state as a file, compressed, every bit of it under a checksum. Whole or not at all; the checkpoint
 /// that was there is kept as previous_checkpoint(), so that whenever a writer is killed, one of the two is
