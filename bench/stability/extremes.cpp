@@ -1,8 +1,10 @@
 #include "stability/extremes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <sstream>
 
 namespace mallow::bench {
 namespace {
@@ -52,6 +54,7 @@ class Catalogue {
     magnitudes();
     places();
     contacts();
+    elastic_limit();
     schedules();
     return std::move(list_);
   }
@@ -129,9 +132,6 @@ class Catalogue {
       });
     add_free("light particles, viscosity as it was", [](Setup& s) { s.material.particle_mass = 1e-6f; });
     add("gravity of 1e4", falling_body(), [](Setup& s) { s.config.gravity = {0, 0, -1e4f}; });
-    add_free("an elastic time step of a quarter", [](Setup& s) { s.material.elastic_time_step = 0.0375f; });
-    for (Extreme* e = &list_.back() - 2; e <= &list_.back(); ++e)
-      e->trial.energy_room = 3;  // springs overshoot
     add_free("an elastic time step of a tenth", [](Setup& s) { s.material.elastic_time_step = 0.015f; });
     add_free("an elastic time step of a hundred", [](Setup& s) { s.material.elastic_time_step = 15.0f; });
     add_free("stride of 50", [](Setup& s) { s.material.region_stride = 50; });
@@ -187,6 +187,32 @@ class Catalogue {
                          {.shape = Plane{}}};
         },
         inside);
+  }
+
+  /// As stiff as a step can carry, on a floor that gives all back: model 2, section 4 B.
+  void elastic_limit() {
+    Trial trial;
+    trial.steps = std::min(long_steps_, 20'000);
+    trial.energy_room = 0.02;
+    trial.by_conserved_energy = true;
+    for (const float radius : {1.1f, 1.6f, 2.1f, 2.9f})
+      for (const float spacing : {1.0f, 0.8f}) {
+        std::ostringstream name;
+        name << "as stiff as is allowed, regions of " << radius / spacing << " spacings";
+        add(
+            name.str(), falling_body(),
+            [=](Setup& s) {
+              s.body = sample(
+                  Lattice{.count = {5, 5, 5}, .spacing = spacing, .corner = {0, 0, 4}, .jitter = 0.05f});
+              stir(s, 0.5f);
+              s.material.region_radius = radius;
+              s.material.update_threshold = 1e30f;
+              s.material.elastic_time_step =
+                  std::max(0.01f, (1 - s.material.alpha.lowest()) * s.config.time_step / 2.5f);
+              s.colliders[0].restitution = 1;
+            },
+            trial);
+      }
   }
 
   void schedules() {

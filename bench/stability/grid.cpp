@@ -21,6 +21,7 @@ StabilityGrid full_grid() {
   grid.time_steps = {1e-4f, 1e-3f, 1e-2f, 0.1f, 0.5f, 1, 2, 5, 10};
   grid.pressures = {0, 1, 16, 100, 1e3f, 1e4f, 1e5f, 1e6f};
   grid.viscosities = {0, 0.5f, 10, 100, 1e3f, 1e4f};
+  grid.restitutions = {0, 0.5f, 1};
   return grid;
 }
 
@@ -28,7 +29,8 @@ StabilityGrid thin_grid() {
   return {.alphas = {0, 0.5f, 1},
           .time_steps = {1e-4f, 1, 10},
           .pressures = {0, 16, 1e6f},
-          .viscosities = {0, 1e4f}};
+          .viscosities = {0, 1e4f},
+          .restitutions = {0, 1}};
 }
 
 GridPoint grid_point(const StabilityGrid& grid, std::size_t index) {
@@ -38,6 +40,7 @@ GridPoint grid_point(const StabilityGrid& grid, std::size_t index) {
     return value;
   };
   GridPoint point{};
+  point.restitution = take(grid.restitutions);
   point.viscosity = take(grid.viscosities);
   point.pressure = take(grid.pressures);
   point.time_step = take(grid.time_steps);
@@ -49,13 +52,15 @@ Trial falling_cube(const GridPoint& point, int steps) {
   Trial trial;
   trial.steps = steps;
   trial.floor = 0;
+  trial.energy_room = 0.02;
+  trial.by_conserved_energy = true;
   trial.build = [point] {
     SolverConfig config;
     config.time_step = k_default_time_step * point.time_step;
     config.support_radius = 2.1f;
     config.threads = 1;
     Simulation simulation(config);
-    simulation.add_collider({.shape = Plane{}, .friction = 0.3f});
+    simulation.add_collider({.shape = Plane{}, .restitution = point.restitution, .friction = 0.3f});
     Body cube = sample(Lattice{.count = {k_side, k_side, k_side}, .corner = {0, 0, k_height}, .jitter = 0});
     for (const Vec3& x : cube.positions) {
       const auto wave = [](float c) { return std::sin(2 * std::numbers::pi_v<float> * c / k_side); };

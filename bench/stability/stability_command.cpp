@@ -82,14 +82,13 @@ void add_grid(const StabilityGrid& grid, const std::vector<Outcome>& outcomes, R
   add_axis("time_step", grid.time_steps, &GridPoint::time_step);
   add_axis("pressure_coefficient", grid.pressures, &GridPoint::pressure);
   add_axis("viscosity", grid.viscosities, &GridPoint::viscosity);
+  add_axis("restitution", grid.restitutions, &GridPoint::restitution);
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     if (outcomes[i].verdict != Verdict::unstable) continue;
     const GridPoint point = grid_point(grid, i);
-    Json row{{"kind", "unstable"},
-             {"alpha", point.alpha},
-             {"time_step", point.time_step},
-             {"pressure", point.pressure},
-             {"viscosity", point.viscosity}};
+    Json row{{"kind", "unstable"},           {"alpha", point.alpha},
+             {"time_step", point.time_step}, {"pressure", point.pressure},
+             {"viscosity", point.viscosity}, {"restitution", point.restitution}};
     row.update(to_json(outcomes[i]));
     results.add(row);
   }

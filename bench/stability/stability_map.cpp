@@ -1,5 +1,6 @@
 #include "stability/stability_map.h"
 
+#include <algorithm>
 #include <sstream>
 
 #include "mallow/files.h"
@@ -69,15 +70,22 @@ void write_map(const std::filesystem::path& svg, const StabilityGrid& grid,
                "in each panel: k from " + number(grid.pressures.front()) + " (top) to " +
                    number(grid.pressures.back()) + ", &#956; from " + number(grid.viscosities.front()) +
                    " (left) to " + number(grid.viscosities.back()));
+  // Verdicts are in the order from the best to the worst.
+  const std::size_t restitutions = grid.restitutions.size();
+  const auto worst = [&](std::size_t field) {
+    Verdict verdict = Verdict::stable;
+    for (std::size_t e = 0; e < restitutions; ++e)
+      verdict = std::max(verdict, outcomes[field * restitutions + e].verdict);
+    return verdict;
+  };
   // Fields of one colour in a row are one, which makes the file a quarter as large.
   std::size_t index = 0;
   for (std::size_t a = 0; a < grid.alphas.size(); ++a) {
     for (std::size_t t = 0; t < grid.time_steps.size(); ++t) {
       for (int k = 0; k < down; ++k) {
         for (int m = 0, run = 1; m < across; m += run, run = 1) {
-          const Verdict verdict = outcomes[index + static_cast<std::size_t>(m)].verdict;
-          while (m + run < across && outcomes[index + static_cast<std::size_t>(m + run)].verdict == verdict)
-            ++run;
+          const Verdict verdict = worst(index + static_cast<std::size_t>(m));
+          while (m + run < across && worst(index + static_cast<std::size_t>(m + run)) == verdict) ++run;
           drawing.field(k_left + static_cast<int>(a) * panel_x + m * k_field,
                         k_top + static_cast<int>(t) * panel_y + k * k_field, run * k_field, color(verdict));
         }

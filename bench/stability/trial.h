@@ -30,6 +30,9 @@ struct Trial {
   /// Work that something outside may do on the particles, relative to their energy at the start. 0.5 leaves
   /// room for what falls onto others.
   double energy_room = 0.5;
+  /// Energy is what Simulation::energy() says a step conserves, looked at every few steps, not ½ m v² + m g
+  /// z.
+  bool by_conserved_energy = false;
 };
 
 struct Outcome {
@@ -37,7 +40,7 @@ struct Outcome {
   std::string message = {};   ///< of the error, where it was refused
   int steps = 0;              ///< that were taken
   double limited_share = 0;   ///< of the steps
-  double energy = 0;          ///< largest kinetic and potential energy, relative to that at the start
+  double energy = 0;          ///< the largest of the motion, relative to that at the start
   double end_energy = 0;      ///< kinetic energy at the end, likewise
   double momentum_drift = 0;  ///< |Δ Σ m v| over Σ m |v| at the start; where nothing acts from outside
   double angular_drift = 0;   ///< |Δ Σ m x × v| over Σ m |x| |v| likewise

@@ -36,7 +36,7 @@ void ParticleCells::sort(std::span<const Vec3> positions, float spacing, float r
   if (thin_crowds()) sort_into_cells(threads);
 }
 
-void ParticleCells::sort_into_cells(int threads) {
+void ParticleCells::sort_into_cells(const Threads& threads) {
   build_cell_grid(positions_, 0, positions_.size(), radius_, threads, best_instruction_level(), grid_);
   parallel_for(threads, count(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place)

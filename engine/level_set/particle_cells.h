@@ -58,7 +58,7 @@ class ParticleCells {
 
  private:
   bool thin_crowds();
-  void sort_into_cells(int threads);
+  void sort_into_cells(const Threads& threads);
   void order_by_number(NearParticles& near) const;
   void find_near(const Bounds& box, const Eigen::Vector3d& corner, NearParticles& near) const;
 
