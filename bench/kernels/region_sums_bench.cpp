@@ -84,7 +84,8 @@ Timed on_rows(const LatticeScene& lattice, int threads, InstructionLevel level, 
 }
 
 /// A phase of the step, whole.
-using PhaseFunction = void (*)(const VectorColumn&, std::size_t, int, InstructionLevel, ShapeMatching&);
+using PhaseFunction = void (*)(const VectorColumn&, std::size_t, const Threads&, InstructionLevel,
+                               ShapeMatching&);
 
 Timed phase(const LatticeScene& lattice, int threads, InstructionLevel level, PhaseFunction run) {
   const auto scene = std::make_shared<RegionScene>(lattice, level);

@@ -10,7 +10,7 @@ namespace mallow {
 namespace {
 
 SolverConfig solver() {
-  return {.support_radius = 2.1f, .threads = 1};
+  return {.time_step = 0.15f, .support_radius = 2.1f, .threads = 1};
 }
 
 Body cube(int side, float height) {
