@@ -286,7 +286,7 @@ TEST(checkpoint, of_another_version_is_refused) {
     Simulation::restore(saved);
     ADD_FAILURE();
   } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find("version 2"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("version 3"), std::string::npos) << error.what();
   }
 }
 

@@ -227,7 +227,7 @@ TEST(alpha, set_below_1_on_a_fluid_remembers_the_shape_of_that_moment) {
   Body body = cube(6);
   body.velocities.resize(body.positions.size());
   for (std::size_t i = 0; i < body.positions.size(); ++i) body.velocities[i] = 0.05f * body.positions[i];
-  const GroupId group = s.add_body(body, Material{.alpha = 1});
+  const GroupId group = s.add_body(body, Material{.alpha = 1, .viscosity = 0.1f});
   for (int k = 0; k < 20; ++k) s.step();
   s.set_alpha(group, 0.0f);
   const float width = s.positions().eigen().col(0).maxCoeff() - s.positions().eigen().col(0).minCoeff();
@@ -314,7 +314,7 @@ TEST(step, moves_a_scene_at_1e5_as_it_would_at_0) {
     velocity = std::max(velocity, (w[i] - v[i]).norm());
   }
   EXPECT_LT(distance, 0.02f);
-  EXPECT_LT(velocity, 0.002f);
+  EXPECT_LT(velocity, 0.02f);  // what it is given there is rounded to 0.008
   EXPECT_LT((nearest(std::get<Plane>(b.colliders()[0].shape), far + Vec3(0, 0, 2)).distance - 2), 0.01f);
 }
 
@@ -372,9 +372,11 @@ TEST(step, is_taken_or_refused_however_far_apart_particles_are) {
       Body body = cube(3);
       for (const float side : {-0.3f, 1.0f, 1.1f})
         body.positions.push_back(far * Vec3(side, 0.5f * side, 2 * side));
-      s.add_body(body, Material{.alpha = alpha});
       try {
+        s.add_body(body, Material{.alpha = alpha});
         for (int k = 0; k < 3; ++k) s.step();
+      } catch (const ConfigError& error) {
+        EXPECT_GE(far, 1e9f) << error.what();  // where floats do not tell neighbours apart
       } catch (const StepError& error) {
         EXPECT_GE(far, 1e20f) << error.what();  // whose square is beyond single precision
       }
@@ -440,18 +442,18 @@ TEST(errors, refuse_springs_that_would_blow_up_in_these_steps) {
     for (int k = 0; k < 500; ++k) s.step();
     return s.velocities().eigen().squaredNorm() / start;
   };
-  EXPECT_LT(energy_after(0.0375f), 4);
-  EXPECT_THROW(energy_after(0.0374f), ConfigError);
+  EXPECT_LT(energy_after(0.06f), 4);
+  EXPECT_THROW(energy_after(0.0599f), ConfigError);
   // As much softer as alpha makes it; and no softer alpha than that later on.
   Simulation s(config());
-  const GroupId group = s.add_body(cube(3), Material{.alpha = 0.5f, .elastic_time_step = 0.02f});
+  const GroupId group = s.add_body(cube(3), Material{.alpha = 0.5f, .elastic_time_step = 0.03f});
   EXPECT_THROW(s.set_alpha(group, 0.4f), ConfigError);
   try {
-    s.add_group(Material{.alpha = 0, .elastic_time_step = 0.02f});
+    s.add_group(Material{.alpha = 0, .elastic_time_step = 0.03f});
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_EQ(error.problems()[0].field, "material.elastic_time_step");
-    for (const char* words : {"0.02 is not allowed", "0.0375", "solver.time_step (now 0.15)"})
+    for (const char* words : {"0.03 is not allowed", "0.06", "solver.time_step (now 0.15)"})
       EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
   }
 }
