@@ -61,14 +61,17 @@ inline Mesh turned(Mesh mesh) {
   return mesh;
 }
 
-/// Several meshes as one, each with vertices of its own.
+/// Adds a mesh with vertices of its own.
+inline void append(Mesh& all, const Mesh& mesh) {
+  const auto first = static_cast<std::uint32_t>(all.vertices.size());
+  all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+  for (const auto& [a, b, c] : mesh.triangles) all.triangles.push_back({first + a, first + b, first + c});
+}
+
+/// Several meshes as one.
 inline Mesh together(std::initializer_list<Mesh> meshes) {
   Mesh all;
-  for (const Mesh& mesh : meshes) {
-    const auto first = static_cast<std::uint32_t>(all.vertices.size());
-    all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-    for (const auto& [a, b, c] : mesh.triangles) all.triangles.push_back({first + a, first + b, first + c});
-  }
+  for (const Mesh& mesh : meshes) append(all, mesh);
   return all;
 }
 
