@@ -48,15 +48,20 @@ class Attributes {
   template <class Value>
   void add(const UsdAttribute& attribute, std::size_t count, const Value& value) {
     const std::string indent(attribute.depth * 4, ' ');
-    text_ += indent + attribute.declaration;
     if (frame_) {
-      append_interpolation(text_, attribute);
-      text_ += '\n' + indent + attribute.declaration + ".timeSamples = {\n" + indent + "    " +
+      // Metadata stands with a declaration of its own.
+      if (*attribute.interpolation != '\0') {
+        text_ += indent + attribute.declaration;
+        append_interpolation(text_, attribute);
+        text_ += '\n';
+      }
+      text_ += indent + attribute.declaration + ".timeSamples = {\n" + indent + "    " +
                std::to_string(*frame_) + ": ";
       append_list(text_, count, value);
       text_ += ",\n" + indent + "}\n";
       return;
     }
+    text_ += indent + attribute.declaration;
     append_list(text_ += " = ", count, value);
     append_interpolation(text_, attribute);
     text_ += '\n';
@@ -76,7 +81,7 @@ void append_columns(const Mesh& mesh, const UsdOptions& options, bool in_a_serie
     const std::array<Vec3, 2> corners = {a.cwiseMin(b), a.cwiseMax(b)};
     attributes.add(k_usd_extent, 2, [&](std::size_t i) { return corners[i]; });
   } else if (in_a_series) {
-    // As USD has the box of nothing.
+    // USD's box around nothing.
     constexpr float k_most = std::numeric_limits<float>::max();
     attributes.add(k_usd_extent, 2,
                    [&](std::size_t i) -> Vec3 { return Vec3::Constant(i == 0 ? k_most : -k_most); });
@@ -85,7 +90,7 @@ void append_columns(const Mesh& mesh, const UsdOptions& options, bool in_a_serie
   attributes.add(k_usd_corners, 3 * mesh.triangles.size(),
                  [&](std::size_t i) { return mesh.triangles[i / 3][i % 3]; });
   attributes.add(k_usd_points, mesh.vertices.size(), [&](std::size_t i) { return turned(mesh.vertices[i]); });
-  // A frame of nothing says so of all columns, as without a sample that before it would hold.
+  // An attribute of a series that lacks a sample in a frame has no value there, not an empty one.
   const bool all = in_a_series && mesh.vertices.empty();
   if (!mesh.normals.empty() || all)
     attributes.add(k_usd_normals, mesh.normals.size(),
@@ -97,25 +102,28 @@ void append_columns(const Mesh& mesh, const UsdOptions& options, bool in_a_serie
 }
 
 /// Colours as an array that programs show without a material. Faces, not vertices, have them: a colour
-/// between two groups is that of neither.
+/// between two groups is that of neither. There are no indices into a few colours: TinyUSDZ takes none that
+/// change.
 void append_primvars(std::string& text, const Mesh& mesh, std::span<const MeshGroup> groups,
                      Attributes& attributes) {
-  if (groups.empty()) return;
-  text += "        color3f[] primvars:displayColor = ";
-  append_list(text, groups.size(), [&](std::size_t g) { return groups[g].appearance.color; });
-  append_interpolation(text, {2, "", groups.size() > 1 ? "uniform" : "constant"});
-  text += '\n';
-  if (groups.size() == 1) return;
-  const auto group = [&](std::size_t t) { return std::uint32_t{triangle_material(mesh, t)}; };
-  attributes.add(k_usd_color_indices, mesh.triangles.size(), group);
-  attributes.add(k_usd_group, mesh.triangles.size(), group);
+  if (groups.size() == 1) {
+    append_value(text += "        color3f[] primvars:displayColor = [", groups[0].appearance.color);
+    append_interpolation(text += ']', {2, "", "constant"});
+    text += '\n';
+  }
+  if (groups.size() < 2) return;
+  attributes.add(k_usd_color, mesh.triangles.size(),
+                 [&](std::size_t t) { return groups[triangle_material(mesh, t)].appearance.color; });
+  attributes.add(k_usd_group, mesh.triangles.size(),
+                 [&](std::size_t t) { return std::uint32_t{triangle_material(mesh, t)}; });
 }
 
 void append_binding(std::string& text, const std::string& indent, const std::string& material) {
   text += indent + "rel material:binding = </surface/materials/" + material + ">\n";
 }
 
-/// The faces of each group, and its material; of groups without a face too, so that frames have the same.
+/// The faces of each group, and its material. Groups without a face are there too, so that all frames have
+/// the same prims.
 void append_subsets(std::string& text, const Mesh& mesh, const NamedGroups& named, Attributes& attributes) {
   const auto triangles = triangles_by_material(mesh);
   text += "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";

@@ -41,7 +41,7 @@ void append_frames(std::string& text, const char* name, std::span<const UsdFrame
   text += "]\n";
 }
 
-/// Which file holds at which time, and that the times in it are those of the series.
+/// Which file is read at which time; times within the files are those of the series.
 void append_clips(std::string& text, const std::filesystem::path& manifest,
                   std::span<const UsdFrame> frames) {
   const auto append_pair = [&](std::size_t f, const std::string& second) {
@@ -73,7 +73,7 @@ std::string manifest_text(std::span<const UsdFrame> frames, std::span<const Mesh
        {k_usd_extent, k_usd_counts, k_usd_corners, k_usd_points, k_usd_normals, k_usd_velocities})
     declare(attribute);
   if (groups.size() > 1) {
-    declare(k_usd_color_indices);
+    declare(k_usd_color);
     declare(k_usd_group);
     for (const std::string& name : name_groups(groups, usd_name).names) {
       text += "\n        def GeomSubset \"" + name + "\"\n        {\n";
@@ -104,7 +104,7 @@ void write_usda_series(const std::filesystem::path& file, std::span<const UsdFra
   std::string text =
       usd_header(options, frames.front().number, frames.back().number) + "def Xform \"surface\" (\n";
   append_clips(text, manifest.filename(), frames);
-  // What does not change comes from here; composed before times are looked at, it is what clips change.
+  // What no frame changes comes from the first: prims, materials, and which attributes there are.
   text += "    prepend references = " + asset_path(frames.front().file) +
           "\n)\n{\n    def Mesh \"mesh\"\n    {\n    }\n}\n";
   write_whole(manifest, manifest_text(frames, groups, options));

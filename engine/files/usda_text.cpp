@@ -20,7 +20,7 @@ std::string in_usd_quotes(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') quoted += '\\';
-    // No more than a blank may be where a line ends in a name.
+    // A string in such quotes stays on one line.
     quoted += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   }
   return quoted + '"';

@@ -111,7 +111,7 @@ TEST(glb, groups_share_a_material_of_one_name_and_look) {
   };
   EXPECT_EQ(names({red, "a", "jelly"}, {red, "b", "jelly"}), (std::vector<std::string>{"jelly"}));
   EXPECT_EQ(names({red, "a", "jelly"}, {blue, "b", "jelly"}), (std::vector<std::string>{"jelly", "jelly_1"}));
-  EXPECT_EQ(names({red}, {red}), (std::vector<std::string>{"paste", "material 2"}));
+  EXPECT_EQ(names({red}, {red}), (std::vector<std::string>{"material 0", "material 2"}));
 }
 
 TEST(glb, clay_is_rougher_than_jelly) {

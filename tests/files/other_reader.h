@@ -27,10 +27,11 @@ inline std::optional<nlohmann::json> read_with(const std::string& command,
   return nlohmann::json::parse(text);
 }
 
-#define READ_WITH_VTK(name, file)                                                                          \
-  const auto name##_or_none = read_with("'" MALLOW_PYTHON "' '" MALLOW_READ_WITH_VTK "'", file);           \
-  if (!name##_or_none) GTEST_SKIP() << "SKIPPED: there is no python3-vtk9; tools/setup --vtk installs it"; \
-  const nlohmann::json& name = *name##_or_none;                                                            \
+#define READ_WITH_VTK(name, file)                                                                \
+  const auto name##_or_none = read_with("'" MALLOW_PYTHON "' '" MALLOW_READ_WITH_VTK "'", file); \
+  if (!name##_or_none)                                                                           \
+    GTEST_SKIP() << "SKIPPED: there is no VTK that reads it; tools/setup --vtk installs one";    \
+  const nlohmann::json& name = *name##_or_none;                                                  \
   EXPECT_EQ(name.at("messages"), "")
 
 #define READ_WITH_TINYUSDZ(name, file)                                                                 \

@@ -1,13 +1,23 @@
-"""Prints what VTK's own reader finds in a VTP, GLB or OBJ file, as JSON. Exit code 77: there is no VTK."""
+"""Prints what VTK's own reader finds in a VTP, GLB or OBJ file, as JSON. Exit code 77: this VTK, of python3-vtk9 or of
+ParaView, has no such reader, or there is none; the reason goes to stderr."""
 
+import importlib
 import json
 import sys
 
+READERS = {
+    "vtp": ("vtkIOXML", "vtkXMLPolyDataReader"),
+    "glb": ("vtkIOGeometry", "vtkGLTFReader"),
+    "obj": ("vtkIOGeometry", "vtkOBJReader"),
+}
+ending = sys.argv[1].rsplit(".", 1)[1]
 try:
     from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
-    from vtkmodules.vtkIOGeometry import vtkGLTFReader, vtkOBJReader
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-except ImportError:
+
+    module, name = READERS[ending]
+    reader = getattr(importlib.import_module("vtkmodules." + module), name)()
+except (ImportError, AttributeError) as error:
+    print(error, file=sys.stderr)
     sys.exit(77)
 
 
@@ -24,8 +34,6 @@ def poly_data(output):
 
 messages = vtkStringOutputWindow()
 vtkOutputWindow.SetInstance(messages)
-ending = sys.argv[1].rsplit(".", 1)[1]
-reader = {"vtp": vtkXMLPolyDataReader, "glb": vtkGLTFReader, "obj": vtkOBJReader}[ending]()
 reader.SetFileName(sys.argv[1])
 reader.Update()
 data = poly_data(reader.GetOutput())

@@ -173,11 +173,11 @@ def Xform "surface"
         vector3f[] velocities.timeSamples = {
             12: [(0, 0, 0), (2, 6, -4), (0, -19, 0)],
         }
-        color3f[] primvars:displayColor = [(0.8, 0.24, 0.09), (0, 1, 0.5)] (
+        color3f[] primvars:displayColor (
             interpolation = "uniform"
         )
-        int[] primvars:displayColor:indices.timeSamples = {
-            12: [1],
+        color3f[] primvars:displayColor.timeSamples = {
+            12: [(0, 1, 0.5)],
         }
         int[] primvars:group (
             interpolation = "uniform"
@@ -268,7 +268,9 @@ TEST(usda, a_series_is_one_mesh_with_the_files_of_its_frames_as_value_clips) {
             interpolation = "vertex"
         )
         vector3f[] velocities
-        int[] primvars:displayColor:indices
+        color3f[] primvars:displayColor (
+            interpolation = "uniform"
+        )
         int[] primvars:group (
             interpolation = "uniform"
         )
@@ -343,9 +345,8 @@ TEST(usda, tinyusdz_reads_the_mesh_that_was_written) {
 
   const nlohmann::json& layer = read.at("layer");
   expect_values(layer, "vector3f[] velocities", mesh.velocities);
-  expect_values(layer, "color3f[] primvars:displayColor", k_colors);
+  expect_values(layer, "color3f[] primvars:displayColor", {k_colors[2], k_colors[0]});
   expect_values(layer, "float3[] extent", {bounds(mesh).min, bounds(mesh).max});
-  EXPECT_EQ(values_of(layer, "int[] primvars:displayColor:indices"), (std::vector<float>{2, 0}));
   EXPECT_EQ(values_of(layer, "int[] primvars:group"), (std::vector<float>{2, 0}));
   for (const char* line : {"metersPerUnit = 1\n", "upAxis = \"Z\"\n", "defaultPrim = \"surface\"\n",
                            "uniform token subdivisionScheme = \"none\"\n", "uniform bool doubleSided = 0\n",
@@ -389,11 +390,11 @@ TEST(usda, tinyusdz_finds_one_mesh_in_a_series_and_each_frame_by_itself) {
   expect_mesh(second, meshes[1]);
   for (const char* text :
        {"vector3f[] velocities.timeSamples = {\n            1: [(0, 0, -4.9), (0.0005, 0, 0), ",
-        "int[] primvars:displayColor:indices.timeSamples = {\n            1: [2],\n",
+        "color3f[] primvars:displayColor.timeSamples = {\n            1: [(0.1, 0.2, 0.3)],\n",
         "def Material \"jelly\"", "rel material:binding = </surface/materials/clay>"})
     EXPECT_TRUE(has(second.at("layer"), text)) << text << second.at("layer");
   READ_WITH_TINYUSDZ(manifest, folder / "a.manifest.usda");
-  EXPECT_TRUE(has(manifest.at("root"), "point3f[] points\n")) << manifest;
+  EXPECT_TRUE(has(manifest.at("root"), "def GeomSubset \"pool\"\n")) << manifest;
 }
 
 /// So that what it reads without complaint says something.
