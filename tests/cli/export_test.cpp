@@ -220,7 +220,7 @@ TEST_F(cli_export, wrong_use_is_refused_with_what_is_allowed) {
   expect_refused(run_mallow({"export", at("out"), "--surface", "glb"}), {"no surfaces", "mallow surface"});
   write("file", "");
   expect_refused(run_mallow({"export", at("out"), "--particles", "csv", "--out", at("file")}),
-                 {"file/particles"});
+                 {"file: --out: cannot be made"});
   EXPECT_FALSE(fs::exists(at("out/export")));
   const Outcome help = run_mallow({"export", "--help"});
   EXPECT_EQ(help.exit_code, 0);

@@ -113,7 +113,8 @@ TEST_F(cli_names, that_no_scene_can_hold_are_refused_before_the_run) {
   fs::create_directory(at("\xFC"));
   fs::rename(at("points.csv"), at("\xFC/points.csv"));
   fs::rename(scene, at("\xFC/points.toml"));
-  const Outcome outcome = run_mallow({"run", at("\xFC/points.toml"), "--out", at("again")});
+  const Outcome outcome =
+      run_mallow({"run", at("\xFC/points.toml"), "--out", at("again"), "--allow-outside-paths"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("is not UTF-8"), std::string::npos) << outcome.err;
   EXPECT_FALSE(fs::exists(at("again")));
