@@ -104,6 +104,8 @@ class Catalogue {
       for (int i = 0; i < 20; ++i) s.body.positions.push_back(Vec3(1, 2, 3 + 0.101f * static_cast<float>(i)));
       s.body.velocity = {1, 0, 0};
     });
+    for (Extreme* e = &list_.back() - 1; e <= &list_.back(); ++e)
+      e->trial.energy_room = 1e3;  // pressure from the start
     add_free("crowded pairs", [](Setup& s) {
       const std::vector<Vec3> once = s.body.positions;
       for (const Vec3& x : once) s.body.positions.push_back(x + Vec3(0.101f, 0, 0));

@@ -1,5 +1,6 @@
 #include "textbook/sph.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -100,8 +101,11 @@ void sum_accelerations(const SolverConfig& config, const std::vector<Group>& gro
       const Particle& j = particles[id];
       const Group& group_j = groups[j.group];
       const double viscosity = (double{material.viscosity} + group_j.material.viscosity) / 2;
+      // In the viscous term densities are at least those at rest.
+      const double thick = std::min(1.0, i.density / groups[i.group].rest_density) *
+                           std::min(1.0, j.density / group_j.rest_density);
       const Vec force = printed ? printed_pair(kernels, i, j, viscosity)  //
-                                : conservative_pair(kernels, i, j, viscosity);
+                                : conservative_pair(kernels, i, j, thick * viscosity);
       (j.group == i.group ? same_group : other_groups) += group_j.mass / j.density * force;
     }
     i.sph_acceleration = same_group / i.density;

@@ -74,11 +74,10 @@ Material with_quality(const Material& material, const SolverConfig& config, Qual
   const Preset& p = preset(quality);
   Material result = at_time_step(material, config, p.time_step);
   if (p.time_step > 1) {
-    // Rather softer than unstable; but no softer than it was written.
+    // Rather softer than unstable.
     const float softest =
         (1 - material.alpha.lowest()) * at_time_step(config, p.time_step).time_step / k_stiffest;
-    const float written = material.elastic_time_step.value_or(config.time_step);
-    result.elastic_time_step = std::max(*result.elastic_time_step, std::min(softest, written));
+    result.elastic_time_step = std::max(*result.elastic_time_step, softest);
   }
   result.region_stride = std::max(material.region_stride, p.region_stride);
   return result;

@@ -91,7 +91,8 @@ struct Separation {
 
 /// t = σ − r, so F = |∇W_spiky|/(2 σ²) at q = 0, and ∇²W_visc is twice that times t σ. Model 1, Mueller 2003.
 /// Viscosity acts along the pair alone, five times as strong: the same shear viscosity, and spin is kept. All
-/// three components of the velocity took 28% of a free cube's spin in 200 steps. [model 2, section 0]
+/// three components of the velocity took 28% of a free cube's spin in 200 steps. There ρ is at least ρ0.
+/// [model 2, section 0]
 struct Conservative {
   static constexpr bool central = true;
   static float factor(const SphInput& in) {
@@ -144,13 +145,18 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
   Floats3 v = {};
   if (viscous && Formula::central) v = load_vectors(in.velocity, first);
   Ints own = Ints{} + (grouped ? in.group[first] : 0);  // lanes without a particle too
-  Floats own_viscosity = all(in.groups[0].viscosity);
+  Floats own_viscosity = all(in.groups[0].viscosity), own_rest = all(in.groups[0].rest_volume);
   if (grouped) {
     for (std::size_t i = first; i < in.cluster_start[cluster + 1]; ++i) {
       own[i - first] = in.group[i];
       own_viscosity[i - first] = in.groups[in.group[i]].viscosity;
+      own_rest[i - first] = in.groups[in.group[i]].rest_volume;
     }
   }
+  // Where there are few neighbours, viscosity takes the rest density for the density: with its own a thin
+  // place would be the stiffer the thinner it is, beyond what the limit on the step knows of.
+  const Floats own_volume = load(volumes + first);
+  const Floats own_share = smaller(own_rest / larger(own_volume, all(k_least)), all(1.0f));
   const auto add_pairs = [&](std::uint32_t j, const Separation& apart) {
     const int group = grouped ? in.group[j] : 0;
     const Floats3& d = apart.d;
@@ -158,13 +164,15 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
         Formula::pair(in, apart, own_pressure, pressures[j], own_viscosity + in.groups[group].viscosity);
     const Floats weight = volumes[j] * pair.t;
     Floats push = weight * pair.push;
-    const Floats drag = weight * pair.drag;
     if (viscous && Formula::central) {
+      const float rest = in.groups[group].rest_volume;
+      const Floats drag = own_share * ((volumes[j] < rest ? volumes[j] : rest) * pair.t) * pair.drag;
       const Floats3 w = difference(in.velocity, j, v);
       push -= drag * ((w.x * d.x + w.y * d.y + w.z * d.z) * apart.inverse_square);
     }
     Floats3 a = {-(push * d.x), -(push * d.y), -(push * d.z)};
     if (viscous && !Formula::central) {
+      const Floats drag = weight * pair.drag;
       const Floats3 w = difference(in.velocity, j, v);
       a = {drag * w.x - push * d.x, drag * w.y - push * d.y, drag * w.z - push * d.z};
     }

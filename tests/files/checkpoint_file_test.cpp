@@ -75,7 +75,7 @@ TEST(checkpoint_file, cut_off_anywhere_is_refused) {
   EXPECT_EQ(why_refused(folder, ""), "is empty");
   for (std::size_t size = 1; size < bytes.size(); ++size)
     EXPECT_NE(why_refused(folder, bytes.substr(0, size)).find("is cut off"), std::string::npos) << size;
-  EXPECT_NE(why_refused(folder, bytes + '\0').find("behind its end"), std::string::npos);
+  EXPECT_NE(why_refused(folder, bytes + '\0').find("after its end"), std::string::npos);
 }
 
 TEST(checkpoint_file, any_flipped_bit_is_found) {

@@ -212,6 +212,9 @@ Vec Oracle::pair_acceleration(const Particle& i, const Particle& j) const {
   const Group& group_j = groups_[j.group];
   const double mu = (double{group_i.material.viscosity} + group_j.material.viscosity) / 2;
   const double volume = group_j.mass / j.density;
+  // In the viscous term densities are at least those at rest.
+  const double thick =
+      std::min(1.0, i.density / group_i.rest_density) * std::min(1.0, j.density / group_j.rest_density);
   Vec force;
   if (config_.formulation == Formulation::printed) {
     force = -j.pressure * poly6_gradient(d, sigma) + mu * poly6_laplacian(d.norm(), sigma) * j.v;
@@ -219,7 +222,7 @@ Vec Oracle::pair_acceleration(const Particle& i, const Particle& j) const {
     // Viscosity along the pair alone (section 0 of the second chapter); no pair is along 0.
     const Vec along = d.norm() > 0 ? Vec(d.normalized()) : Vec::Zero();
     force = -(i.pressure + j.pressure) / 2 * spiky_gradient(d, sigma) +
-            5 * mu * viscosity_laplacian(d.norm(), sigma) * (j.v - i.v).dot(along) * along;
+            5 * thick * mu * viscosity_laplacian(d.norm(), sigma) * (j.v - i.v).dot(along) * along;
   }
   return volume / i.density * force;
 }
