@@ -57,6 +57,7 @@ double frame_time(const CachedRun& run) {
   if (frames.size() < 2) return film;
   const auto time = [&](int frame) { return read_particles(run.cache.particles_file(frame)).time; };
   const double mean = (time(frames.back()) - time(frames.front())) / (frames.back() - frames.front());
+  if (!(mean > 0)) return film;  // frames that all show one time
   // A scene in real time says 0.0333, or a float next to 1/30, but means the film's rate.
   return std::abs(mean - film) < 2e-3 * film ? film : mean;
 }
