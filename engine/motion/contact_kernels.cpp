@@ -154,7 +154,7 @@ Lanes bounce(float restitution, const Lanes& approach, const Lanes& gap, const L
   const Lanes half_kick = 0.5f * gravity * step.time_step, speed = half_kick - approach;
   const float kept = restitution * restitution;
   const Lanes square = kept * (speed * speed) - 2.0f * (1.0f - kept) * gravity * larger(gap, zero);
-  return bounces & (square > 0.0f) ? smaller(square_root(square) - half_kick, -approach) : none;
+  return (bounces & (square > 0.0f)) ? smaller(square_root(square) - half_kick, -approach) : none;
 }
 
 /// As the function of motion/contact.h.
