@@ -16,7 +16,7 @@
 namespace mallow {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Clock = Governor::Clock;
 
 // The word, from its lowest bits on: the number of workers inside; whether the loop is open; whether the
 // caller sleeps until nobody is inside; whether the team ends; how many workers may join; the loop's number.
@@ -87,13 +87,24 @@ std::size_t Team::make_workers(std::size_t count) noexcept {
 }
 
 void Team::run(int threads, LoopTask task) noexcept {
+  const Clock::time_point begin = Clock::now();
+  if (!governor_.allows(begin)) {
+    task(0);
+    return;
+  }
   const std::size_t count = make_workers(static_cast<std::size_t>(threads) - 1);
   task_ = task;
   const std::uint64_t next = epoch(word_.load(std::memory_order_relaxed)) + 1;
   word_.store(next << k_epoch_shift | count << k_helpers_shift | k_open);
   wake(count);
   task(0);
-  if ((word_.fetch_and(~k_open, std::memory_order_acq_rel) & k_inside) != 0) wait_for_those_inside();
+  const Clock::time_point done = Clock::now();
+  Clock::time_point end = done;
+  if ((word_.fetch_and(~k_open, std::memory_order_acq_rel) & k_inside) != 0) {
+    wait_for_those_inside();
+    end = Clock::now();
+  }
+  governor_.ended(done - begin, end - done, end);
 }
 
 void Team::wake(std::size_t helpers) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/governor.h"
 #include "mallow/executor.h"
 
 namespace mallow {
@@ -39,6 +40,8 @@ class Team {
   std::size_t most_workers_ = SIZE_MAX;  ///< fewer once the system gave no more
   std::optional<LoopTask> task_;         ///< of the loop that is open
   std::atomic<int> caller_processor_{-1};
+  /// Long loops gain more by a worker that runs half of the time than they lose by the waits for it.
+  Governor governor_{16};
   /// What all threads agree by, see team.cpp.
   alignas(64) std::atomic<std::uint64_t> word_{0};
   alignas(64) std::atomic<std::uint32_t> caller_sleeps_{0};

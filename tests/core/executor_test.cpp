@@ -201,33 +201,34 @@ TEST(team, a_process_that_was_forked_off_has_threads_of_its_own) {
 }
 #endif
 
-TEST(governor, pauses_twice_as_long_after_each_wait_and_forgets_them_after_a_thousand_good_loops) {
-  Governor governor;
+TEST(governor, pauses_longer_after_each_long_wait_and_forgets_them_after_good_loops) {
+  Governor governor(2);
   Governor::Clock::time_point now{1h};
   EXPECT_TRUE(governor.allows(now));
-  governor.waited(149us, now);
-  EXPECT_TRUE(governor.allows(now));
-  for (const auto pause : {4ms, 8ms, 16ms, 32ms, 64ms, 128ms, 256ms, 256ms}) {
-    governor.waited(151us, now);
+  for (const int pause : {8, 16, 32, 64, 64}) {
+    governor.ended(1us, 3ms, now);
     EXPECT_FALSE(governor.allows(now));
-    EXPECT_FALSE(governor.allows(now + pause - 1us));
-    now += pause;
+    EXPECT_FALSE(governor.allows(now + pause * 3ms - 1us));
+    now += pause * 3ms;
     EXPECT_TRUE(governor.allows(now));
   }
-  for (int k = 0; k < 999; ++k) governor.waited(0us, now);
-  governor.waited(1ms, now);
-  EXPECT_FALSE(governor.allows(now + 255ms));
-  for (int k = 0; k < 1000; ++k) governor.waited(0us, now);
-  governor.waited(200us, now);
-  EXPECT_TRUE(governor.allows(now + 4ms));
+  for (int k = 1; k < Governor::k_good; ++k) governor.ended(1us, 0us, now);
+  governor.ended(1us, 1ms, now);
+  EXPECT_FALSE(governor.allows(now + 63ms));
+  for (int k = 0; k < Governor::k_good; ++k) governor.ended(1us, 0us, now);
+  governor.ended(1us, 1ms, now);
+  EXPECT_FALSE(governor.allows(now + 7ms));
+  EXPECT_TRUE(governor.allows(now + 8ms));
 }
 
-TEST(governor, pauses_ten_times_as_long_as_a_wait_lasted) {
-  Governor governor;
+TEST(governor, tolerates_short_waits_and_those_of_uneven_blocks) {
+  Governor governor(2);
   const Governor::Clock::time_point now{1h};
-  governor.waited(100ms, now);
-  EXPECT_FALSE(governor.allows(now + 999ms));
-  EXPECT_TRUE(governor.allows(now + 1s));
+  governor.ended(1us, 50us, now);
+  governor.ended(1ms, 2ms, now);
+  EXPECT_TRUE(governor.allows(now));
+  governor.ended(1ms, 3ms, now);
+  EXPECT_FALSE(governor.allows(now));
 }
 
 }  // namespace

@@ -47,17 +47,17 @@ class Executor {
   virtual void run(int threads, LoopTask task) = 0;
 };
 
-/// The engine's own threads, the default. A loop is never kept waiting for a thread that the system has not
-/// let run yet: those that come in time help, the caller does the rest. Idle threads spin for 50 µs, then
-/// sleep. Simulations on several threads at once share the processors: together they use no more threads than
-/// there are. Threads are kept for later loops and end with the program; a process that was forked off starts
-/// new ones.
+/// The engine's own threads, the default. A loop does not wait for a thread that the system has not let run
+/// yet: those that come in time help, the caller does the rest. Where threads lose their processors in the
+/// middle of short loops, loops run on one thread for a while. Idle threads spin for 50 µs, then sleep.
+/// Simulations on several threads at once share the processors: together they use no more threads than there
+/// are. Threads are kept for later loops and end with the program; a process that was forked off starts new
+/// ones.
 std::shared_ptr<Executor> team_executor();
 
 /// OpenMP's threads, for programs that use OpenMP anyway. A loop of OpenMP ends when all its threads have
-/// been there; where something else runs too, that can take a time slice of the system. So a loop that waited
-/// for more than 150 µs is followed by 4 ms with one thread, twice as long each time up to 256 ms, and again
-/// 4 ms after 1,000 loops without such a wait.
+/// been there; where something else runs too, that can take time slices of the system. So after a long wait
+/// loops run on one thread for 8 to 64 times as long as it lasted.
 std::shared_ptr<Executor> openmp_executor();
 
 }  // namespace mallow
