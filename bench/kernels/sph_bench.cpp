@@ -30,6 +30,7 @@ struct SphScene {
                          .rest_density = static_cast<float>(density),
                          .rest_volume = static_cast<float>(1 / density),
                          .pressure_coefficient = 16,
+                         .contact_share = 1,
                          .viscosity = kind == Pairs::pressure ? 0.0f : 0.5f,
                          .cohesion = 0};
     sph.support_radius = scene.radius;

@@ -13,13 +13,17 @@ constexpr float k_wavelength = 16.0f;
 /// Their height, in spacings per time step: five steps shear a region by 0.1.
 constexpr float k_stir = 0.05f;
 
+/// The paper's.
+constexpr float k_time_step = 0.15f, k_update_threshold = 12, k_pressure_coefficient = 16, k_viscosity = 0.5f;
+constexpr int k_update_interval = 60;
+
 const std::vector<std::string> k_materials = {"elastic", "paste", "fluid"};
 
-Vec3 stirred(const Vec3& x, float time_step) {
+Vec3 stirred(const Vec3& x) {
   const auto wave = [](float value) {
     return std::sin(2 * std::numbers::pi_v<float> * value / k_wavelength);
   };
-  return k_stir / time_step * Vec3(wave(x.y()), wave(x.z()), wave(x.x()));
+  return k_stir / k_time_step * Vec3(wave(x.y()), wave(x.z()), wave(x.x()));
 }
 
 }  // namespace
@@ -69,16 +73,21 @@ double average_neighbors(const Cube& cube) {
 
 Simulation build(const Cube& cube, int threads, std::shared_ptr<Executor> executor) {
   SolverConfig config;
+  config.time_step = k_time_step;
   config.support_radius = k_cube_radius;
+  config.update_interval = k_update_interval;
   config.threads = threads;
   config.executor = std::move(executor);
   Simulation simulation(config);
 
   Material material;
   material.alpha = cube_alpha(cube.material);
+  material.update_threshold = k_update_threshold;
+  material.pressure_coefficient = k_pressure_coefficient;
+  material.viscosity = k_viscosity;
   Body body = sample(Lattice{.count = cube.count, .spacing = 1.0f, .jitter = 0});
   body.velocities.reserve(body.positions.size());
-  for (const Vec3& x : body.positions) body.velocities.push_back(stirred(x, config.time_step));
+  for (const Vec3& x : body.positions) body.velocities.push_back(stirred(x));
   simulation.add_body(body, material, cube.material);
   simulation.add_collider({.shape = Plane{}, .friction = 0.3f});
   return simulation;

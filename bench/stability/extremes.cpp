@@ -11,8 +11,8 @@ namespace {
 
 /// What most extremes start from, and change one thing of: a small body in the default units.
 struct Setup {
-  SolverConfig config{.support_radius = 2.1f, .threads = 1};
-  Material material;
+  SolverConfig config{.time_step = 0.15f, .support_radius = 2.1f, .update_interval = 60, .threads = 1};
+  Material material{.update_threshold = 12.0f, .pressure_coefficient = 16.0f, .viscosity = 0.5f};
   Body body = sample(Lattice{.count = {5, 5, 5}, .corner = {0, 0, 1}, .jitter = 0});
   std::vector<Collider> colliders = {};
 
@@ -116,11 +116,11 @@ class Catalogue {
     add_free("turned inside out", [](Setup& s) {
       const Vec3 middle(2.5f, 2.5f, 3.5f);
       for (const Vec3& x : s.body.positions)
-        s.body.velocities.push_back(2 / s.config.time_step * (middle - x));
+        s.body.velocities.push_back(2 / s.config.time_step.value() * (middle - x));
     });
     add_free("pressed flat", [](Setup& s) {
       for (const Vec3& x : s.body.positions)
-        s.body.velocities.push_back(Vec3(0, 0, (3.5f - x.z()) / s.config.time_step));
+        s.body.velocities.push_back(Vec3(0, 0, (3.5f - x.z()) / s.config.time_step.value()));
     });
   }
 
@@ -130,7 +130,7 @@ class Catalogue {
     for (const float mass : {1e-9f, 1e9f})
       add_free(mass < 1 ? "masses of 1e-9" : "masses of 1e9", [mass](Setup& s) {
         s.material.particle_mass = mass;
-        s.material.viscosity *= mass;  // the same material, in another unit of mass
+        s.material.viscosity.value() *= mass;  // the same material, in another unit of mass
       });
     add_free("light particles, viscosity as it was", [](Setup& s) { s.material.particle_mass = 1e-6f; });
     add("gravity of 1e4", falling_body(), [](Setup& s) { s.config.gravity = {0, 0, -1e4f}; });
@@ -150,9 +150,9 @@ class Catalogue {
             s.body.spacing *= scale;
             for (Vec3& x : s.body.positions) x *= scale;
             // Accelerations scale like lengths, k like their squares.
-            s.material.pressure_coefficient *= scale * scale;
-            s.material.update_threshold *= scale;
-            s.material.viscosity /= scale;
+            s.material.pressure_coefficient.value() *= scale * scale;
+            s.material.update_threshold.value() *= scale;
+            s.material.viscosity.value() /= scale;
           });
     add("at 1e5 from the origin", falling_body(), [](Setup& s) {
       for (Vec3& x : s.body.positions) x += Vec3(1e5f, -1e5f, 0);
@@ -210,7 +210,7 @@ class Catalogue {
               s.material.region_radius = radius;
               s.material.update_threshold = 1e30f;
               s.material.elastic_time_step =
-                  std::max(0.01f, (1 - s.material.alpha.lowest()) * s.config.time_step / 2.5f);
+                  std::max(0.01f, (1 - s.material.alpha.lowest()) * *s.config.time_step / 2.5f);
               s.colliders[0].restitution = 1;
             },
             trial);

@@ -6,7 +6,9 @@
 namespace mallow::bench {
 namespace {
 
-const float k_default_time_step = SolverConfig{}.time_step;
+/// The paper's.
+constexpr float k_time_step = 0.15f, k_update_threshold = 12;
+constexpr int k_update_interval = 60;
 /// Particles along a side, and their lowest height in spacings.
 constexpr int k_side = 6;
 constexpr float k_height = 1.5f;
@@ -56,7 +58,8 @@ Trial falling_cube(const GridPoint& point, int steps) {
   trial.by_conserved_energy = true;
   trial.build = [point] {
     SolverConfig config;
-    config.time_step = k_default_time_step * point.time_step;
+    config.time_step = k_time_step * point.time_step;
+    config.update_interval = k_update_interval;
     config.support_radius = 2.1f;
     config.threads = 1;
     Simulation simulation(config);
@@ -64,10 +67,12 @@ Trial falling_cube(const GridPoint& point, int steps) {
     Body cube = sample(Lattice{.count = {k_side, k_side, k_side}, .corner = {0, 0, k_height}, .jitter = 0});
     for (const Vec3& x : cube.positions) {
       const auto wave = [](float c) { return std::sin(2 * std::numbers::pi_v<float> * c / k_side); };
-      cube.velocities.push_back(k_stir / config.time_step * Vec3(wave(x.y()), wave(x.z()), wave(x.x())));
+      cube.velocities.push_back(k_stir / *config.time_step * Vec3(wave(x.y()), wave(x.z()), wave(x.x())));
     }
-    simulation.add_body(
-        cube, {.alpha = point.alpha, .pressure_coefficient = point.pressure, .viscosity = point.viscosity});
+    simulation.add_body(cube, {.alpha = point.alpha,
+                               .update_threshold = k_update_threshold,
+                               .pressure_coefficient = point.pressure,
+                               .viscosity = point.viscosity});
     return simulation;
   };
   return trial;

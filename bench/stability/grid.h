@@ -9,7 +9,7 @@ namespace mallow::bench {
 /// Axes of the map of stability. `thin` takes every few values of each.
 struct StabilityGrid {
   std::vector<float> alphas;        ///< 0, 0.1, ... 1
-  std::vector<float> time_steps;    ///< in units of the default Δt0
+  std::vector<float> time_steps;    ///< in units of the paper's Δt0
   std::vector<float> pressures;     ///< k [m²/s²]
   std::vector<float> viscosities;   ///< μ [Pa s]
   std::vector<float> restitutions;  ///< e of the floor

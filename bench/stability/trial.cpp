@@ -80,7 +80,7 @@ Outcome run(const Trial& trial) {
     if (!end.finite) outcome.verdict = Verdict::unstable;
     outcome.end_energy = ratio(end.kinetic, reference);
     outcome.end_speed = std::sqrt(2 * end.kinetic / (static_cast<double>(trial.mass) * n)) *
-                        static_cast<double>(simulation.config().time_step / trial.spacing);
+                        static_cast<double>(*simulation.config().time_step / trial.spacing);
     if (trial.is_free) {
       outcome.momentum_drift = ratio((end.momentum - start.momentum).norm(), start.speed);
       outcome.angular_drift = ratio((end.angular - start.angular).norm(), start.moment);

@@ -45,11 +45,17 @@ struct Particle {
 struct Group {
   Material material;
   std::vector<std::size_t> members = {};
-  double spacing = 0;        ///< h [m]
-  double mass = 0;           ///< m, of a particle [kg]
-  double rest_density = 0;   ///< ρ0 [kg/m³]
-  double alpha = 0;          ///< of the last step
-  double region_radius = 0;  ///< [m]
+  double spacing = 0;               ///< h [m]
+  double mass = 0;                  ///< m, of a particle [kg]
+  double rest_density = 0;          ///< ρ0 [kg/m³]
+  double alpha = 0;                 ///< of the last step
+  double update_threshold = 0;      ///< γ_u [m/s²]
+  double viscosity = 0;             ///< μ [Pa s]
+  double pressure_coefficient = 0;  ///< k of the last step [m²/s²]
+  double contact_share = 1;         ///< of its pressure that acts between groups
+  double external_sum = 0;          ///< ∫ mean |a_ext| over the time before the next check that it judges
+  double external_time = 0;         ///< that time [s]; where checks are counted in steps, steps
+  double region_radius = 0;         ///< [m]
 
   /// A group that is fluid for ever has no reference shape.
   bool keeps_reference() const { return material.alpha.lowest() < 1; }

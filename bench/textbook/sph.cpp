@@ -39,20 +39,22 @@ struct Kernels {
 };
 
 /// What j adds to the force density at i, but for the volume of j [N/m³].
-Vec conservative_pair(const Kernels& kernels, const Particle& i, const Particle& j, double viscosity) {
+Vec conservative_pair(const Kernels& kernels, const Particle& i, const Particle& j, double pressures,
+                      double viscosity) {
   const Vec d = i.position - j.position;
   const double r = d.norm();
-  Vec force = -(i.pressure + j.pressure) / 2 * kernels.spiky_gradient(r) * d;
+  Vec force = -pressures / 2 * kernels.spiky_gradient(r) * d;
   // Along the pair alone, which keeps spin.
   if (viscosity > 0 && r > 0)
     force += 5 * viscosity * kernels.viscosity_laplacian(r) * (j.velocity - i.velocity).dot(d / r) * (d / r);
   return force;
 }
 
-Vec printed_pair(const Kernels& kernels, const Particle& i, const Particle& j, double viscosity) {
+Vec printed_pair(const Kernels& kernels, const Particle& i, const Particle& j, double pressure,
+                 double viscosity) {
   const Vec d = i.position - j.position;
   const double r2 = d.squaredNorm();
-  Vec force = -j.pressure * kernels.poly6_gradient(r2) * d;
+  Vec force = -pressure * kernels.poly6_gradient(r2) * d;
   if (viscosity > 0) force += viscosity * kernels.poly6_laplacian(r2) * j.velocity;
   return force;
 }
@@ -82,7 +84,7 @@ void sum_densities(const SolverConfig& config, const std::vector<Group>& groups,
       sum += other.mass / other.rest_density * kernels.poly6((i.position - j.position).squaredNorm());
     }
     i.density = group.rest_density * sum;
-    i.pressure = group.material.pressure_coefficient * (i.density - group.rest_density);
+    i.pressure = group.pressure_coefficient * (i.density - group.rest_density);
     if (i.pressure < 0) i.pressure *= group.material.cohesion;
   }
 }
@@ -92,20 +94,23 @@ void sum_accelerations(const SolverConfig& config, const std::vector<Group>& gro
   const Kernels kernels(config.support_radius);
   const bool printed = config.formulation == Formulation::printed;
   for (Particle& i : particles) {
-    const Material& material = groups[i.group].material;
+    const Group& group = groups[i.group];
     Vec same_group = Vec::Zero(), other_groups = Vec::Zero();
     // The print does not leave out j = i, whose viscosity is not zero there.
     if (printed)
-      same_group = groups[i.group].mass / i.density * printed_pair(kernels, i, i, material.viscosity);
+      same_group = group.mass / i.density * printed_pair(kernels, i, i, i.pressure, group.viscosity);
     for (const std::size_t id : i.neighbors) {
       const Particle& j = particles[id];
       const Group& group_j = groups[j.group];
-      const double viscosity = (double{material.viscosity} + group_j.material.viscosity) / 2;
+      const double viscosity = (group.viscosity + group_j.viscosity) / 2;
       // In the viscous term densities are at least those at rest.
-      const double thick = std::min(1.0, i.density / groups[i.group].rest_density) *
-                           std::min(1.0, j.density / group_j.rest_density);
-      const Vec force = printed ? printed_pair(kernels, i, j, viscosity)  //
-                                : conservative_pair(kernels, i, j, thick * viscosity);
+      const double thick =
+          std::min(1.0, i.density / group.rest_density) * std::min(1.0, j.density / group_j.rest_density);
+      const bool touching = j.group != i.group;
+      const double p_i = i.pressure * (touching ? group.contact_share : 1);
+      const double p_j = j.pressure * (touching ? group_j.contact_share : 1);
+      const Vec force = printed ? printed_pair(kernels, i, j, p_j, viscosity)
+                                : conservative_pair(kernels, i, j, p_i + p_j, thick * viscosity);
       (j.group == i.group ? same_group : other_groups) += group_j.mass / j.density * force;
     }
     i.sph_acceleration = same_group / i.density;

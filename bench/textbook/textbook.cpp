@@ -66,8 +66,53 @@ void Textbook::pin(const Aabb& box, const Vec3& velocity) {
   }
 }
 
+/// What the configs leave out follows from spacing and gravity, or from the fastest that moves.
+void Textbook::settle_defaults() {
+  double spacing = groups_.front().spacing, speed = 0;
+  for (const Group& group : groups_) spacing = std::min(spacing, group.spacing);
+  for (const Particle& p : particles_) {
+    speed = std::max(speed, p.velocity.norm());
+    if (p.pinned) speed = std::max(speed, p.pin_velocity.norm());
+  }
+  for (const Obstacle& o : obstacles_) speed = std::max(speed, o.collider.velocity.cast<double>().norm());
+  const double gravity = config_.gravity.cast<double>().norm();
+  base_step_ = gravity > 0 ? 0.15 * std::sqrt(0.3 * spacing / gravity) : 0.3 * spacing / speed;
+  if (config_.time_step) base_step_ = *config_.time_step;
+  longest_step_ = config_.time_step_factor * base_step_;
+  period_ = 60 * base_step_;
+  if (config_.update_interval) period_ = *config_.update_interval * base_step_;
+  if (config_.update_period) period_ = *config_.update_period;
+  for (Group& group : groups_) {
+    group.update_threshold = gravity > 0 ? 40 * gravity : 0.27 * spacing / (base_step_ * base_step_);
+    if (group.material.update_threshold) group.update_threshold = *group.material.update_threshold;
+    const double kinematic = gravity > 0 ? 0.5 / std::sqrt(0.3) * spacing * std::sqrt(gravity * spacing)
+                                         : 0.075 * spacing * spacing / base_step_;
+    group.viscosity = kinematic * group.mass / std::pow(group.spacing, 3);
+    if (group.material.viscosity) group.viscosity = *group.material.viscosity;
+  }
+}
+
+/// α now, and k where it is left out: x σ²/(max(α, 0.2) Δt²), whose share α acts between groups; x is 1 where
+/// elasticity leaves that.
+void Textbook::follow_alpha() {
+  const double step = std::max(base_step_, longest_step_), speed = config_.support_radius / step;
+  for (Group& group : groups_) {
+    group.alpha = alpha_at(group.material.alpha, time_);
+    if (group.material.pressure_coefficient) {
+      group.pressure_coefficient = *group.material.pressure_coefficient;
+    } else {
+      group.contact_share = std::max(group.alpha, 0.2);
+      const double elastic_time_step =
+          group.material.elastic_time_step ? double{*group.material.elastic_time_step} : base_step_;
+      const double pull = (1 - group.alpha) * step * step / (base_step_ * elastic_time_step);
+      group.pressure_coefficient = std::min(1.0, (2.6 - pull) / 2) * speed * speed / group.contact_share;
+    }
+  }
+}
+
 Textbook::Step Textbook::step() {
-  for (Group& group : groups_) group.alpha = alpha_at(group.material.alpha, time_);
+  if (steps_ == 0) settle_defaults();
+  follow_alpha();
   Step step{.updated_references = update_references()};
   for (Particle& p : particles_) {
     p.sph_acceleration = Vec::Zero();
@@ -86,6 +131,8 @@ Textbook::Step Textbook::step() {
   for (Obstacle& obstacle : obstacles_) {
     obstacle.moved += step.time_step * obstacle.collider.velocity.cast<double>();
   }
+  measure_external(step.time_step);
+  last_start_ = time_;
   time_ += step.time_step;
   ++steps_;
   return step;
@@ -98,18 +145,47 @@ bool Textbook::needs_sph() const {
 
 // Section 6 of the model [TK 3.2, eq. 14].
 int Textbook::update_references() {
-  if (steps_ == 0 || steps_ % config_.update_interval != 0) return 0;
+  if (!check_is_due()) return 0;
   int updated = 0;
-  for (const Group& group : groups_) {
-    const double threshold = group.material.update_threshold * (1 - group.alpha);
-    if (!group.keeps_reference() || mean_external_acceleration(group) <= threshold) continue;
+  for (Group& group : groups_) {
+    const double threshold = group.update_threshold * (1 - group.alpha);
+    const double judged = group.external_time > 0 ? group.external_sum / group.external_time : 0;
+    group.external_sum = group.external_time = 0;
+    if (!group.keeps_reference() || judged <= threshold) continue;
     take_reference(group, particles_);
     ++updated;
   }
   return updated;
 }
 
-/// Of the last step, over the particles that are not pinned.
+/// Multiples of the period, which times may miss by what their sums are off.
+double Textbook::passed_periods(double time) const {
+  return std::floor((time + 1e-6 * base_step_) / period_);
+}
+
+bool Textbook::check_is_due() const {
+  if (counts_steps()) return steps_ > 0 && steps_ % *config_.update_interval == 0;
+  return passed_periods(time_) > passed_periods(last_start_);
+}
+
+/// What counts at the next check: the step before it, or what steps share with the Δt0 before it.
+void Textbook::measure_external(double time_step) {
+  double weight = 0;
+  if (counts_steps()) {
+    weight = (steps_ + 1) % *config_.update_interval == 0 ? 1 : 0;
+  } else {
+    const double end = time_ + time_step;
+    const double check = period_ * std::max(passed_periods(time_) + 1, passed_periods(end));
+    weight = std::min(end, check) - std::max(time_, check - base_step_);
+  }
+  if (weight <= 0) return;
+  for (Group& group : groups_) {
+    group.external_sum += weight * mean_external_acceleration(group);
+    group.external_time += weight;
+  }
+}
+
+/// Of the step under way, over the particles that are not pinned.
 double Textbook::mean_external_acceleration(const Group& group) const {
   double sum = 0;
   int count = 0;
@@ -125,18 +201,20 @@ double Textbook::mean_external_acceleration(const Group& group) const {
 // Section 3 of the model [TK eq. 12].
 double Textbook::limited_time_step(double max_velocity) const {
   const double sigma = config_.support_radius;
-  double time_step = std::min(double{config_.time_step}, 0.999 * sigma / max_velocity);
+  double time_step = std::min(longest_step_, 0.999 * sigma / max_velocity);
   if (!config_.acoustic_limit) return time_step;
   for (const Group& group : groups_) {
     const Material& material = group.material;
-    time_step = std::min(time_step, sigma * sigma * group.rest_density / (25 * material.viscosity));
+    time_step = std::min(time_step, sigma * sigma * group.rest_density / (25 * group.viscosity));
     // x of pressure and a of shape matching as they act: x <= 1.4, 2 x + a <= 3.4, and x calmed by viscosity.
-    const double share = groups_.size() > 1 ? 1 : group.alpha;
-    const double x = share * material.pressure_coefficient / (sigma * sigma);
+    const bool alone = groups_.size() == 1;
+    const double push = alone ? group.alpha : group.contact_share, drag = alone ? group.alpha : 1;
+    const double x = push * group.pressure_coefficient / (sigma * sigma);
     if (x == 0) continue;
-    const double y = 800 * share * material.viscosity / group.rest_density / (sigma * sigma);
-    const double a = (1 - group.alpha) / (double{config_.time_step} *
-                                          double{material.elastic_time_step.value_or(config_.time_step)});
+    const double y = 800 * drag * group.viscosity / group.rest_density / (sigma * sigma);
+    const double elastic_time_step =
+        material.elastic_time_step ? double{*material.elastic_time_step} : base_step_;
+    const double a = (1 - group.alpha) / (base_step_ * elastic_time_step);
     time_step = std::min({time_step, (y + std::sqrt(y * y + 0.2 * x)) / (2 * x), std::sqrt(1.4 / x),
                           std::sqrt(3.4 / (2 * x + a))});
   }
@@ -144,21 +222,21 @@ double Textbook::limited_time_step(double max_velocity) const {
 }
 
 void Textbook::choose_time_step(Step& step) const {
-  step.time_step = config_.time_step;
+  step.time_step = longest_step_;
   if (!needs_sph()) return;
   std::size_t fastest = 0;
   for (std::size_t id = 0; id < particles_.size(); ++id) {
     const Particle& p = particles_[id];
     if (p.pinned) continue;
     const double velocity =
-        (p.velocity + config_.time_step * (p.sph_acceleration + p.external_acceleration)).norm();
+        (p.velocity + longest_step_ * (p.sph_acceleration + p.external_acceleration)).norm();
     // Not `>`: a velocity that is not a number must win, so that it is seen.
     if (velocity <= step.max_velocity || std::isnan(step.max_velocity)) continue;
     step.max_velocity = velocity;
     fastest = id;
   }
   step.time_step = limited_time_step(step.max_velocity);
-  if (std::isfinite(step.max_velocity) && step.time_step >= 1e-3 * config_.time_step) return;
+  if (std::isfinite(step.max_velocity) && step.time_step >= 1e-3 * longest_step_) return;
   throw StepError("particle " + std::to_string(fastest) + " would move at " +
                       std::to_string(step.max_velocity) + " m/s, for which no step above a thousandth of " +
                       "solver.time_step is short enough",
@@ -167,7 +245,6 @@ void Textbook::choose_time_step(Step& step) const {
 
 // Sections 4 and 5 of the model [TK eq. 10, 11, 13].
 void Textbook::move_particles(double time_step) {
-  const double longest = config_.time_step;
   for (Particle& p : particles_) {
     const Group& group = groups_[p.group];
     p.contact_acceleration = Vec::Zero();
@@ -175,16 +252,18 @@ void Textbook::move_particles(double time_step) {
       p.velocity = p.pin_velocity;
     } else {
       const Vec before = p.velocity;
-      const double elastic_time_step = group.material.elastic_time_step.value_or(config_.time_step);
+      double elastic_time_step = base_step_;
+      if (group.material.elastic_time_step) elastic_time_step = *group.material.elastic_time_step;
       p.velocity += time_step * (p.external_acceleration + group.alpha * p.sph_acceleration);
       if (group.alpha < 1) {
-        p.velocity += (1 - group.alpha) * time_step / (longest * elastic_time_step) * (p.goal - p.position);
+        p.velocity +=
+            (1 - group.alpha) * time_step / (base_step_ * elastic_time_step) * (p.goal - p.position);
       }
       const Vec blended = p.velocity;
       const ContactStep contact{
           .time_step = time_step,
           .contact_offset = config_.contact_offset ? double{*config_.contact_offset} : group.spacing / 2,
-          .max_push = config_.support_radius / (10 * longest),
+          .max_push = config_.support_radius / (10 * base_step_),
           .gravity = config_.gravity.cast<double>()};
       for (const Obstacle& obstacle : obstacles_)
         p.velocity = resolve_contact(obstacle, contact, p.position, before, p.velocity);

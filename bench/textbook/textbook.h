@@ -48,9 +48,15 @@ class Textbook {
   double average_neighbors(std::size_t group) const;
 
  private:
+  void settle_defaults();
+  void follow_alpha();
   bool needs_sph() const;
+  bool counts_steps() const { return config_.update_interval && config_.time_step_factor == 1; }
+  double passed_periods(double time) const;
+  bool check_is_due() const;
   int update_references();
   double mean_external_acceleration(const Group& group) const;
+  void measure_external(double time_step);
   double limited_time_step(double max_velocity) const;
   void choose_time_step(Step& step) const;
   void move_particles(double time_step);
@@ -59,6 +65,10 @@ class Textbook {
   std::vector<Particle> particles_;
   std::vector<Group> groups_;
   std::vector<Obstacle> obstacles_;
+  double base_step_ = 0;     ///< Δt0 [s]
+  double longest_step_ = 0;  ///< [s]
+  double period_ = 0;        ///< between checks [s]
+  double last_start_ = 0;    ///< of the step before [s]
   double time_ = 0;
   int steps_ = 0;
 };

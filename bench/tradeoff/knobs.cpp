@@ -32,16 +32,16 @@ struct Base {
   explicit Base(const Scene& scene) {
     const Material& material = scene.materials.front().material;
     const Lattice& box = std::get<Lattice>(scene.bodies.front().source);
-    time_step = static_cast<double>(scene.solver.time_step);
+    time_step = static_cast<double>(scene.solver.time_step.value());
     spacing = static_cast<double>(box.spacing);
     support_radius = static_cast<double>(scene.solver.support_radius);
     region_radius = static_cast<double>(material.region_radius.value_or(scene.solver.support_radius));
     count = box.count;
-    update_interval = scene.solver.update_interval;
+    update_interval = scene.solver.update_interval.value();
     sph = material.alpha.highest() > 0;
     shape = material.alpha.lowest() < 1;
     // Above gravity, only an impact could update the shape: the knob would be a lottery.
-    updates = shape && material.update_threshold < scene.solver.gravity.norm();
+    updates = shape && material.update_threshold.value() < scene.solver.gravity.norm();
   }
 };
 

@@ -32,7 +32,7 @@ Json to_json(const TradeoffSettings& settings) {
 }
 
 double moment_interval(const Scene& scene) {
-  return k_steps_per_moment * static_cast<double>(scene.solver.time_step);
+  return k_steps_per_moment * static_cast<double>(scene.solver.time_step.value());
 }
 
 std::size_t moment_count(const Scene& scene, const TradeoffSettings& settings) {
@@ -49,8 +49,9 @@ Reference make_reference(const Scene& scene, const TradeoffSettings& settings, i
   for (int factor = 1; factor < settings.reference_factor; factor *= 2) {
     const Trajectory coarser = run(factor);
     reference.convergence.push_back(
-        {{"time_step", static_cast<double>(scene.solver.time_step) / factor},
-         {"reference_time_step", static_cast<double>(scene.solver.time_step) / settings.reference_factor},
+        {{"time_step", static_cast<double>(scene.solver.time_step.value()) / factor},
+         {"reference_time_step",
+          static_cast<double>(scene.solver.time_step.value()) / settings.reference_factor},
          {"errors", to_json(compare(coarser, reference.motion, scene.solver.gravity, spacing(scene),
                                     spacing(scene)))}});
   }
@@ -76,7 +77,7 @@ std::vector<Json> measure_motion(const std::string& scene_name, const std::files
                 {"knobs", setting.knobs},
                 {"setting", setting.label},
                 {"overrides", setting.overrides},
-                {"time_step", scene.solver.time_step},
+                {"time_step", scene.solver.time_step_factor * scene.solver.time_step.value()},
                 {"particles", motion.moments.front().x.rows()},
                 {"failure", motion.failure},
                 {"on_front", false},

@@ -36,11 +36,17 @@ FieldTable fields(Placement& placement) {
 
 FieldTable fields(SolverConfig& config) {
   return {
-      {"time_step", &config.time_step, k_positive, "s", "upper bound of a step, Δt0"},
+      {"time_step", &config.time_step, k_positive, "s", "upper bound of a step, Δt0",
+       "from spacing and gravity"},
+      {"time_step_factor", &config.time_step_factor, between(0.01, 4), "",
+       "steps are this share of time_step, and the material stays what it is"},
       {"support_radius", &config.support_radius, k_positive, "m", "radius of the SPH kernels, σ", k_required},
       {"gravity", &config.gravity, k_finite, "m/s²", "acceleration of every particle"},
+      {"update_period", &config.update_period, k_positive, "s",
+       "time between the checks that update reference shapes, m_u; give this or update_interval",
+       "60 time_step"},
       {"update_interval", &config.update_interval, between(1, k_largest_int), "steps",
-       "steps between the checks that update reference shapes, m_u"},
+       "the same in steps; give this or update_period", "from update_period"},
       {"formulation", &config.formulation, k_any, "",
        "SPH sums that keep momentum, or the paper's to the letter"},
       {"acoustic_limit", &config.acoustic_limit, k_any, "",
@@ -53,6 +59,8 @@ FieldTable fields(SolverConfig& config) {
        "extra reach of neighbour lists, which are kept until a particle has moved half of it"},
       {"instruction_level", &config.instruction_level, k_any, "",
        "instructions that kernels use; the motion is the same", "the best this machine has"},
+      {"memory_limit", &config.memory_limit, k_positive, "GiB",
+       "radii whose neighbour lists would need more are refused"},
   };
 }
 
@@ -62,10 +70,11 @@ FieldTable fields(SceneMaterial& material) {
       {"name", &material.name, k_any, "", "what bodies call it", k_required},
       {"alpha", &m.alpha, between(0, 1), "", "elastic solid (0) to fluid (1), or keyframes of it over time"},
       {"update_threshold", &m.update_threshold, k_not_negative, "m/s²",
-       "mean external acceleration that updates the reference shape, at alpha 0, γ_u"},
+       "mean external acceleration that updates the reference shape, at alpha 0, γ_u", "40 times gravity"},
       {"pressure_coefficient", &m.pressure_coefficient, k_not_negative, "m²/s²",
-       "pressure by excess density, k"},
-      {"viscosity", &m.viscosity, k_not_negative, "Pa s", "viscosity coefficient, μ"},
+       "pressure by excess density, k", "as a step can carry"},
+      {"viscosity", &m.viscosity, k_not_negative, "Pa s", "viscosity coefficient, μ",
+       "as looks the same at any size"},
       {"elastic_time_step", &m.elastic_time_step, k_positive, "s", "Δt_SM, shorter is stiffer",
        "solver.time_step"},
       {"particle_mass", &m.particle_mass, k_positive, "kg", "mass of a particle, m",

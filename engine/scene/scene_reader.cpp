@@ -38,6 +38,7 @@ class SceneReader {
                                             "pin",    "surface",  "run",  "render"};
     read_fields(root_, "", {}, sections, problems_);
     read_section("solver", fields(scene_.solver));
+    check_update_times();
     read_list("material", 1, &SceneReader::read_material);
     read_list("body", 1, &SceneReader::read_body);
     read_list("collider", 0, &SceneReader::read_collider);
@@ -56,6 +57,13 @@ class SceneReader {
     static const Node k_nothing_given{.place = {}, .value = Table{}};
     const Node* node = find(root_, key);
     read_fields(node ? *node : k_nothing_given, key, table, {}, problems_);
+  }
+
+  void check_update_times() {
+    if (!scene_.solver.update_period || !scene_.solver.update_interval) return;
+    const Node* solver = find(root_, "solver");
+    problems_.add(find(*solver, "update_interval")->place, "solver.update_interval",
+                  "is not allowed beside update_period: give one of the two");
   }
 
   void read_list(const char* key, std::size_t at_least,

@@ -3,38 +3,50 @@
 #include <sstream>
 
 #include "simulation/damage.h"
+#include "simulation/settings.h"
 #include "simulation/state.h"
 
 namespace mallow {
 namespace {
 
-/// Steps shorter than this share of Δt0 mean that a setting is wrong, not that patience is needed.
+/// Steps shorter than this share of the longest mean that a setting is wrong, not that patience is needed.
 constexpr double k_shortest_step = 1e-3;
 /// Steps between sorts of the rows of fluids. A sort takes a third of a step; a million particles whose rows
 /// are in no order take half as long again for every step.
 constexpr std::int64_t k_sort_interval = 60;
 
-TimeStepLimits limits(Simulation::State& state) {
+/// σ² ρ0/μ [s]; infinite without viscosity.
+float viscous_time(const SolverConfig& config, const Group& group) {
+  if (!(group.viscosity > 0)) return std::numeric_limits<float>::infinity();
+  return config.support_radius * config.support_radius * group.rest_density / group.viscosity;
+}
+
+/// Pressure, viscosity and pull of a group as they act.
+TimeStepLimits::Pressure acting_pressure(const Simulation::State& state, const Group& group) {
+  // Other groups feel the whole pressure, whatever this one's alpha, unless it follows alpha.
+  const bool follows = !group.material.pressure_coefficient;
+  const float push = state.groups.size() > 1 ? (follows ? contact_share(group.alpha) : 1.0f) : group.alpha;
+  const float drag = state.groups.size() > 1 ? 1.0f : group.alpha;
+  return {.coefficient = push * pressure_coefficient(state, group),
+          .kinematic_viscosity = drag * group.viscosity / group.rest_density,
+          .stiffness = state.stiffness(group)};
+}
+
+/// pressures: where those of the groups are kept.
+TimeStepLimits limits(const Simulation::State& state, std::vector<TimeStepLimits::Pressure>& pressures) {
   TimeStepLimits limits{
-      .time_step = state.config.time_step,
+      .time_step = state.longest_step(),
       .support_radius = state.config.support_radius,
       .acoustic = state.config.acoustic_limit,
       .pressures = {},
       .viscous_time = std::numeric_limits<float>::infinity(),
   };
-  state.pressures.clear();
+  pressures.clear();
   for (const Group& group : state.groups) {
-    const Material& material = group.material;
-    // Other groups feel the whole pressure, whatever this one's alpha.
-    const float share = state.groups.size() > 1 ? 1.0f : group.alpha;
-    state.pressures.push_back({.coefficient = share * material.pressure_coefficient,
-                               .kinematic_viscosity = share * material.viscosity / group.rest_density,
-                               .stiffness = state.stiffness(group)});
-    if (material.viscosity > 0)
-      limits.viscous_time = std::min(limits.viscous_time, limits.support_radius * limits.support_radius *
-                                                              group.rest_density / material.viscosity);
+    pressures.push_back(acting_pressure(state, group));
+    limits.viscous_time = std::min(limits.viscous_time, viscous_time(state.config, group));
   }
-  limits.pressures = state.pressures;
+  limits.pressures = pressures;
   return limits;
 }
 
@@ -49,7 +61,7 @@ std::ostringstream describe(const Simulation::State& state, std::uint32_t row) {
 [[noreturn]] void refuse(const Simulation::State& state, const Damage& damage) {
   std::ostringstream text = describe(state, damage.row);
   text << "has a number that is not finite: " << damage.column << ", of phase " << name(damage.phase)
-       << "; lower solver.time_step (now " << state.config.time_step << ") or material.pressure_coefficient";
+       << "; lower solver.time_step (now " << state.base_step() << ") or material.pressure_coefficient";
   throw StepError(text.str(), state.store.id[damage.row], damage.phase);
 }
 
@@ -67,15 +79,36 @@ void check_damage(const Simulation::State& state) {
                                     std::uint32_t row) {
   std::ostringstream text = describe(state, row);
   text << "would move at " << velocity << " m/s and needs a step of " << time_step
-       << " s, below solver.time_step/1000 = "
-       << k_shortest_step * static_cast<double>(state.config.time_step)
+       << " s, below a thousandth of the longest, "
+       << k_shortest_step * static_cast<double>(state.longest_step())
        << " s; lower material.pressure_coefficient or viscosity, raise solver.support_radius, or lower "
           "solver.time_step (now "
-       << state.config.time_step << ")";
+       << state.base_step() << ")";
   throw StepError(text.str(), state.store.id[row], Phase::time_step);
 }
 
 }  // namespace
+
+MaterialLimits material_limits(const Simulation::State& state, const Group& group) {
+  TimeStepLimits none{.time_step = std::numeric_limits<float>::infinity(),
+                      .support_radius = state.config.support_radius,
+                      .acoustic = state.config.acoustic_limit,
+                      .pressures = {},
+                      .viscous_time = std::numeric_limits<float>::infinity()};
+  TimeStepLimits pressed = none, viscous = none;
+  const TimeStepLimits::Pressure pressure[] = {acting_pressure(state, group)};
+  pressed.pressures = pressure;
+  viscous.viscous_time = viscous_time(state.config, group);
+  return {.by_pressure = limited_time_step(pressed, 0), .by_viscosity = limited_time_step(viscous, 0)};
+}
+
+double unlimited_step(const Simulation::State& state) {
+  if (!state.needs_sph()) return std::numeric_limits<double>::infinity();
+  std::vector<TimeStepLimits::Pressure> pressures;
+  TimeStepLimits bounds = limits(state, pressures);
+  bounds.time_step = std::numeric_limits<float>::infinity();
+  return limited_time_step(bounds, static_cast<double>(largest_norm(state.store.velocity)));
+}
 
 bool Simulation::State::needs_sph() const {
   return groups.size() > 1 || groups.front().alpha > 0.0f;
@@ -83,6 +116,7 @@ bool Simulation::State::needs_sph() const {
 
 void read_alphas(Simulation::State& state) {
   for (Group& group : state.groups) group.alpha = group.material.alpha.at(state.time);
+  resolve_pressures(state);
 }
 
 void take_reference(Simulation::State& state, Group& group) {
@@ -96,10 +130,10 @@ void take_reference(Simulation::State& state, Group& group) {
 
 int update_references(Simulation::State& state) {
   int updated = 0;
-  const bool check = state.step > 0 && state.step % state.config.update_interval == 0;
+  const bool check = update_is_due(state);
   for (Group& group : state.groups) {
-    const double threshold = static_cast<double>(group.material.update_threshold * (1.0f - group.alpha));
-    const bool yields = check && group.keeps_reference() && group.mean_external > threshold;
+    const double threshold = static_cast<double>(group.update_threshold * (1.0f - group.alpha));
+    const bool yields = check && group.keeps_reference() && group.mean_external() > threshold;
     const auto due = [&] { return group.matches_shape() && !group.shape.built; };
     // A reference shape outlives the step: nothing that is not finite may get into it.
     if (yields || due()) check_damage(state);
@@ -147,18 +181,19 @@ namespace {
 
 /// The longest step that velocities and accelerations allow.
 float longest_time_step(Simulation::State& state, StepReport& report) {
-  if (!state.sph_ran) return state.config.time_step;
+  const float longest = state.longest_step();
+  if (!state.sph_ran) return longest;
   const Fastest fastest =
-      fastest_particle(state.store, state.config.time_step, state.sph.acceleration, state.config.gravity,
+      fastest_particle(state.store, longest, state.sph.acceleration, state.config.gravity,
                        state.cross_group(), state.user(), state.threads, state.level, state.partial_fastest);
   const double velocity =
       fastest.squared_velocity == -1 ? 0.0 : std::sqrt(static_cast<double>(fastest.squared_velocity));
-  const double step = limited_time_step(limits(state), velocity);
+  const double step = limited_time_step(limits(state, state.pressures), velocity);
   if (!std::isfinite(velocity)) refuse_damage(state, Phase::time_step, fastest.row);
-  if (step < k_shortest_step * static_cast<double>(state.config.time_step))
+  if (step < k_shortest_step * static_cast<double>(longest))
     refuse_short_step(state, step, velocity, fastest.row);
   report.max_velocity = velocity;
-  report.limited = static_cast<float>(step) < state.config.time_step;
+  report.limited = static_cast<float>(step) < longest;
   return static_cast<float>(step);
 }
 
@@ -185,8 +220,10 @@ ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& re
 
 void move_groups(Simulation::State& state, float time_step) {
   const SolverConfig& config = state.config;
+  const float base_step = state.base_step();
+  const double weight = external_weight(state, time_step);
   for (Group& group : state.groups) {
-    const bool measure = (state.step + 1) % config.update_interval == 0 && group.keeps_reference();
+    const bool measure = weight > 0 && group.keeps_reference();
     const MotionInput input{
         .begin = group.begin,
         .end = group.end,
@@ -200,7 +237,7 @@ void move_groups(Simulation::State& state, float time_step) {
         .pull = group.matches_shape() ? &group.shape.pull : nullptr,
         .colliders = state.contact_colliders(),
         .contact = {.time_step = time_step,
-                    .max_push = config.support_radius / (10.0f * config.time_step),
+                    .max_push = config.support_radius / (10.0f * base_step),
                     .contact_offset = config.contact_offset.value_or(0.5f * group.spacing),
                     .gravity = {config.gravity[0], config.gravity[1], config.gravity[2]},
                     .least_bounce = 2.0f * config.gravity.norm() * time_step},
@@ -211,8 +248,8 @@ void move_groups(Simulation::State& state, float time_step) {
         move_particles(input, state.threads, state.level, state.store, state.partial_motion);
     if (sums.bad_row != SIZE_MAX)
       refuse_damage(state, Phase::motion, static_cast<std::uint32_t>(sums.bad_row));
-    if (measure)
-      group.mean_external = sums.unpinned > 0 ? sums.external / static_cast<double>(sums.unpinned) : 0.0;
+    group.step_weight = measure ? weight : 0.0;
+    group.step_external = sums.unpinned > 0 ? sums.external / static_cast<double>(sums.unpinned) : 0.0;
   }
 }
 
@@ -221,6 +258,7 @@ void finish_step(Simulation::State& state, const ChosenStep& step) {
   state.store.velocity.swap(state.store.next_velocity);
   move_colliders(static_cast<double>(step.time_step), state.colliders);
   move_colliders(static_cast<double>(step.time_step), state.near_colliders);
+  add_external(state);
   state.time = step.end;
   state.last_time_step = static_cast<double>(step.time_step);
   ++state.step;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/checks.h"
 #include "simulation/validation.h"
@@ -40,17 +39,7 @@ constexpr float k_fewest_per_spacing = 0.5f, k_most_per_spacing = 16;
 SolverConfig at_time_step(const SolverConfig& config, float factor) {
   check_factor(factor);
   SolverConfig result = config;
-  result.time_step *= factor;
-  const double interval = std::round(config.update_interval / static_cast<double>(factor));
-  result.update_interval =
-      static_cast<int>(std::clamp(interval, 1.0, static_cast<double>(std::numeric_limits<int>::max())));
-  return result;
-}
-
-Material at_time_step(const Material& material, const SolverConfig& config, float factor) {
-  check_factor(factor);
-  Material result = material;
-  result.elastic_time_step = material.elastic_time_step.value_or(config.time_step) / factor;
+  result.time_step_factor *= factor;
   return result;
 }
 
@@ -66,18 +55,22 @@ std::span<const Quality> qualities() {
 SolverConfig with_quality(const SolverConfig& config, Quality quality) {
   const Preset& p = preset(quality);
   SolverConfig result = at_time_step(config, p.time_step);
+  // Elasticity carries no more where it follows from the time step.
+  if (p.time_step > 1)
+    result.time_step_factor =
+        std::max(config.time_step_factor, std::min(result.time_step_factor, p.time_step));
   result.neighbor_slack = std::max(config.neighbor_slack, p.neighbor_slack);
   return result;
 }
 
 Material with_quality(const Material& material, const SolverConfig& config, Quality quality) {
   const Preset& p = preset(quality);
-  Material result = at_time_step(material, config, p.time_step);
-  if (p.time_step > 1) {
+  Material result = material;
+  if (p.time_step > 1 && config.time_step && material.elastic_time_step) {
     // Rather softer than unstable.
-    const float softest =
-        (1 - material.alpha.lowest()) * at_time_step(config, p.time_step).time_step / k_stiffest;
-    result.elastic_time_step = std::max(*result.elastic_time_step, softest);
+    const float factor = with_quality(config, quality).time_step_factor;
+    const float softest = (1 - material.alpha.lowest()) * factor * factor * *config.time_step / k_stiffest;
+    result.elastic_time_step = std::max(*material.elastic_time_step, softest);
   }
   result.region_stride = std::max(material.region_stride, p.region_stride);
   return result;

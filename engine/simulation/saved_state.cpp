@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/archive.h"
+#include "simulation/settings.h"
 #include "simulation/state.h"
 #include "simulation/validation.h"
 
@@ -30,14 +31,17 @@ template <class Archive, class Config>
 void pass_solver(Archive& archive, Config& config) {
   auto printed = config.formulation == Formulation::printed;
   archive(config.time_step);
+  archive(config.time_step_factor);
   archive(config.support_radius);
   archive(config.gravity);
+  archive(config.update_period);
   archive(config.update_interval);
   archive(printed);
   archive(config.acoustic_limit);
   archive(config.contact_offset);
   archive(config.rotation_iterations);
   archive(config.neighbor_slack);
+  archive(config.memory_limit);
   if constexpr (!Archive::k_packs)
     config.formulation = printed ? Formulation::printed : Formulation::conservative;
 }
@@ -47,6 +51,17 @@ void pass_clock(Archive& archive, State& state) {
   archive(state.step);
   archive(state.time);
   archive(state.prepared);
+  archive(state.passed_periods);
+  auto source = static_cast<std::uint8_t>(state.time_step_source);
+  archive(source);
+  archive(state.scale.spacing);
+  archive(state.scale.gravity);
+  archive(state.scale.speed);
+  if constexpr (!Archive::k_packs) {
+    if (source > static_cast<std::uint8_t>(TimeStepSource::speed))
+      archive.fail("the time step has no such source");
+    state.time_step_source = static_cast<TimeStepSource>(source);
+  }
 }
 
 template <class Archive>
@@ -95,7 +110,8 @@ void pass_group(Archive& archive, Group& group, ShapeSizes& sizes) {
   archive(group.mass);
   archive(group.rest_density);
   archive(group.alpha);
-  archive(group.mean_external);
+  archive(group.external_sum);
+  archive(group.external_weight);
   archive(group.grew);
   archive(group.shape.built);
   archive(group.shape.spacing);
@@ -214,7 +230,8 @@ void require_valid(const UnpackingArchive& archive, const Simulation::State& sta
     require(std::isfinite(value) && (value > 0 || group.size() == 0),
             "spacing, particle mass and rest density must be finite and above 0");
   require(group.alpha >= 0 && group.alpha <= 1, "alpha must be in [0, 1]");
-  require(std::isfinite(group.mean_external) && group.mean_external >= 0,
+  require(std::isfinite(group.external_sum) && group.external_sum >= 0 &&
+              std::isfinite(group.external_weight) && group.external_weight >= 0,
           "mean acceleration must be finite and 0 or above");
   require(group.shape.spacing >= 0 && std::isfinite(group.shape.spacing),
           "spacing of the regions must be finite and 0 or above");
@@ -397,11 +414,18 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
     pass_clock(archive, state);
     if (state.step < 0 || !std::isfinite(state.time))
       archive.fail("step must be 0 or above, and time finite");
+    const SceneScale& scale = state.scale;
+    const bool settled = state.config.time_step && scale.spacing > 0;
+    if (!(std::isfinite(scale.spacing) && scale.spacing >= 0 && std::isfinite(scale.speed) &&
+          scale.speed >= 0 && scale.gravity.allFinite() && std::isfinite(state.passed_periods)) ||
+        (!settled && (state.prepared || scale.spacing > 0)))
+      archive.fail("what settings follow from is not known");
   });
   const std::vector<ShapeSizes> sizes = unpack_groups(saved, state);
   unpack_obstacles(saved, state);
   unpack_particles(saved, state);
   unpack_shapes(saved, sizes, state);
+  if (state.scale.spacing > 0) resolve_settings(state);
   if (state.prepared) describe_groups(state);
   unpack_neighbors(saved, state);
   return simulation;

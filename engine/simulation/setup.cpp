@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "simulation/overlaps.h"
+#include "simulation/settings.h"
 #include "simulation/state.h"
 #include "simulation/validation.h"
 #include "sph/kernel_functions.h"
@@ -70,11 +71,12 @@ void describe_groups(Simulation::State& state) {
     sph.groups.push_back({.mass = group.mass,
                           .rest_density = group.rest_density,
                           .rest_volume = group.mass / group.rest_density,
-                          .pressure_coefficient = group.material.pressure_coefficient,
-                          .viscosity = group.material.viscosity,
+                          .pressure_coefficient = 0,  // that of the present alpha: resolve_pressures()
+                          .contact_share = 1,
+                          .viscosity = group.viscosity,
                           .cohesion = group.material.cohesion});
     sph.group_end.push_back(group.end);
-    sph.viscous = sph.viscous || group.material.viscosity > 0;
+    sph.viscous = sph.viscous || group.viscosity > 0;
   }
   sph.grid.spacing = static_cast<float>(std::cbrt(volume / static_cast<double>(state.store.size())));
 }
@@ -138,7 +140,7 @@ void Simulation::add_body(const Body& body, GroupId id) {
   positions.reserve(body.positions.size());
   for (const Vec3& x : body.positions) positions.push_back(relative_to(origin, x));
   refuse_overlaps(s, group, positions, body.spacing, origin);
-
+  check_neighbors(s, group, body);
   std::vector<Vec3> velocities(body.positions.size(), body.velocity);
   for (std::size_t i = 0; i < body.velocities.size(); ++i) velocities[i] += body.velocities[i];
   if (s.store.size() == 0) take_origin(s, origin);
@@ -281,6 +283,8 @@ void Simulation::prepare() {
   for (const Group& group : s.groups)
     if (group.size() == 0) checks.problem("group", "group '" + group.name + "' has no particles");
   checks.finish();
+  resolve_settings(s);
+  check_memory(s);
 
   s.sph.kept.forget();
   describe_groups(s);

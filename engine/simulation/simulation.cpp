@@ -15,38 +15,41 @@ StepReport Simulation::step_towards(double end) {
   StepReport report;
   PhaseTimer timer(s, report.seconds);
 
-  read_alphas(s);                                               // time -> alpha
-  report.updated_references = update_references(s);             // |a_ext| -> x̄, regions       [TK 3.2, eq. 14]
-  sort_fluids(s);                                               // rows of fluids -> cell order
+  read_alphas(s);                                    // time -> alpha
+  report.updated_references = update_references(s);  // |a_ext| -> x̄, regions       [TK 3.2, eq. 14]
+  sort_fluids(s);                                    // rows of fluids -> cell order
   timer.lap(Phase::reference_update);
 
   s.sph_ran = s.needs_sph();
   if (s.sph_ran) {
     report.neighbors_found = find_neighbors(x, s.threads, s.level, sph);  // x -> lists within σ
     timer.lap(Phase::neighbors);
-    compute_density(s.threads, s.level, sph);                   // lists, x -> ρ, p             [TK eq. 3]
+    compute_density(s.threads, s.level, sph);  // lists, x -> ρ, p             [TK eq. 3]
     timer.lap(Phase::density);
-    compute_accelerations(s.store.velocity, s.threads, s.level, sph);  // ρ, p, x, v -> a^SPH   [TK eq. 1, 2, 4]
+    compute_accelerations(s.store.velocity, s.threads, s.level,
+                          sph);  // ρ, p, x, v -> a^SPH   [TK eq. 1, 2, 4]
     timer.lap(Phase::accelerations);
   }
 
-  call_force(s);                                                // x, v -> user part of a_ext
-  const ChosenStep step = choose_time_step(s, end, report);     // v, a, time left -> Δt        [TK eq. 12]
+  call_force(s);                                             // x, v -> user part of a_ext
+  const ChosenStep step = choose_time_step(s, end, report);  // v, a, time left -> Δt        [TK eq. 12]
   timer.lap(Phase::time_step);
 
   for (Group& g : s.groups)
-    if (g.matches_shape()) sum_regions(x, g.begin, s.threads, s.level, g.shape);      // x, x̄ -> sums over N_j
+    if (g.matches_shape()) sum_regions(x, g.begin, s.threads, s.level, g.shape);  // x, x̄ -> sums over N_j
   timer.lap(Phase::region_sums);
   const int iterations = s.config.rotation_iterations;
   for (Group& g : s.groups)
-    if (g.matches_shape()) solve_rotations(x, g.begin, iterations, s.threads, s.level, g.shape);  // sums -> R_j
+    if (g.matches_shape())
+      solve_rotations(x, g.begin, iterations, s.threads, s.level, g.shape);  // sums -> R_j
   timer.lap(Phase::rotations);
   for (Group& g : s.groups)
-    if (g.matches_shape()) compute_goals(x, g.begin, s.threads, s.level, g.shape);    // R_j -> g − x       [TK eq. 7]
+    if (g.matches_shape())
+      compute_goals(x, g.begin, s.threads, s.level, g.shape);  // R_j -> g − x       [TK eq. 7]
   timer.lap(Phase::goals);
 
-  move_groups(s, step.time_step);                               // a, g − x -> v', x'           [TK eq. 10, 11, 13]
-  finish_step(s, step);                                         // v', x' -> v, x; c ← c + 1
+  move_groups(s, step.time_step);  // a, g − x -> v', x'           [TK eq. 10, 11, 13]
+  finish_step(s, step);            // v', x' -> v, x; c ← c + 1
   timer.lap(Phase::motion);
   return report;
 }

@@ -28,12 +28,19 @@ struct Group {
   float spacing = 0;               ///< h [m]; 0 while it has no particles
   float mass = 0;                  ///< m [kg]
   float rest_density = 0;          ///< ρ0 [kg/m³]
+  float update_threshold = 0;      ///< γ_u in force [m/s²]
+  float viscosity = 0;             ///< μ in force [Pa s]
   float alpha = 0;                 ///< at the present time
-  double mean_external = 0;        ///< mean |a_ext| in the last step that measured it [m/s²]
-  bool grew = false;               ///< has particles that prepare() has not seen
-  ShapeMatching shape;             ///< empty where alpha is never below 1
+  double external_sum = 0;         ///< Σ of mean |a_ext|, times external_weight(), for the next check
+  double external_weight = 0;      ///< Σ of these weights
+  double step_external = 0;        ///< mean |a_ext| in the step under way [m/s²], and its weight
+  double step_weight = 0;
+  bool grew = false;    ///< has particles that prepare() has not seen
+  ShapeMatching shape;  ///< empty where alpha is never below 1
 
   std::size_t size() const { return end - begin; }
+  /// Mean |a_ext| before the check that is next [m/s²].
+  double mean_external() const { return external_weight > 0 ? external_sum / external_weight : 0.0; }
   bool keeps_reference() const { return material.alpha.lowest() < 1.0f; }
   bool matches_shape() const { return alpha < 1.0f; }
 };
@@ -45,7 +52,10 @@ struct Simulation::State {
   InstructionLevel level = InstructionLevel::baseline;
   std::int64_t step = 0;
   double time = 0;
-  double last_time_step = 0;  ///< Δt of the last step; 0 before the first [s]
+  double last_time_step = 0;       ///< Δt of the last step; 0 before the first [s]
+  double passed_periods = 0;       ///< multiples of the update period before the step under way
+  SceneScale scale{.spacing = 0};  ///< of the first prepare(); spacing 0 before it
+  TimeStepSource time_step_source = TimeStepSource::given;
 
   Vec3 origin{0, 0, 0};  ///< that positions in the store are relative to, see choose_origin() [m]
   ParticleStore store;
@@ -70,6 +80,9 @@ struct Simulation::State {
   std::vector<TimeStepLimits::Pressure> pressures;
   std::vector<MotionSums> partial_motion;
 
+  /// Δt0, and what bounds the steps that are taken. Known from the first prepare() on [s].
+  float base_step() const { return *config.time_step; }
+  float longest_step() const { return config.time_step_factor * *config.time_step; }
   bool is_far() const { return origin != Vec3(0, 0, 0); }
   /// A position of the store as the user sees it.
   Vec3 far(const Vec3& x) const { return (origin.cast<double>() + x.cast<double>()).cast<float>(); }
@@ -96,8 +109,7 @@ struct Simulation::State {
   bool needs_sph() const;
   /// Of a group's pull towards its goals, (1 − α)/(Δt0 Δt_SM) [1/s²]. [TK eq. 13]
   float stiffness(const Group& group) const {
-    return (1.0f - group.alpha) /
-           (config.time_step * group.material.elastic_time_step.value_or(config.time_step));
+    return (1.0f - group.alpha) / (base_step() * group.material.elastic_time_step.value_or(base_step()));
   }
   const VectorColumn* cross_group() const {
     return sph_ran && groups.size() > 1 ? &sph.cross_group : nullptr;
@@ -107,9 +119,9 @@ struct Simulation::State {
 
 // The phases of step(), in its order. Each says what it reads -> what it writes.
 
-/// time -> alpha of every group.
+/// time -> alpha of every group, and k where that follows it.
 void read_alphas(Simulation::State& state);
-/// mean_external -> reference shapes that give way, their rows sorted; regions that are due. Returns how many
+/// mean |a_ext| -> reference shapes that give way, their rows sorted; regions that are due. Returns how many
 /// gave way. [TK 3.2, model 6]
 int update_references(Simulation::State& state);
 /// Rows of groups without a reference shape into the cell order of the last neighbour search, now and then:
@@ -125,7 +137,7 @@ struct ChosenStep {
 /// velocities, accelerations, time left until `end` -> Δt, with V in the report. [TK eq. 12, model 3] Throws
 /// StepError.
 ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& report);
-/// everything -> next positions and velocities, mean_external. [TK eq. 10, 11, 13, model 4, 5] Throws
+/// everything -> next positions and velocities, mean |a_ext|. [TK eq. 10, 11, 13, model 4, 5] Throws
 /// StepError.
 void move_groups(Simulation::State& state, float time_step);
 /// next positions and velocities become the present ones; time, step and colliders move on.

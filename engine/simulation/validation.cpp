@@ -1,6 +1,7 @@
 #include "simulation/validation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "core/precision.h"
@@ -44,10 +45,17 @@ void check(const Union& shapes, Checks& checks) {
 }  // namespace
 
 void check(const SolverConfig& config, Checks& checks) {
-  checks.number("solver.time_step", config.time_step, config.time_step > 0, k_positive);
+  check_optional("solver.time_step", config.time_step, checks);
+  checks.number("solver.time_step_factor", config.time_step_factor,
+                config.time_step_factor >= 0.01f && config.time_step_factor <= 4, "a number in [0.01, 4]");
   checks.number("solver.support_radius", config.support_radius, config.support_radius > 0, k_positive);
   checks.vector("solver.gravity", config.gravity);
-  checks.number("solver.update_interval", config.update_interval, config.update_interval >= 1, "1 or above");
+  check_optional("solver.update_period", config.update_period, checks);
+  if (config.update_interval)
+    checks.number("solver.update_interval", *config.update_interval, *config.update_interval >= 1,
+                  "1 or above");
+  if (config.update_period && config.update_interval)
+    checks.problem("solver.update_interval", "is not allowed beside update_period: give one of the two");
   checks.number("solver.rotation_iterations", config.rotation_iterations,
                 config.rotation_iterations >= 0 && config.rotation_iterations <= 8, "0 to 8");
   if (config.contact_offset)
@@ -57,6 +65,7 @@ void check(const SolverConfig& config, Checks& checks) {
                 config.neighbor_slack >= 0 && config.neighbor_slack <= 1, k_share);
   checks.number("solver.threads", config.threads, config.threads >= 0 && config.threads <= 1024,
                 "0 (all processors) to 1024");
+  checks.number("solver.memory_limit", config.memory_limit, config.memory_limit > 0, k_positive);
   if (config.instruction_level) check(*config.instruction_level, best_instruction_level(), checks);
 }
 
@@ -81,11 +90,14 @@ void check(const AlphaSchedule& alpha, Checks& checks) {
 
 void check(const Material& material, Checks& checks) {
   check(material.alpha, checks);
-  checks.number("material.update_threshold", material.update_threshold, material.update_threshold >= 0,
-                k_not_negative);
-  checks.number("material.pressure_coefficient", material.pressure_coefficient,
-                material.pressure_coefficient >= 0, k_not_negative);
-  checks.number("material.viscosity", material.viscosity, material.viscosity >= 0, k_not_negative);
+  if (material.update_threshold)
+    checks.number("material.update_threshold", *material.update_threshold, *material.update_threshold >= 0,
+                  k_not_negative);
+  if (material.pressure_coefficient)
+    checks.number("material.pressure_coefficient", *material.pressure_coefficient,
+                  *material.pressure_coefficient >= 0, k_not_negative);
+  if (material.viscosity)
+    checks.number("material.viscosity", *material.viscosity, *material.viscosity >= 0, k_not_negative);
   checks.number("material.cohesion", material.cohesion, material.cohesion >= 0 && material.cohesion <= 1,
                 k_share);
   check_optional("material.elastic_time_step", material.elastic_time_step, checks);
@@ -96,14 +108,27 @@ void check(const Material& material, Checks& checks) {
 }
 
 void check_stiffness(const SolverConfig& config, const Material& material, Checks& checks) {
-  constexpr float k_rounding = 1e-5f;  // of what is typed with six digits
-  if (!material.elastic_time_step || material.alpha.keys().empty()) return;
-  const float least = (1 - material.alpha.lowest()) * config.time_step / k_stiffest;
-  if (*material.elastic_time_step >= (1 - k_rounding) * least) return;
+  constexpr double k_most = static_cast<double>(k_stiffest);
+  constexpr double k_rounding = 1e-5;  // of what is typed with six digits
+  if (material.alpha.keys().empty()) return;
+  // Left out, Δt_SM is Δt0, whatever that is; given, it is judged once that is known.
+  if (material.elastic_time_step && !config.time_step) return;
+  const double factor = static_cast<double>(config.time_step_factor);
+  const double share = (1 - static_cast<double>(material.alpha.lowest())) * factor * factor / k_most;
   std::ostringstream text;
-  text << *material.elastic_time_step << " is not allowed: at least (1 - alpha) solver.time_step/"
-       << k_stiffest << " = " << least
-       << ", as a stiffer body would gain energy; lower solver.time_step (now " << config.time_step << ")";
+  if (!material.elastic_time_step) {
+    if (share <= 1 + k_rounding) return;
+    text << config.time_step_factor << " is not allowed: (1 - alpha) time_step_factor^2 must be at most "
+         << k_most << ", as elasticity would gain energy; at alpha " << material.alpha.lowest() << " at most "
+         << std::sqrt(k_most / (1 - static_cast<double>(material.alpha.lowest())));
+    checks.problem("solver.time_step_factor", text.str());
+    return;
+  }
+  const double least = share * static_cast<double>(*config.time_step);
+  if (static_cast<double>(*material.elastic_time_step) >= least * (1 - k_rounding)) return;
+  text << *material.elastic_time_step << " is not allowed: at least (1 - alpha) "
+       << (factor == 1 ? "" : "time_step_factor^2 ") << "solver.time_step/" << k_most << " = " << least
+       << ", as a stiffer body would gain energy; lower solver.time_step (now " << *config.time_step << ")";
   checks.problem("material.elastic_time_step", text.str());
 }
 

@@ -2,6 +2,7 @@
 #include <xxhash.h>
 
 #include "core/parallel.h"
+#include "simulation/settings.h"
 #include "simulation/state.h"
 
 namespace mallow {
@@ -21,7 +22,8 @@ std::vector<Vec3> by_id(const ParticleStore& store, const VectorColumn& column) 
 double count_neighbors(const Simulation::State& s, const Group& group) {
   CellGrid grid;
   NeighborLists lists;
-  build_cell_grid(s.store.position, group.begin, group.end, group.shape.region_radius, s.threads, s.level, grid);
+  build_cell_grid(s.store.position, group.begin, group.end, group.shape.region_radius, s.threads, s.level,
+                  grid);
   build_neighbor_lists(grid, group.shape.region_radius, s.threads, s.level, lists);
   return lists.average();
 }
@@ -132,6 +134,12 @@ SimulationInfo Simulation::info() {
   info.instruction_level = s.level;
   info.bytes = s.store.bytes() + s.sph.bytes() + s.fluid_order.bytes() + s.user_acceleration.bytes() +
                s.far_position.bytes() + s.region_scratch.bytes();
+  info.time_step = s.base_step();
+  info.time_step_source = s.time_step_source;
+  info.longest_step = s.longest_step();
+  info.update_period = update_period(s);
+  info.unlimited_step = unlimited_step(s);
+  info.warnings = warnings(s);
   for (const Group& group : s.groups) {
     info.bytes += group.shape.bytes();
     info.groups.push_back(
@@ -141,6 +149,10 @@ SimulationInfo Simulation::info() {
          .particle_mass = group.mass,
          .rest_density = group.rest_density,
          .region_radius = group.shape.region_radius,
+         .alpha = group.alpha,
+         .update_threshold = group.update_threshold,
+         .pressure_coefficient = pressure_coefficient(s, group),
+         .viscosity = group.viscosity,
          .average_neighbors = group.shape.built ? group.shape.average_neighbors : count_neighbors(s, group),
          .regions = group.shape.built ? group.shape.region_weight.size() : 0,
          .shape_matching = group.matches_shape()});

@@ -132,6 +132,13 @@ MALLOW_INLINE void add(const Ints& mask, const Floats3& value, Floats3& sum) {
   sum.z += where(mask, value.z);
 }
 
+/// Of the groups of eight particles.
+Floats contact_shares(const SphInput& in, const Ints& groups) {
+  Floats shares = {};
+  for (std::size_t lane = 0; lane < k_cluster; ++lane) shares[lane] = in.groups[groups[lane]].contact_share;
+  return shares;
+}
+
 /// Σ_j of a cluster's pairs within their groups and with others, without F/ρ.
 template <class Formula, bool viscous, bool grouped>
 void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, const float* volumes,
@@ -163,24 +170,28 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
     const Pair pair =
         Formula::pair(in, apart, own_pressure, pressures[j], own_viscosity + in.groups[group].viscosity);
     const Floats weight = volumes[j] * pair.t;
-    Floats push = weight * pair.push;
-    if (viscous && Formula::central) {
-      const float rest = in.groups[group].rest_volume;
-      const Floats drag = own_share * ((volumes[j] < rest ? volumes[j] : rest) * pair.t) * pair.drag;
-      const Floats3 w = difference(in.velocity, j, v);
-      push -= drag * ((w.x * d.x + w.y * d.y + w.z * d.z) * apart.inverse_square);
-    }
-    Floats3 a = {-(push * d.x), -(push * d.y), -(push * d.z)};
-    if (viscous && !Formula::central) {
+    const Floats3 w = viscous ? difference(in.velocity, j, v) : Floats3{};
+    const float rest = in.groups[group].rest_volume;
+    // push: of pressure.
+    const auto acceleration = [&](Floats push) -> Floats3 {
+      if (viscous && Formula::central) {
+        const Floats drag = own_share * ((volumes[j] < rest ? volumes[j] : rest) * pair.t) * pair.drag;
+        push -= drag * ((w.x * d.x + w.y * d.y + w.z * d.z) * apart.inverse_square);
+      }
+      if (!viscous || Formula::central) return {-(push * d.x), -(push * d.y), -(push * d.z)};
       const Floats drag = weight * pair.drag;
-      const Floats3 w = difference(in.velocity, j, v);
-      a = {drag * w.x - push * d.x, drag * w.y - push * d.y, drag * w.z - push * d.z};
-    }
+      return {drag * w.x - push * d.x, drag * w.y - push * d.y, drag * w.z - push * d.z};
+    };
+    const Floats3 a = acceleration(weight * pair.push);
     // Where groups do not touch, which is nearly everywhere, the branch is foreseen.
     const Ints alike = is_equal(own, group);
     if (grouped && any(~alike)) {
       add(alike, a, same);
-      add(~alike, a, cross);
+      const SphGroup& other = in.groups[group];
+      const Pair touching =
+          Formula::pair(in, apart, own_pressure * contact_shares(in, own), pressures[j] * other.contact_share,
+                        own_viscosity + other.viscosity);
+      add(~alike, acceleration(weight * touching.push), cross);
     } else {
       same = {same.x + a.x, same.y + a.y, same.z + a.z};
     }

@@ -11,6 +11,7 @@ struct SphGroup {
   float rest_density;          ///< ρ0 [kg/m³]
   float rest_volume;           ///< m/ρ0 [m³]
   float pressure_coefficient;  ///< k [m²/s²]
+  float contact_share;         ///< share of the pressure that acts between groups
   float viscosity;             ///< μ [Pa s]
   float cohesion;              ///< share of negative pressure
 };
@@ -56,8 +57,9 @@ struct SphKernels {
   void (*density)(const SphInput&, std::size_t begin, std::size_t end, const NearLists& near, float* density,
                   float* pressure, float* volume, float* density_by_row) noexcept;
   /// a_i = (1/ρ_i) Σ_j V_j [ (p_i + p_j)/2 |∇W_spiky| r̂ + 5 μ ((v_j − v_i)·r̂) r̂ ∇²W_visc ], by row: pairs of
-  /// one group into `same`, pairs of two groups, μ the mean of theirs, into `cross` (null where there is one
-  /// group). In the viscous term ρ is at least ρ0. [model 1; model 2, section 0]
+  /// one group into `same`, pairs of two groups, μ the mean of theirs and pressures times their
+  /// contact_share, into `cross` (null where there is one group). In the viscous term ρ is at least ρ0.
+  /// [model 1; model 2, section 0]
   void (*conservative)(const SphInput&, std::size_t begin, std::size_t end, const float* density,
                        const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept;
   /// [TK eq. 1, 2] to the letter: a_i = (1/ρ_i) Σ_j V_j [ −p_j ∇W_poly6 + μ v_j ∇²W_poly6 ], j = i included.

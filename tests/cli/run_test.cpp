@@ -162,7 +162,8 @@ TEST_F(cli_run, quality_turns_the_scene_and_is_reported) {
     EXPECT_EQ(read_json(at("report.json")).at("quality"), name(quality));
     const Outcome printed = run_mallow({"info", scene_, "--quality", name(quality), "--print"});
     const Scene turned = read_scene(write("turned.toml", printed.out));
-    EXPECT_EQ(turned.solver.time_step, with_quality(written, quality).solver.time_step);
+    EXPECT_EQ(turned.solver.time_step, written.solver.time_step);
+    EXPECT_EQ(turned.solver.time_step_factor, with_quality(written, quality).solver.time_step_factor);
     EXPECT_EQ(turned.materials[0].material.region_stride,
               with_quality(written, quality).materials[0].material.region_stride);
     EXPECT_EQ(turned.run.frame_time, 0.45);

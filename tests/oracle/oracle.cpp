@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "oracle/signed_distance.h"
@@ -133,8 +134,47 @@ std::vector<Vec> Oracle::velocities() const {
   return velocities;
 }
 
+// What is left out: model 2, sections 0 and 1.
+void Oracle::settle() {
+  double h = INFINITY, fastest = 0;
+  for (const Group& group : groups_) h = std::min(h, group.spacing);
+  for (const Particle& p : particles_) {
+    fastest = std::max({fastest, p.v.norm(), p.pinned ? p.pin_velocity.norm() : 0.0});
+  }
+  for (const Obstacle& o : obstacles_) fastest = std::max(fastest, double{o.collider.velocity.norm()});
+  const double g = config_.gravity.cast<double>().norm();
+  dt0_ = config_.time_step ? double{*config_.time_step}
+         : g > 0           ? 0.15 * std::sqrt(0.3 * h / g)
+                           : 0.3 * h / fastest;
+  longest_ = config_.time_step_factor * dt0_;
+  period_ = config_.update_period     ? double{*config_.update_period}
+            : config_.update_interval ? *config_.update_interval * dt0_
+                                      : 60 * dt0_;
+  for (Group& group : groups_) {
+    const std::optional<float>& given = group.material.update_threshold;
+    group.update_threshold = given ? double{*given} : g > 0 ? 40 * g : 0.27 * h / (dt0_ * dt0_);
+    const double nu = g > 0 ? 0.5 / std::sqrt(0.3) * h * std::sqrt(g * h) : 0.075 * h * h / dt0_;
+    group.viscosity = group.material.viscosity ? double{*group.material.viscosity}
+                                               : nu * group.mass / std::pow(group.spacing, 3);
+  }
+}
+
+void Oracle::follow_alpha() {
+  for (Group& group : groups_) {
+    group.alpha = alpha_at(group.material.alpha, time_);
+    const std::optional<float>& given = group.material.pressure_coefficient;
+    group.contact_share = given ? 1 : std::max(group.alpha, 0.2);
+    const double dt = std::max(dt0_, longest_), speed = config_.support_radius / dt;
+    const std::optional<float>& elastic = group.material.elastic_time_step;
+    const double pull = (1 - group.alpha) * dt * dt / (dt0_ * (elastic ? double{*elastic} : dt0_));
+    const double x = std::min(1.0, (2.6 - pull) / 2);
+    group.pressure_coefficient = given ? double{*given} : x * speed * speed / group.contact_share;
+  }
+}
+
 Step Oracle::step() {
-  for (Group& group : groups_) group.alpha = alpha_at(group.material.alpha, time_);
+  if (steps_ == 0) settle();
+  follow_alpha();
   Step step;
   step.updated_groups = update_references();
   sum_densities();
@@ -146,6 +186,10 @@ Step Oracle::step() {
   for (Obstacle& obstacle : obstacles_) {
     obstacle.moved += step.time_step * obstacle.collider.velocity.cast<double>();
   }
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    groups_[g].external.push_back({time_, time_ + step.time_step, mean_external_acceleration(g)});
+  }
+  last_start_ = time_;
   time_ += step.time_step;
   ++steps_;
   return step;
@@ -176,12 +220,31 @@ double Oracle::mean_external_acceleration(std::size_t group) const {
   return count > 0 ? sum / count : 0;
 }
 
+double Oracle::passed_periods(double time) const {
+  return std::floor((time + 1e-6 * dt0_) / period_);
+}
+
+// The step before, where checks are counted in steps; else the Δt0 before the last multiple of the period.
+double Oracle::judged_acceleration(std::size_t group) const {
+  if (counts_steps()) return groups_[group].external.back().mean;
+  const double check = passed_periods(time_) * period_;
+  double sum = 0, weight = 0;
+  for (const Group::External& e : groups_[group].external) {
+    const double shared = std::max(0.0, std::min(e.end, check) - std::max(e.start, check - dt0_));
+    sum += shared * e.mean;
+    weight += shared;
+  }
+  return sum / weight;
+}
+
 std::vector<std::size_t> Oracle::update_references() {
   std::vector<std::size_t> updated;
-  if (steps_ == 0 || steps_ % config_.update_interval != 0) return updated;
+  const bool due = counts_steps() ? steps_ > 0 && steps_ % *config_.update_interval == 0
+                                  : passed_periods(time_) > passed_periods(last_start_);
+  if (!due) return updated;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const double threshold = groups_[g].material.update_threshold * (1 - groups_[g].alpha);
-    if (is_always_fluid(groups_[g]) || mean_external_acceleration(g) <= threshold) continue;
+    const double threshold = groups_[g].update_threshold * (1 - groups_[g].alpha);
+    if (is_always_fluid(groups_[g]) || judged_acceleration(g) <= threshold) continue;
     rebuild_regions(g);
     updated.push_back(g);
   }
@@ -198,7 +261,7 @@ void Oracle::sum_densities() {
       sum += other.mass / other.rest_density * poly6((i.x - j.x).norm(), config_.support_radius);
     }
     i.density = group.rest_density * sum;
-    i.pressure = group.material.pressure_coefficient * (i.density - group.rest_density);
+    i.pressure = group.pressure_coefficient * (i.density - group.rest_density);
     if (i.pressure < 0) i.pressure *= group.material.cohesion;
   }
 }
@@ -210,18 +273,21 @@ Vec Oracle::pair_acceleration(const Particle& i, const Particle& j) const {
   const Vec d = i.x - j.x;
   const Group& group_i = groups_[i.group];
   const Group& group_j = groups_[j.group];
-  const double mu = (double{group_i.material.viscosity} + group_j.material.viscosity) / 2;
+  const double mu = (group_i.viscosity + group_j.viscosity) / 2;
   const double volume = group_j.mass / j.density;
   // In the viscous term densities are at least those at rest.
   const double thick =
       std::min(1.0, i.density / group_i.rest_density) * std::min(1.0, j.density / group_j.rest_density);
+  const bool touching = i.group != j.group;
+  const double p_i = i.pressure * (touching ? group_i.contact_share : 1);
+  const double p_j = j.pressure * (touching ? group_j.contact_share : 1);
   Vec force;
   if (config_.formulation == Formulation::printed) {
-    force = -j.pressure * poly6_gradient(d, sigma) + mu * poly6_laplacian(d.norm(), sigma) * j.v;
+    force = -p_j * poly6_gradient(d, sigma) + mu * poly6_laplacian(d.norm(), sigma) * j.v;
   } else {
     // Viscosity along the pair alone (section 0 of the second chapter); no pair is along 0.
     const Vec along = d.norm() > 0 ? Vec(d.normalized()) : Vec::Zero();
-    force = -(i.pressure + j.pressure) / 2 * spiky_gradient(d, sigma) +
+    force = -(p_i + p_j) / 2 * spiky_gradient(d, sigma) +
             5 * thick * mu * viscosity_laplacian(d.norm(), sigma) * (j.v - i.v).dot(along) * along;
   }
   return volume / i.density * force;
@@ -249,25 +315,26 @@ bool Oracle::sph_acts() const {
 double Oracle::max_velocity() const {
   double max = 0;
   for (const Particle& p : particles_) {
-    if (!p.pinned) max = std::max(max, (p.v + config_.time_step * (p.sph + p.external)).norm());
+    if (!p.pinned) max = std::max(max, (p.v + longest_ * (p.sph + p.external)).norm());
   }
   return max;
 }
 
 double Oracle::time_step(double max_velocity) const {
-  const double longest = config_.time_step;
+  const double longest = longest_;
   if (!sph_acts()) return longest;
   const double sigma = config_.support_radius;
   double dt = std::min(longest, 0.999 * sigma / max_velocity);
   if (config_.acoustic_limit) {
     for (const Group& group : groups_) {
       const Material& material = group.material;
-      dt = std::min(dt, sigma * sigma * group.rest_density / (25 * material.viscosity));
-      const double share = groups_.size() > 1 ? 1 : group.alpha;
-      const double a = share * material.pressure_coefficient / (sigma * sigma);
-      const double b = 800 * share * material.viscosity / group.rest_density / (sigma * sigma);
-      const double dt_sm = material.elastic_time_step.value_or(config_.time_step);
-      const double pull = (1 - group.alpha) / (longest * dt_sm);
+      dt = std::min(dt, sigma * sigma * group.rest_density / (25 * group.viscosity));
+      const bool alone = groups_.size() == 1;
+      const double push = alone ? group.alpha : group.contact_share, drag = alone ? group.alpha : 1;
+      const double a = push * group.pressure_coefficient / (sigma * sigma);
+      const double b = 800 * drag * group.viscosity / group.rest_density / (sigma * sigma);
+      const double dt_sm = material.elastic_time_step ? double{*material.elastic_time_step} : dt0_;
+      const double pull = (1 - group.alpha) / (dt0_ * dt_sm);
       if (a > 0)
         dt = std::min({dt, (b + std::sqrt(b * b + 0.2 * a)) / (2 * a), std::sqrt(1.4 / a),
                        std::sqrt(3.4 / (2 * a + pull))});
@@ -328,7 +395,7 @@ void Oracle::touch(const Obstacle& obstacle, const Particle& particle, const Vec
     const double w_n = w.dot(n);
     if (d + dt * w_n >= 0) continue;
 
-    const double gentle = config_.support_radius / (10 * double{config_.time_step});
+    const double gentle = config_.support_radius / (10 * dt0_);
     double new_w_n = d >= 0 ? -d / dt : std::min(-d / dt, gentle);
     const Vec came = before - u;
     const double q = came.dot(n), e = collider.restitution;
@@ -354,10 +421,10 @@ void Oracle::move(double dt) {
       p.v = p.pin_velocity;
     } else {
       const Vec before = p.v;
-      const double dt0 = config_.time_step;
-      const double dt_sm = group.material.elastic_time_step.value_or(config_.time_step);
+      const std::optional<float>& given = group.material.elastic_time_step;
+      const double dt_sm = given ? double{*given} : dt0_;
       p.v += dt * p.external + group.alpha * dt * p.sph;
-      if (!is_always_fluid(group)) p.v += (1 - group.alpha) * dt / (dt0 * dt_sm) * (p.goal - p.x);
+      if (!is_always_fluid(group)) p.v += (1 - group.alpha) * dt / (dt0_ * dt_sm) * (p.goal - p.x);
       const Vec blended = p.v;
       for (const Obstacle& obstacle : obstacles_) touch(obstacle, p, before, dt, p.v);
       p.contact = (p.v - blended) / dt;

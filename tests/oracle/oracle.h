@@ -44,7 +44,16 @@ struct Group {
   double spacing = 0;
   double mass = 0;
   double rest_density = 0;
-  double alpha = 0;  ///< of the last step
+  double update_threshold = 0;      ///< γ_u
+  double viscosity = 0;             ///< μ
+  double alpha = 0;                 ///< of the last step
+  double pressure_coefficient = 0;  ///< k of the last step
+  double contact_share = 1;         ///< of its pressure that acts between groups
+  /// Mean |a_ext| over the unpinned, from the start to the end of every step.
+  struct External {
+    double start, end, mean;
+  };
+  std::vector<External> external = {};
 };
 
 struct Step {
@@ -86,7 +95,12 @@ class Oracle {
   };
 
   void rebuild_regions(std::size_t group);
+  void settle();
+  void follow_alpha();
   double mean_external_acceleration(std::size_t group) const;
+  double judged_acceleration(std::size_t group) const;
+  bool counts_steps() const { return config_.update_interval && config_.time_step_factor == 1; }
+  double passed_periods(double time) const;
   std::vector<std::size_t> update_references();
   void sum_densities();
   Vec pair_acceleration(const Particle& i, const Particle& j) const;
@@ -103,6 +117,10 @@ class Oracle {
   std::vector<Particle> particles_;
   std::vector<Obstacle> obstacles_;
   Force force_;
+  double dt0_ = 0;         ///< Δt0 [s]
+  double longest_ = 0;     ///< longest step [s]
+  double period_ = 0;      ///< between checks, where they are not counted in steps [s]
+  double last_start_ = 0;  ///< of the step before [s]
   double time_ = 0;
   int steps_ = 0;
 };

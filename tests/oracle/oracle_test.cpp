@@ -9,6 +9,7 @@
 
 #include "oracle/points.h"
 #include "oracle/signed_distance.h"
+#include "paper_settings.h"
 
 namespace mallow::oracle {
 namespace {
@@ -35,11 +36,12 @@ std::vector<Vec> shaken(std::size_t n, double size) {
 
 void add(Oracle& oracle, const Material& material, const std::vector<Vec>& positions,
          const Vec& velocity = {0, 0, 0}) {
-  oracle.add_body(positions, std::vector<Vec>(positions.size(), velocity), 1.0, oracle.add_group(material));
+  oracle.add_body(positions, std::vector<Vec>(positions.size(), velocity), 1.0,
+                  oracle.add_group(with_paper_settings(material)));
 }
 
 SolverConfig weightless(float support_radius = 2.2f) {
-  return {.support_radius = support_radius, .gravity = {0, 0, 0}};
+  return with_paper_settings(SolverConfig{.support_radius = support_radius, .gravity = {0, 0, 0}});
 }
 
 /// One particle, alone, on its way to an obstacle.

@@ -33,10 +33,14 @@ const Case k_cases[] = {
     {{.solver = "suport_radius = 2.0\nsupport_radius = 2.0"},
      "scene.toml:2:1: solver: unknown key 'suport_radius'; did you mean 'support_radius'?"},
     {{.solver = "support_radius = 2.0\nfoo = 1"},
-     "scene.toml:3:1: solver: unknown key 'foo'; known are time_step, support_radius, gravity, "
-     "update_interval, "
-     "formulation, acoustic_limit, contact_offset, rotation_iterations, neighbor_slack and "
-     "instruction_level"},
+     "scene.toml:3:1: solver: unknown key 'foo'; known are time_step, time_step_factor, support_radius, "
+     "gravity, "
+     "update_period, update_interval, formulation, acoustic_limit, contact_offset, rotation_iterations, "
+     "neighbor_slack, instruction_level and memory_limit"},
+    {{.solver = "support_radius = 2.0\nupdate_interval = 10\nupdate_period = 1"},
+     "scene.toml:3:19: solver.update_interval: is not allowed beside update_period: give one of the two"},
+    {{.solver = "support_radius = 2.0\ntime_step_factor = 5"},
+     "scene.toml:3:20: solver.time_step_factor: 5 is not allowed: a number in [0.01, 4]"},
     {{.rest = "[colider]"}, "scene.toml:8:2: unknown key 'colider'; did you mean 'collider'?"},
     {{.source = "bax = { count = [2, 2, 2], spacing = 1.0 }\nbox = { count = [2, 2, 2], spacing = 1.0 }"},
      "scene.toml:7:1: body[0]: unknown key 'bax'; did you mean 'box'?"},

@@ -20,7 +20,7 @@ TEST(demo, surface_is_closed_and_turned_outwards_on_every_frame) {
     const Mesh& mesh = surfacer.draw({now.positions, now.velocities, now.groups, spacings});
     ASSERT_EQ(why_not_closed(mesh), "") << "frame " << frame;
     ASSERT_GT(signed_volume(mesh), 0) << "frame " << frame;
-    simulation.advance(scene.run.frame_time.value_or(static_cast<double>(simulation.config().time_step)));
+    simulation.advance(frame_time(scene, simulation.info()));
   }
 }
 

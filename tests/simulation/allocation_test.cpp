@@ -93,7 +93,7 @@ TEST_P(steady_step, allocates_nothing) {
   SKIP_IF_NOT_COUNTED();
   Simulation s = scene(GetParam());
   // The bodies fall, meet and come to rest: grid, lists and scratch grow to what that takes.
-  for (int k = 0; k < 150; ++k) s.step();
+  for (int k = 0; k < 400; ++k) s.step();
   for (int k = 0; k < 100; ++k) {
     const std::int64_t number = s.step_count();
     StepReport report;

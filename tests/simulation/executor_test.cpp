@@ -67,7 +67,7 @@ TEST(step, runs_its_loops_on_the_executor_it_was_given_and_starts_no_threads) {
     s.step();
     EXPECT_GT(executor->loops(), loops + 10);
   }
-  EXPECT_EQ(count(), before);
+  EXPECT_LE(count(), before);
 }
 
 /// Threads that never wait, and take processors from whoever does.

@@ -5,13 +5,16 @@
 #include <functional>
 
 #include "oracle/points.h"
+#include "paper_settings.h"
 
 namespace mallow {
 namespace {
 
-/// The paper's free units, small: Δt0 0.15, h about 1, |g| 0.4; checks often enough to fire within 40 steps.
+/// The paper's free units, small: Δt0 0.15, h about 1, |g| 0.4, and the paper's settings; checks often enough
+/// to fire within 40 steps.
 SolverConfig units(float support_radius = 2.2f) {
-  return {.support_radius = support_radius, .gravity = {0, 0, -0.4f}, .update_interval = 10};
+  return with_paper_settings(
+      SolverConfig{.support_radius = support_radius, .gravity = {0, 0, -0.4f}, .update_interval = 10});
 }
 
 SolverConfig printed() {
@@ -40,6 +43,19 @@ Material lasting(AlphaSchedule alpha) {
   return {.alpha = std::move(alpha), .update_threshold = 1e6f};
 }
 
+/// Nothing given but what has no default: metres, and a gravity that is to be felt.
+SolverConfig left_out(float update_period) {
+  return {.support_radius = 0.22f, .gravity = {0, 0, -9.81f}, .update_period = update_period};
+}
+SolverConfig turned(SolverConfig solver, float time_step_factor) {
+  solver.time_step_factor = time_step_factor;
+  return solver;
+}
+/// Weightless: seconds follow from the fastest body.
+SolverConfig adrift() {
+  return {.support_radius = 2.2f, .gravity = {0, 0, 0}};
+}
+
 const Plane k_tilted{{0.3f, -0.2f, 1.0f}, 0.1f};
 const Collider k_slope{.shape = k_tilted, .restitution = 0.6f, .friction = 0.3f};
 const Collider k_ball{.shape = Sphere{{0.4f, -0.3f, -3.0f}, 3.0f}, .friction = 0.3f};
@@ -52,9 +68,11 @@ const Collider k_union{
 
 }  // namespace
 
-const std::vector<Case>& oracle_cases() {
+namespace {
+
+std::vector<Case> paper_cases() {
   // clang-format off
-  static const std::vector<Case> cases = {
+  std::vector<Case> cases = {
       {.name = "elastic_on_slope", .blobs = {{lasting(0.0f), {0, 0, 4.2f}, {0, 0, -1.5f}}}, .colliders = {k_slope}, .solver = units()},
       {.name = "elastic_on_slope_updated", .blobs = {{stuff(0.0f), {0, 0, 4.2f}, {0, 0, -1.5f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1},
       {.name = "jelly_on_slope", .blobs = {{stuff(0.3f), {0, 0, 4.2f}, {0, 0, -1.5f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1},
@@ -90,6 +108,69 @@ const std::vector<Case>& oracle_cases() {
       {.name = "flat_sheet_and_loose_points", .blobs = {{lasting(0.0f), {0, 0, 3}, {0, 0, 0}, {9, 9, 1}, 1, 0}, {.center = {0, 0, 9}, .velocity = {0, 0, -1.5f}, .count = {1, 1, 1}, .joins_the_one_before = true}, {.center = {9, 0, 7}, .velocity = {0, 0, -1}, .count = {3, 1, 1}, .joins_the_one_before = true}}, .colliders = {k_ball, k_slope}, .solver = units(), .tolerance = 1e-3},
   };
   // clang-format on
+  for (Case& one : cases)
+    for (Blob& b : one.blobs) b.material = with_paper_settings(b.material);
+  return cases;
+}
+
+/// What configs leave out follows from the scene: in metres under gravity, and adrift.
+std::vector<Case> cases_with_defaults() {
+  const Collider floor{.shape = Plane{}, .friction = 0.3f};
+  const auto cube = [](AlphaSchedule alpha, float height) {
+    return Blob{.material = {.alpha = std::move(alpha), .rest_density = 1000.0f},
+                .center = {0, 0, height},
+                .velocity = {0.4f, 0, -1.5f},
+                .count = {5, 5, 5},
+                .spacing = 0.1f};
+  };
+  const auto clay = [&](float height) {
+    Blob blob = cube(0.3f, height);
+    blob.material.update_threshold = 20.0f;
+    return blob;
+  };
+  return {
+      {.name = "defaults_paste",
+       .blobs = {cube(0.7f, 0.35f)},
+       .colliders = {floor},
+       .solver = left_out(0.1f)},
+      {.name = "defaults_melting",
+       .blobs = {cube({{0.1f, 0.01f}, {0.3f, 1.0f}}, 0.35f)},
+       .colliders = {floor},
+       .solver = left_out(0.1f)},
+      {.name = "defaults_pair",
+       .blobs = {cube(0.02f, 0.3f), cube(0.6f, 0.83f)},
+       .colliders = {floor},
+       .solver = left_out(0.1f)},
+      {.name = "defaults_updated",
+       .blobs = {clay(0.3f)},
+       .colliders = {floor},
+       .solver = left_out(0.037f),
+       .updates = 2},
+      {.name = "defaults_updated_half_steps",
+       .blobs = {clay(0.3f)},
+       .colliders = {floor},
+       .solver = turned(left_out(0.037f), 0.5f),
+       .updates = 1},
+      {.name = "defaults_long_steps",
+       .blobs = {clay(0.3f)},
+       .colliders = {floor},
+       .solver = turned(left_out(0.05f), 1.5f),
+       .updates = 1},
+      {.name = "defaults_adrift",
+       .blobs = {{{.alpha = 0.4f}, {0, 0, 0}, {1.5f, 0, 0}, {5, 5, 4}},
+                 {{.alpha = 0.0f}, {0.6f, 0.2f, 4.6f}, {1.5f, 0, -2.0f}, {5, 5, 4}}},
+       .solver = adrift()},
+  };
+}
+
+}  // namespace
+
+const std::vector<Case>& oracle_cases() {
+  static const std::vector<Case> cases = [] {
+    std::vector<Case> all = paper_cases();
+    for (Case& one : cases_with_defaults()) all.push_back(std::move(one));
+    return all;
+  }();
   return cases;
 }
 

@@ -71,7 +71,7 @@ TEST_P(oracle_case, everything_in_it_matters) {
   for (int c = 0; c < k_steps; ++c) {
     const oracle::Step step = whole.step();
     updates += static_cast<int>(step.updated_groups.size());
-    limited = limited || step.time_step < double{scene.solver.time_step};
+    limited = limited || (scene.solver.time_step && step.time_step < double{*scene.solver.time_step});
   }
   EXPECT_GE(updates, scene.updates);
   EXPECT_TRUE(limited || !scene.limited);

@@ -13,6 +13,7 @@ namespace {
 
 SolverConfig config(int threads = 2) {
   SolverConfig c;
+  c.time_step = 0.15f;
   c.support_radius = 2.0f;
   c.acoustic_limit = false;
   c.update_interval = 10;

@@ -10,6 +10,7 @@
 
 #include "mallow/errors.h"
 #include "oracle/points.h"
+#include "paper_settings.h"
 #include "simulation/oracle_cases.h"
 
 namespace mallow::textbook {
@@ -41,7 +42,8 @@ std::vector<Case> cases() {
     if (!scene.wind) cases.push_back(scene);
   }
   Case all{.name = "everything_at_once", .blobs = {}, .solver = {}};
-  all.solver = {.support_radius = 2.2f, .gravity = {0.05f, 0, -0.4f}, .update_interval = 10};
+  all.solver = {
+      .time_step = 0.15f, .support_radius = 2.2f, .gravity = {0.05f, 0, -0.4f}, .update_interval = 10};
   all.solver.formulation = Formulation::printed;
   all.blobs = {{.material = {.alpha = {{0.5f, 0.8f}, {2.0f, 0.3f}}, .update_threshold = 0.5f},
                 .center = {0, 0, 3.4f},
@@ -55,6 +57,7 @@ std::vector<Case> cases() {
   all.colliders = {{.shape = Plane{{0.3f, -0.2f, 1.0f}, 0.1f}, .velocity = {0, 0, 0.2f}, .friction = 0.3f}};
   all.pins = {{.box = {{6, -9, 4.5f}, {9, 9, 9}}, .velocity = {0, 0.1f, 0}}};
   all.updates = 2;
+  for (Blob& b : all.blobs) b.material = with_paper_settings(b.material);
   cases.push_back(all);
   return cases;
 }
@@ -85,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(scenes, textbook_case, testing::ValuesIn(cases()),
                          [](const auto& scene) { return scene.param.name; });
 
 SolverConfig weightless() {
-  return {.support_radius = 2.2f, .gravity = {0, 0, 0}};
+  return with_paper_settings(SolverConfig{.support_radius = 2.2f, .gravity = {0, 0, 0}});
 }
 
 TEST(textbook, free_fall_equals_the_recurrence) {

@@ -1,6 +1,7 @@
 #include "mallow/info_command.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -22,19 +23,41 @@ struct InfoOptions {
 
 void print_groups(const Scene& scene, const SimulationInfo& info) {
   const std::vector<std::size_t> materials = group_materials(scene);
-  std::printf("\n%-16s %-16s %10s %10s %10s %12s %12s %10s  %s\n", "group", "material", "particles",
-              "spacing", "mass", "rest density", "neighbours", "regions", "shape matching");
+  std::printf("\n%-16s %-16s %10s %10s %10s %12s %12s %12s %12s %12s %10s  %s\n", "group", "material",
+              "particles", "spacing", "mass", "rest density", "threshold", "pressure", "viscosity",
+              "neighbours", "regions", "shape matching");
   for (std::size_t i = 0; i < info.groups.size(); ++i) {
     const GroupInfo& group = info.groups[i];
     char neighbors[32] = "-";
     if (group.average_neighbors > 0)
       std::snprintf(neighbors, sizeof neighbors, "%.2f", group.average_neighbors);
-    std::printf("%-16s %-16s %10zu %10.5g %10.5g %12.5g %12s %10zu  %s\n", group.name.c_str(),
-                scene.materials[materials[i]].name.c_str(), group.particles,
+    std::printf("%-16s %-16s %10zu %10.5g %10.5g %12.5g %12.5g %12.5g %12.5g %12s %10zu  %s\n",
+                group.name.c_str(), scene.materials[materials[i]].name.c_str(), group.particles,
                 static_cast<double>(group.spacing), static_cast<double>(group.particle_mass),
-                static_cast<double>(group.rest_density), neighbors, group.regions,
-                group.shape_matching ? "on" : "off");
+                static_cast<double>(group.rest_density), static_cast<double>(group.update_threshold),
+                static_cast<double>(group.pressure_coefficient), static_cast<double>(group.viscosity),
+                neighbors, group.regions, group.shape_matching ? "on" : "off");
   }
+}
+
+/// How long steps and frames are, and why.
+void print_times(const Scene& scene, const SimulationInfo& info) {
+  const double longest = static_cast<double>(info.longest_step);
+  const double frame = frame_time(scene, info);
+  const char* source = info.time_step_source == TimeStepSource::given ? "as given"
+                       : info.time_step_source == TimeStepSource::gravity
+                           ? "from spacing and gravity"
+                           : "from spacing and the fastest body";
+  std::printf("time step        %g s, %s\n", static_cast<double>(info.time_step), source);
+  if (info.longest_step != info.time_step) std::printf("longest step     %g s\n", longest);
+  if (std::isfinite(info.unlimited_step))
+    std::printf("unlimited up to  %g s\n", info.unlimited_step);
+  else
+    std::printf("unlimited        at any step\n");
+  std::printf("shape checks     every %g s\n", info.update_period);
+  std::printf("frames           %d of %g s, %.3g steps each%s, %g s in all\n", scene.run.frames, frame,
+              frame / std::min(longest, info.unlimited_step), info.unlimited_step < longest ? " or more" : "",
+              scene.run.frames * frame);
 }
 
 void info(const InfoOptions& options) {
@@ -61,9 +84,9 @@ void info(const InfoOptions& options) {
   std::printf("pins             %zu\n", scene.pins.size());
   std::printf("instructions     %s\n", name(info.instruction_level));
   std::printf("memory           %.1f MiB\n", static_cast<double>(info.bytes) / (1024.0 * 1024.0));
-  std::printf("frames           %d of %g s\n", scene.run.frames,
-              scene.run.frame_time.value_or(static_cast<double>(simulation.config().time_step)));
+  print_times(scene, info);
   print_groups(scene, info);
+  print_warnings(scene, info);
 }
 
 }  // namespace

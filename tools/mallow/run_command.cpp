@@ -112,7 +112,7 @@ CheckpointInterval checkpoint_interval(const RunOptions& options, CheckpointInte
 void describe(const Scene& scene, int threads, Simulation& simulation, RunReport& report) {
   report.threads = threads;
   report.info = simulation.info();
-  report.frame_time = scene.run.frame_time.value_or(static_cast<double>(simulation.config().time_step));
+  report.frame_time = frame_time(scene, report.info);
   for (const std::size_t material : group_materials(scene))
     report.group_materials.push_back(scene.materials[material].name);
 }
@@ -235,6 +235,7 @@ void run(const RunOptions& options) {
   const int threads = resolve_threads(options.threads);
   Run run = options.resume.empty() ? begin(options, threads) : resume(options, threads);
   const Cache* out = run.cache ? &*run.cache : nullptr;
+  print_warnings(run.scene, run.report.info);
 
   // From here on something is computed, so what goes wrong is a failure of the run, and is reported as far as
   // it came.

@@ -24,11 +24,18 @@ nlohmann::ordered_json groups_json(const RunReport& report) {
                       {"particle_mass", group.particle_mass},
                       {"rest_density", group.rest_density},
                       {"region_radius", group.region_radius},
+                      {"update_threshold", group.update_threshold},
+                      {"pressure_coefficient", group.pressure_coefficient},
+                      {"viscosity", group.viscosity},
                       {"average_neighbors", group.average_neighbors},
                       {"regions", group.regions},
                       {"shape_matching", group.shape_matching}});
   }
   return groups;
+}
+
+const char* source_name(TimeStepSource source) {
+  return source == TimeStepSource::given ? "given" : source == TimeStepSource::gravity ? "gravity" : "speed";
 }
 
 nlohmann::ordered_json updates_json(const RunReport& report) {
@@ -117,6 +124,12 @@ nlohmann::ordered_json to_json(const RunReport& report) {
           {"threads", report.threads},
           {"particles", report.info.particles},
           {"groups", groups_json(report)},
+          {"settings",
+           {{"time_step", report.info.time_step},
+            {"time_step_source", source_name(report.info.time_step_source)},
+            {"longest_step", report.info.longest_step},
+            {"update_period", report.info.update_period}}},
+          {"warnings", report.info.warnings},
           {"sph", report.info.sph},
           {"viscosity", report.info.viscosity},
           {"cross_group", report.info.cross_group},

@@ -1,5 +1,7 @@
 #include "mallow/scene_options.h"
 
+#include <cstdio>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,11 @@ Scene read_scene(const SceneOptions& options) {
   const Scene scene = mallow::read_scene(options.file, options.overrides,
                                          {.allow_outside_paths = options.allow_outside_paths});
   return options.quality ? with_quality(scene, *options.quality) : scene;
+}
+
+void print_warnings(const Scene& scene, const SimulationInfo& info) {
+  for (const std::string& warning : warnings(scene, info))
+    std::fprintf(stderr, "mallow: warning: %s\n", warning.c_str());
 }
 
 }  // namespace mallow::cli

@@ -19,5 +19,7 @@ struct SceneOptions {
 /// SCENE, --set, --quality and --allow-outside-paths.
 void add_scene_options(CLI::App& command, SceneOptions& options);
 Scene read_scene(const SceneOptions& options);
+/// Says on stderr what of a scene is hardly meant.
+void print_warnings(const Scene& scene, const SimulationInfo& info);
 
 }  // namespace mallow::cli

@@ -3,6 +3,7 @@
 /// All of target mallow::mallow.
 #include "mallow/body.h"               // IWYU pragma: export
 #include "mallow/collider.h"           // IWYU pragma: export
+#include "mallow/defaults.h"           // IWYU pragma: export
 #include "mallow/errors.h"             // IWYU pragma: export
 #include "mallow/executor.h"           // IWYU pragma: export
 #include "mallow/instruction_level.h"  // IWYU pragma: export

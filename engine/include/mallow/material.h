@@ -37,14 +37,18 @@ struct Material {
   /// Elastic solid (0) to fluid (1). [TK eq. 10]
   AlphaSchedule alpha = 0.0f;
   /// Mean external acceleration above which the reference shape is updated, at alpha 0: γ_u [m/s²], >= 0.
-  /// The threshold in force is γ_u (1 − alpha). [TK eq. 14]
-  float update_threshold = 12.0f;
-  /// k [m²/s²], >= 0: pressure is k (ρ − ρ0). [TK eq. 1]
-  float pressure_coefficient = 16.0f;
-  /// μ [Pa s], >= 0. [TK eq. 2]
-  float viscosity = 0.5f;
-  /// Δt_SM [s], > 0, at least (1 − alpha) time_step/2.5, as a stiffer body would gain energy; left out: the
-  /// solver's time_step. [TK eq. 13; model 2, section 4 B]
+  /// The threshold in force is γ_u (1 − alpha), and what is compared with it the mean over the last
+  /// time_step before the check. Left out: 40 times gravity, see default_update_threshold(). [TK eq. 14]
+  std::optional<float> update_threshold = {};
+  /// k [m²/s²], >= 0: pressure is k (ρ − ρ0). Left out: as stiff as a step can carry, see
+  /// default_pressure_coefficient(); it then follows alpha, and between groups, where pressure acts whatever
+  /// alpha is, it is that of alpha 1. [TK eq. 1]
+  std::optional<float> pressure_coefficient = {};
+  /// μ [Pa s], >= 0. Left out: as thick as looks the same at any size, see default_kinematic_viscosity().
+  /// [TK eq. 2]
+  std::optional<float> viscosity = {};
+  /// Δt_SM [s], > 0, at least (1 − alpha) time_step_factor² time_step/2.5, as a stiffer body would gain
+  /// energy; left out: the solver's time_step. [TK eq. 13; model 2, section 4 B]
   std::optional<float> elastic_time_step = {};
   /// m [kg], > 0. Left out: follows from rest_density; 1 if that is left out too.
   std::optional<float> particle_mass = {};

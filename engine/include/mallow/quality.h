@@ -8,12 +8,9 @@
 
 namespace mallow {
 
-/// The same scene at a step of `factor` (> 0) times its time_step: the elastic time step grows as the step
-/// shrinks, so that the elastic pull per second, 1/(Δt0 Δt_SM), stays [TK eq. 13], and reference shapes are
-/// checked after the same simulated time. Throws ConfigError where the factor is not a finite number above 0.
+/// The same scene in steps of `factor` (> 0) times its own: time_step_factor times that, which leaves the
+/// material as it is. Throws ConfigError where the factor is not a finite number above 0.
 SolverConfig at_time_step(const SolverConfig& config, float factor);
-/// config: that of the material, as it was before.
-Material at_time_step(const Material& material, const SolverConfig& config, float factor);
 
 /// How a scene's settings are turned between speed and accuracy. Each lies on or beside the fronts that
 /// bench/RESULTS.md shows, with what it costs and how far off it is there.
@@ -26,9 +23,11 @@ enum class Quality {
 const char* name(Quality quality);
 std::span<const Quality> qualities();
 
+/// Longer steps are at most 1.5 times time_step, or as long as the config has them.
 SolverConfig with_quality(const SolverConfig& config, Quality quality);
 /// config: that of the material, as it was before. A material so stiff that longer steps would make it
-/// unstable is softened to where they do not.
+/// unstable is softened to where they do not, if both its elastic_time_step and the time_step are given;
+/// where the time_step is left out, prepare() refuses it.
 Material with_quality(const Material& material, const SolverConfig& config, Quality quality);
 SurfaceConfig with_quality(const SurfaceConfig& config, Quality quality);
 

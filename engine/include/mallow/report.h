@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mallow/defaults.h"
 #include "mallow/instruction_level.h"
 
 namespace mallow {
@@ -71,9 +72,13 @@ struct GroupInfo {
   float particle_mass = 0;
   float rest_density = 0;
   float region_radius = 0;
-  double average_neighbors = 0;  ///< mean |N_i| over the reference shape, i included, whatever the stride
-  std::size_t regions = 0;       ///< of shape matching, as many as are owned; 0 where none are built
-  bool shape_matching = false;   ///< runs now
+  float alpha = 0;                 ///< now
+  float update_threshold = 0;      ///< γ_u in force, to be multiplied by 1 − alpha [m/s²]
+  float pressure_coefficient = 0;  ///< k in force [m²/s²]
+  float viscosity = 0;             ///< μ in force [Pa s]
+  double average_neighbors = 0;    ///< mean |N_i| over the reference shape, i included, whatever the stride
+  std::size_t regions = 0;         ///< of shape matching, as many as are owned; 0 where none are built
+  bool shape_matching = false;     ///< runs now
 };
 struct SimulationInfo {
   std::size_t particles = 0;
@@ -83,6 +88,14 @@ struct SimulationInfo {
   bool cross_group = false;                                         ///< contact between groups runs
   InstructionLevel instruction_level = InstructionLevel::baseline;  ///< that kernels use
   std::size_t bytes = 0;                                            ///< memory of columns, lists and scratch
+  float time_step = 0;                                              ///< Δt0 [s]
+  TimeStepSource time_step_source = TimeStepSource::given;
+  float longest_step = 0;    ///< time_step_factor Δt0 [s]
+  double update_period = 0;  ///< between checks of the reference shapes, where no step is shortened [s]
+  /// The longest step that no limit would shorten, as fast as things are now [s]; infinite where no SPH acts.
+  double unlimited_step = 0;
+  /// What can be run, but is hardly meant: a sentence each that names group, setting and value.
+  std::vector<std::string> warnings;
 };
 
 }  // namespace mallow

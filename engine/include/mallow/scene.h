@@ -116,10 +116,9 @@ std::string print_scene(const Scene& scene);
 /// Every key a scene file may hold: one line each with default, range, unit and meaning.
 std::string describe_scene_keys();
 
-/// The same scene in steps of `factor` times its own, see mallow/quality.h; frames stay as long as they were.
+/// The same scene in steps of `factor` times its own, see mallow/quality.h; frames stay as long as they are.
 Scene at_time_step(const Scene& scene, float factor);
-/// The same scene turned between speed and accuracy, see mallow/quality.h; frames stay as long as they were, and
-/// no step is longer than one.
+/// The same scene turned between speed and accuracy, see mallow/quality.h; frames stay as long as they are.
 Scene with_quality(const Scene& scene, Quality quality);
 
 /// The points of a body as the scene would add them. Throws ConfigError or IoError.
@@ -127,6 +126,11 @@ Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int 
 /// The simulation of a scene, ready to step. `threads` as in SolverConfig. notes: where given, gets those of
 /// all bodies, each with the body's path in front. Throws ConfigError with all problems found.
 Simulation build(const Scene& scene, int threads = 0, std::vector<std::string>* notes = nullptr);
+/// Simulated time of a frame [s]: what the scene says, or Δt0. info: of its simulation.
+double frame_time(const Scene& scene, const SimulationInfo& info);
+/// What can be run, but is hardly meant, a sentence each: that of the simulation, and where the frames cover
+/// almost no time.
+std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info);
 /// The material of each group that build() makes, in order of GroupId.
 std::vector<std::size_t> group_materials(const Scene& scene);
 

@@ -104,8 +104,11 @@ class Simulation {
   void set_velocity(ColliderId collider, const Vec3& velocity);
   void set_velocity(PinId pin, const Vec3& velocity);
 
-  /// Allocates, sorts and builds what the first step needs; step() does it where it was not done.
-  /// Throws ConfigError where there are no particles, or particles of different groups are closer than h/10.
+  /// Allocates, sorts and builds what the first step needs; step() does it where it was not done. The first
+  /// call settles what a config leaves out, from the bodies that are there; later ones do not change it.
+  /// Throws ConfigError where there are no particles, particles of different groups are closer than h/10,
+  /// nothing says how long a step is, steps are too long for a material's springs, or neighbour lists would
+  /// take more than memory_limit.
   void prepare();
   /// One step of algorithm 3.3 of the paper. Throws StepError and keeps the state where Δt would fall below
   /// Δt0/1000 or a number is not finite: it names the particle and the phase.
@@ -124,6 +127,8 @@ class Simulation {
   std::size_t group_count() const;
   double time() const;  ///< simulated time [s]
   std::int64_t step_count() const;
+  /// As given; from the first prepare() on with the time_step that is in force. What else was left out,
+  /// info() tells.
   const SolverConfig& config() const;
   const std::vector<Collider>& colliders() const;  ///< as they stand now
 
@@ -145,8 +150,8 @@ class Simulation {
   std::vector<Vec3> velocities_by_id() const;
   std::vector<std::uint8_t> groups_by_id() const;
 
-  /// Energies as they are now, summed in double; slow, as every region is solved exactly. SPH pressure keeps no
-  /// energy that could be summed, so a fluid's is what it moves and falls with. Calls prepare().
+  /// Energies as they are now, summed in double; slow, as every region is solved exactly. SPH pressure keeps
+  /// no energy that could be summed, so a fluid's is what it moves and falls with. Calls prepare().
   Energy energy();
 
   /// 64 bits of positions and velocities in id order, time and step: equal states have equal hashes.

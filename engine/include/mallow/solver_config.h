@@ -18,14 +18,24 @@ enum class Formulation {
 
 /// What holds for a whole simulation. Copied when given to a Simulation.
 struct SolverConfig {
-  /// Upper bound of a step, Δt0 [s], > 0. [TK eq. 12]
-  float time_step = 0.15f;
+  /// Δt0 [s], > 0: the upper bound of a step, and what elasticity, the update rule and contact measure time
+  /// by. Left out: follows from spacing and gravity, see default_time_step(). [TK eq. 12]
+  std::optional<float> time_step = {};
+  /// Steps are this share of time_step at most, in [0.01, 4]; the material stays what it is. That is how a
+  /// scene is turned between speed and accuracy: the elastic pull per second is that of time_step, and
+  /// reference shapes are checked at the same times. Above 1, (1 − alpha) time_step_factor² time_step /
+  /// elastic_time_step is bounded, see Material::elastic_time_step.
+  float time_step_factor = 1.0f;
   /// Radius of the SPH kernels, σ [m], > 0; there is no default. [TK eq. 3]
   float support_radius = 0.0f;
   /// Acceleration on every particle [m/s²], finite.
   Vec3 gravity{0.0f, 0.0f, -0.3f};
-  /// Steps between the checks that update reference shapes, m_u >= 1. [TK 3.2]
-  int update_interval = 60;
+  /// Time between the checks that update reference shapes, m_u [s], > 0: a check is at the first step that
+  /// starts at or after a multiple of it. Left out: 60 time_step, unless update_interval says it. [TK 3.2]
+  std::optional<float> update_period = {};
+  /// The same in steps, as the paper has it, >= 1; where time_step_factor is not 1, so many times time_step.
+  /// Only one of the two may be given.
+  std::optional<int> update_interval = {};
   Formulation formulation = Formulation::conservative;
   /// Also bound the step by the speed of sound and by viscous diffusion.
   bool acoustic_limit = true;
@@ -54,6 +64,9 @@ struct SolverConfig {
   /// Instructions that kernels use, one of those this machine has; left out: its best. Results do not depend
   /// on it; it is there to show that, and to time what older machines would do.
   std::optional<InstructionLevel> instruction_level = {};
+  /// Memory that neighbour lists may take [GiB], > 0. prepare() refuses radii that would ask for more, before
+  /// anything is allocated.
+  float memory_limit = 16.0f;
 };
 
 }  // namespace mallow

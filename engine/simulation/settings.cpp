@@ -1,0 +1,145 @@
+#include "simulation/settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simulation/state.h"
+#include "simulation/validation.h"
+
+namespace mallow {
+namespace {
+
+/// Shares of Δt0 by which times may miss a multiple of the period: far above what their sums are off by.
+constexpr double k_tolerance = 1e-6;
+
+/// What moves fastest at the start [m/s].
+float fastest_speed(const Simulation::State& state) {
+  float speed = largest_norm(state.store.velocity);
+  for (const Collider& collider : state.colliders) speed = std::max(speed, collider.velocity.norm());
+  for (const Vec3& velocity : state.pin_velocities) speed = std::max(speed, velocity.norm());
+  return speed;
+}
+
+/// Settles Δt0 of `config`.
+TimeStepSource resolve_time_step(const SceneScale& scale, SolverConfig& config) {
+  if (config.time_step) return TimeStepSource::given;
+  config.time_step = default_time_step(scale);
+  if (!config.time_step)
+    throw ConfigError("solver.time_step",
+                      "is missing: without gravity, and where nothing moves, nothing says how long a second "
+                      "is; give it, a number of seconds above 0");
+  if (!(std::isfinite(*config.time_step) && *config.time_step > 0))
+    throw ConfigError("solver.time_step",
+                      "is missing: what follows from spacing and gravity, or from the fastest body, is no "
+                      "number of single precision above 0; give it");
+  return config.gravity.isZero() ? TimeStepSource::speed : TimeStepSource::gravity;
+}
+
+float default_viscosity(const SceneScale& scale, float time_step, const Group& group) {
+  const float volume = group.spacing * group.spacing * group.spacing;
+  return default_kinematic_viscosity(scale, time_step) * group.mass / volume;
+}
+
+/// Counted at a time: how many multiples of the period have passed.
+double passed_periods(const Simulation::State& state, double time) {
+  const double tolerance = k_tolerance * static_cast<double>(state.base_step());
+  return std::floor((time + tolerance) / update_period(state));
+}
+
+/// Checks are every so many steps, as the paper has it, and not at times.
+bool counts_steps(const SolverConfig& config) {
+  return config.update_interval && config.time_step_factor == 1.0f;
+}
+
+}  // namespace
+
+float largest_norm(const VectorColumn& vectors) {
+  float largest = 0;
+  for (std::size_t i = 0; i < vectors.size(); ++i) largest = std::max(largest, vectors.get(i).norm());
+  return largest;
+}
+
+void resolve_settings(Simulation::State& state) {
+  if (state.scale.spacing == 0) {
+    SceneScale scale{.spacing = std::numeric_limits<float>::max(), .gravity = state.config.gravity};
+    for (const Group& group : state.groups) scale.spacing = std::min(scale.spacing, group.spacing);
+    scale.speed = fastest_speed(state);
+    SolverConfig config = state.config;
+    const TimeStepSource source = resolve_time_step(scale, config);
+    Checks checks;
+    for (const Group& group : state.groups) {
+      check_stiffness(config, group.material, checks);
+      if (!group.material.pressure_coefficient &&
+          !std::isfinite(default_pressure_coefficient(config.support_radius, 0, 0, *config.time_step)))
+        checks.problem("material.pressure_coefficient",
+                       "is missing: what follows from support_radius and time_step is no number of single "
+                       "precision; give it");
+      if (!group.material.viscosity && !std::isfinite(default_viscosity(scale, *config.time_step, group)))
+        checks.problem("material.viscosity",
+                       "is missing: what follows from spacing, gravity and mass is no number of single "
+                       "precision; give it");
+    }
+    checks.finish();
+    state.config = config;
+    state.scale = scale;
+    state.time_step_source = source;
+  }
+  const float threshold = default_update_threshold(state.scale, state.base_step());
+  for (Group& group : state.groups) {
+    group.update_threshold = group.material.update_threshold.value_or(threshold);
+    group.viscosity =
+        group.material.viscosity.value_or(default_viscosity(state.scale, state.base_step(), group));
+  }
+}
+
+float pressure_coefficient(const Simulation::State& state, const Group& group) {
+  if (group.material.pressure_coefficient) return *group.material.pressure_coefficient;
+  const float time_step = std::max(state.base_step(), state.longest_step());
+  return default_pressure_coefficient(state.config.support_radius, group.alpha,
+                                      state.stiffness(group) * time_step * time_step, time_step);
+}
+
+void resolve_pressures(Simulation::State& state) {
+  for (std::size_t g = 0; g < state.groups.size(); ++g) {
+    const Group& group = state.groups[g];
+    SphGroup& sums = state.sph.groups[g];
+    sums.pressure_coefficient = pressure_coefficient(state, group);
+    sums.contact_share = group.material.pressure_coefficient ? 1.0f : contact_share(group.alpha);
+  }
+}
+
+double update_period(const Simulation::State& state) {
+  const SolverConfig& config = state.config;
+  if (config.update_period) return static_cast<double>(*config.update_period);
+  if (config.update_interval) return *config.update_interval * static_cast<double>(state.base_step());
+  return default_update_period(state.base_step());
+}
+
+bool update_is_due(const Simulation::State& state) {
+  if (counts_steps(state.config)) return state.step > 0 && state.step % *state.config.update_interval == 0;
+  return passed_periods(state, state.time) > state.passed_periods;
+}
+
+double external_weight(const Simulation::State& state, float time_step) {
+  if (counts_steps(state.config)) return (state.step + 1) % *state.config.update_interval == 0 ? 1.0 : 0.0;
+  const double start = state.time, end = start + static_cast<double>(time_step);
+  const double window = static_cast<double>(state.base_step());
+  // The check that comes next, or the last one of several in this step.
+  const double next = std::max(passed_periods(state, start) + 1, passed_periods(state, end));
+  const double check = next * update_period(state);
+  const double overlap = std::min(end, check) - std::max(start, check - window);
+  return overlap > 0.5 * k_tolerance * window ? overlap : 0.0;
+}
+
+void add_external(Simulation::State& state) {
+  const bool judged = update_is_due(state);
+  for (Group& group : state.groups) {
+    if (judged) group.external_sum = group.external_weight = 0;
+    group.external_sum += group.step_weight * group.step_external;
+    group.external_weight += group.step_weight;
+  }
+  if (!counts_steps(state.config)) state.passed_periods = passed_periods(state, state.time);
+}
+
+}  // namespace mallow

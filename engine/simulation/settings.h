@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/column.h"
+#include "mallow/simulation.h"
+
+/// What configs leave out, and what they ask for: settled in prepare(), before anything is allocated.
+namespace mallow {
+
+struct Group;
+
+/// The longest of some vectors.
+float largest_norm(const VectorColumn& vectors);
+/// Share of k that acts between groups where k follows alpha: what makes it that of alpha 1.
+float contact_share(float alpha);
+
+/// Spacing and speeds -> scale, time_step and its source, if this is the first prepare(); γ_u and μ of every
+/// group.
+/// Throws ConfigError where nothing says how long a step is, where steps are too long for a material's
+/// springs, or where a default is beyond single precision.
+void resolve_settings(Simulation::State& state);
+/// α, settings -> k of every group in the sums of SPH.
+void resolve_pressures(Simulation::State& state);
+/// k in force.
+float pressure_coefficient(const Simulation::State& state, const Group& group);
+
+/// Time between checks of the reference shapes, where no step is shortened [s].
+double update_period(const Simulation::State& state);
+/// Whether the step that starts now begins with a check of the reference shapes.
+bool update_is_due(const Simulation::State& state);
+/// How much the step that starts now, and takes `time_step`, counts in the mean that the next check judges;
+/// 0: not at all. As a rule seconds that it shares with the Δt0 before the check.
+double external_weight(const Simulation::State& state, float time_step);
+
+/// At the end of a step, before time moves on: what it measured counts at the check that is next, and what
+/// was judged at its start no more.
+void add_external(Simulation::State& state);
+
+/// Throws ConfigError where a body of several particles has no neighbours at all within the radii of its
+/// group.
+void check_neighbors(const Simulation::State& state, const Group& group, const Body& body);
+/// Throws ConfigError where neighbour lists would take more memory than allowed.
+void check_memory(const Simulation::State& state);
+
+/// To what a material bounds all steps where SPH acts [s].
+struct MaterialLimits {
+  double by_pressure;   ///< which viscosity calms
+  double by_viscosity;  ///< which diffuses
+};
+MaterialLimits material_limits(const Simulation::State& state, const Group& group);
+/// What can be run, but is hardly meant. alpha and defaults are settled.
+std::vector<std::string> warnings(const Simulation::State& state);
+/// The longest step that no limit shortens, as fast as things are now [s].
+double unlimited_step(const Simulation::State& state);
+
+}  // namespace mallow

@@ -1,0 +1,114 @@
+#include <cmath>
+#include <sstream>
+
+#include "simulation/settings.h"
+#include "simulation/state.h"
+
+namespace mallow {
+namespace {
+
+/// Weight and rest make a mean |a_ext| of up to about this many |g|.
+constexpr float k_resting = 2;
+/// Between these gravity is that of a planet in metres and seconds [m/s²], and matter has a density that
+/// there is: from foam to the heaviest metals [kg/m³].
+constexpr float k_least_gravity = 1.5f, k_most_gravity = 30;
+constexpr float k_least_density = 1, k_most_density = 30000;
+/// Share of the longest step to which a limit may shorten all of them.
+constexpr double k_short_steps = 0.5;
+/// Neighbours that slow a step down and show nothing: those of ten spacings.
+constexpr double k_many_neighbors = 4000;
+
+class Warnings {
+ public:
+  explicit Warnings(const Simulation::State& state) : state_(state) {}
+
+  std::vector<std::string> list() && {
+    for (const Group& group : state_.groups) {
+      look_at_threshold(group);
+      look_at_density(group);
+      look_at_limits(group);
+      look_at_neighbors(group);
+    }
+    return std::move(list_);
+  }
+
+ private:
+  template <class... Words>
+  void add(const Group& group, const Words&... words) {
+    std::ostringstream text;
+    text << "group '" << group.name << "': ";
+    (text << ... << words);
+    list_.push_back(text.str());
+  }
+
+  void look_at_threshold(const Group& group) {
+    if (!group.material.update_threshold) return;
+    const float gravity = state_.config.gravity.norm();
+    float alpha = -1;  // the largest below 1 that the schedule names: there the threshold is lowest
+    for (const AlphaKey& key : group.material.alpha.keys())
+      if (key.alpha < 1) alpha = std::max(alpha, key.alpha);
+    const float threshold = group.update_threshold * (1 - alpha);
+    if (alpha < 0 || threshold >= k_resting * gravity) return;
+    add(group, "update_threshold ", group.update_threshold, " times 1 - alpha (", alpha, ") is ", threshold,
+        " m/s2, below twice gravity (", k_resting * gravity,
+        " m/s2): at rest its own weight updates the reference shape, so that it sinks like clay; 40 times "
+        "gravity is ",
+        40 * gravity);
+  }
+
+  void look_at_density(const Group& group) {
+    const float gravity = state_.config.gravity.norm(), density = group.rest_density;
+    if (gravity < k_least_gravity || gravity > k_most_gravity) return;
+    if (density >= k_least_density && density <= k_most_density) return;
+    std::ostringstream source;
+    if (group.material.rest_density)
+      source << "is given";
+    else
+      source << "follows from the spacing and particles of " << group.mass << " kg";
+    add(group, "a rest density of ", density, " kg/m3 ", source.str(),
+        ": no material has it, if gravity is in metres and seconds; give rest_density, 1000 for water");
+  }
+
+  void look_at_limits(const Group& group) {
+    if (!state_.needs_sph() || !state_.config.acoustic_limit) return;
+    const double longest = static_cast<double>(state_.longest_step());
+    const MaterialLimits limits = material_limits(state_, group);
+    const auto shortens = [&](double step) {
+      std::ostringstream text;
+      text << " shortens every step from " << longest << " s to " << step << " s or less; ";
+      return text.str();
+    };
+    if (limits.by_viscosity < k_short_steps * longest)
+      add(group, "viscosity ", group.viscosity, shortens(limits.by_viscosity),
+          "lower it, or solver.time_step");
+    if (limits.by_pressure >= k_short_steps * longest) return;
+    if (group.material.pressure_coefficient)
+      add(group, "pressure_coefficient ", *group.material.pressure_coefficient, shortens(limits.by_pressure),
+          "lower it, or solver.time_step, or raise viscosity");
+    else
+      add(group, "viscosity ", group.viscosity, " is too low to calm the pressure that keeps the volume, and",
+          shortens(limits.by_pressure), "leave it out, raise it, or give a lower pressure_coefficient");
+  }
+
+  void look_at_neighbors(const Group& group) {
+    const auto look = [&](const char* field, float radius, std::size_t most) {
+      const double each = std::min(static_cast<double>(most), full_neighbors(radius, group.spacing));
+      if (each > k_many_neighbors)
+        add(group, field, ' ', radius, " is ", radius / group.spacing, " spacings: up to ", each,
+            " neighbours each, where 30 to 80 are usual, and steps take that much longer");
+    };
+    if (state_.needs_sph()) look("support_radius", state_.config.support_radius, state_.store.size());
+    if (group.keeps_reference()) look("the radius of its regions,", group.shape.region_radius, group.size());
+  }
+
+  const Simulation::State& state_;
+  std::vector<std::string> list_;
+};
+
+}  // namespace
+
+std::vector<std::string> warnings(const Simulation::State& state) {
+  return Warnings(state).list();
+}
+
+}  // namespace mallow
