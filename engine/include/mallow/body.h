@@ -24,7 +24,7 @@ struct Body {
 
 /// Bodies move as their lattice lies where it is perfect: a fluid spreads in four lobes, a solid tears along
 /// layers. This much is enough to lose its directions.
-inline constexpr float k_default_jitter = 0.1f;
+inline constexpr float k_default_jitter = 0.2f;
 
 /// A box of count[0] × count[1] × count[2] cells of side `spacing` from `corner` on; a point in each cell's
 /// centre.
@@ -39,8 +39,9 @@ struct Lattice {
 struct Sampling {
   std::optional<float> spacing = {};  ///< h [m], > 0
   std::optional<int> count = {};  ///< wanted number of points, >= 1; met within 1% where the shape allows it
-  /// Random displacement of every lattice point, uniform in ± jitter · h per axis, in [0, 0.45], so that
-  /// points stay a tenth of h apart. The same for every run and machine.
+  /// Random displacement of every lattice point, at most jitter · h per axis and half of that as a rule, in
+  /// [0, 0.45], so that points stay a tenth of h apart. It is free of divergence, so that bodies start as dense
+  /// as a lattice, and at rest. The same for every run and machine.
   float jitter = k_default_jitter;
 };
 
