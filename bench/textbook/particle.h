@@ -53,6 +53,7 @@ struct Group {
   double viscosity = 0;             ///< μ [Pa s]
   double pressure_coefficient = 0;  ///< k of the last step [m²/s²]
   double contact_share = 1;         ///< of its pressure that acts between groups
+  double cohesion = 0;              ///< share of its negative pressure
   double external_sum = 0;          ///< ∫ mean |a_ext| over the time before the next check that it judges
   double external_time = 0;         ///< that time [s]; where checks are counted in steps, steps
   double region_radius = 0;         ///< [m]

@@ -85,7 +85,7 @@ void sum_densities(const SolverConfig& config, const std::vector<Group>& groups,
     }
     i.density = group.rest_density * sum;
     i.pressure = group.pressure_coefficient * (i.density - group.rest_density);
-    if (i.pressure < 0) i.pressure *= group.material.cohesion;
+    if (i.pressure < 0) i.pressure *= group.cohesion;
   }
 }
 

@@ -98,14 +98,14 @@ void Textbook::follow_alpha() {
   const double step = std::max(base_step_, longest_step_), speed = config_.support_radius / step;
   for (Group& group : groups_) {
     group.alpha = alpha_at(group.material.alpha, time_);
+    group.cohesion = group.material.cohesion;
     if (group.material.pressure_coefficient) {
       group.pressure_coefficient = *group.material.pressure_coefficient;
     } else {
       group.contact_share = std::max(group.alpha, 0.2);
-      const double elastic_time_step =
-          group.material.elastic_time_step ? double{*group.material.elastic_time_step} : base_step_;
-      const double pull = (1 - group.alpha) * step * step / (base_step_ * elastic_time_step);
-      group.pressure_coefficient = std::min(1.0, (2.6 - pull) / 2) * speed * speed / group.contact_share;
+      const double share = std::min(1.0, (2.6 - stiffness(group) * step * step) / 2);
+      group.pressure_coefficient = share * speed * speed / group.contact_share;
+      group.cohesion *= std::min(1.0, 0.08 * speed * speed / group.pressure_coefficient);
     }
   }
 }
@@ -152,10 +152,27 @@ int Textbook::update_references() {
     const double judged = group.external_time > 0 ? group.external_sum / group.external_time : 0;
     group.external_sum = group.external_time = 0;
     if (!group.keeps_reference() || judged <= threshold) continue;
+    if (group.alpha < 1) catch_up_with_pull(group);
     take_reference(group, particles_);
     ++updated;
   }
   return updated;
+}
+
+/// Velocities are those of half a step ago; what the old shape pulled since then goes into them.
+void Textbook::catch_up_with_pull(const Group& group) {
+  match_shape(group, particles_);
+  for (const std::size_t id : group.members) {
+    Particle& p = particles_[id];
+    if (!p.pinned) p.velocity += (time_ - last_start_) / 2 * stiffness(group) * (p.goal - p.position);
+  }
+}
+
+/// (1 − α)/(Δt0 Δt_SM) [1/s²].
+double Textbook::stiffness(const Group& group) const {
+  double elastic_time_step = base_step_;
+  if (group.material.elastic_time_step) elastic_time_step = *group.material.elastic_time_step;
+  return (1 - group.alpha) / (base_step_ * elastic_time_step);
 }
 
 /// Multiples of the period, which times may miss by what their sums are off.
@@ -204,7 +221,6 @@ double Textbook::limited_time_step(double max_velocity) const {
   double time_step = std::min(longest_step_, 0.999 * sigma / max_velocity);
   if (!config_.acoustic_limit) return time_step;
   for (const Group& group : groups_) {
-    const Material& material = group.material;
     time_step = std::min(time_step, sigma * sigma * group.rest_density / (25 * group.viscosity));
     // x of pressure and a of shape matching as they act: x <= 1.4, 2 x + a <= 3.4, and x calmed by viscosity.
     const bool alone = groups_.size() == 1;
@@ -212,9 +228,7 @@ double Textbook::limited_time_step(double max_velocity) const {
     const double x = push * group.pressure_coefficient / (sigma * sigma);
     if (x == 0) continue;
     const double y = 800 * drag * group.viscosity / group.rest_density / (sigma * sigma);
-    const double elastic_time_step =
-        material.elastic_time_step ? double{*material.elastic_time_step} : base_step_;
-    const double a = (1 - group.alpha) / (base_step_ * elastic_time_step);
+    const double a = stiffness(group);
     time_step = std::min({time_step, (y + std::sqrt(y * y + 0.2 * x)) / (2 * x), std::sqrt(1.4 / x),
                           std::sqrt(3.4 / (2 * x + a))});
   }
@@ -252,13 +266,8 @@ void Textbook::move_particles(double time_step) {
       p.velocity = p.pin_velocity;
     } else {
       const Vec before = p.velocity;
-      double elastic_time_step = base_step_;
-      if (group.material.elastic_time_step) elastic_time_step = *group.material.elastic_time_step;
       p.velocity += time_step * (p.external_acceleration + group.alpha * p.sph_acceleration);
-      if (group.alpha < 1) {
-        p.velocity +=
-            (1 - group.alpha) * time_step / (base_step_ * elastic_time_step) * (p.goal - p.position);
-      }
+      if (group.alpha < 1) p.velocity += time_step * stiffness(group) * (p.goal - p.position);
       const Vec blended = p.velocity;
       const ContactStep contact{
           .time_step = time_step,

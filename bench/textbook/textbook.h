@@ -54,6 +54,8 @@ class Textbook {
   bool counts_steps() const { return config_.update_interval && config_.time_step_factor == 1; }
   double passed_periods(double time) const;
   bool check_is_due() const;
+  void catch_up_with_pull(const Group& group);
+  double stiffness(const Group& group) const;
   int update_references();
   double mean_external_acceleration(const Group& group) const;
   void measure_external(double time_step);

@@ -2,6 +2,7 @@
 #include <limits>
 #include <sstream>
 
+#include "core/parallel.h"
 #include "simulation/damage.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
@@ -128,6 +129,29 @@ void take_reference(Simulation::State& state, Group& group) {
   state.rows_moved();
 }
 
+namespace {
+
+/// Velocities are those of half a step ago. What the old shape pulled since then goes into them before it is
+/// gone: then an update takes energy and never gives any. Without, a body that yields every few steps and is
+/// as stiff as its step gained energy at each update that met it swinging back.
+void catch_up_with_pull(Simulation::State& state, Group& group) {
+  const VectorColumn& x = state.store.position;
+  sum_regions(x, group.begin, state.threads, state.level, group.shape);
+  solve_rotations(x, group.begin, state.config.rotation_iterations, state.threads, state.level, group.shape);
+  compute_goals(x, group.begin, state.threads, state.level, group.shape);
+  const float kick = 0.5f * static_cast<float>(state.last_time_step) * state.stiffness(group);
+  ParticleStore& store = state.store;
+  parallel_for(state.threads, group.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t row = group.begin + i;
+      if (!store.pin.empty() && store.pin[row] != 0) continue;
+      store.velocity.set(row, store.velocity.get(row) + kick * group.shape.pull.get(i));
+    }
+  });
+}
+
+}  // namespace
+
 int update_references(Simulation::State& state) {
   int updated = 0;
   const bool check = update_is_due(state);
@@ -138,6 +162,7 @@ int update_references(Simulation::State& state) {
     // A reference shape outlives the step: nothing that is not finite may get into it.
     if (yields || due()) check_damage(state);
     if (yields) {
+      if (group.matches_shape() && group.shape.built) catch_up_with_pull(state, group);
       take_reference(state, group);
       ++updated;
     }

@@ -50,6 +50,7 @@ template <class Archive, class State>
 void pass_clock(Archive& archive, State& state) {
   archive(state.step);
   archive(state.time);
+  archive(state.last_time_step);
   archive(state.prepared);
   archive(state.passed_periods);
   auto source = static_cast<std::uint8_t>(state.time_step_source);
@@ -412,8 +413,9 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
   State& state = *simulation.state_;
   unpack(saved, "clock", [&](UnpackingArchive& archive) {
     pass_clock(archive, state);
-    if (state.step < 0 || !std::isfinite(state.time))
-      archive.fail("step must be 0 or above, and time finite");
+    if (state.step < 0 || !std::isfinite(state.time) || !std::isfinite(state.last_time_step) ||
+        state.last_time_step < 0)
+      archive.fail("step and time_step must be 0 or above, and time finite");
     const SceneScale& scale = state.scale;
     const bool settled = state.config.time_step && scale.spacing > 0;
     if (!(std::isfinite(scale.spacing) && scale.spacing >= 0 && std::isfinite(scale.speed) &&

@@ -165,10 +165,10 @@ void Oracle::follow_alpha() {
     const std::optional<float>& given = group.material.pressure_coefficient;
     group.contact_share = given ? 1 : std::max(group.alpha, 0.2);
     const double dt = std::max(dt0_, longest_), speed = config_.support_radius / dt;
-    const std::optional<float>& elastic = group.material.elastic_time_step;
-    const double pull = (1 - group.alpha) * dt * dt / (dt0_ * (elastic ? double{*elastic} : dt0_));
-    const double x = std::min(1.0, (2.6 - pull) / 2);
+    const double x = std::min(1.0, (2.6 - stiffness(group) * dt * dt) / 2);
     group.pressure_coefficient = given ? double{*given} : x * speed * speed / group.contact_share;
+    const double soft = given ? 1 : std::min(1.0, 0.08 * speed * speed / group.pressure_coefficient);
+    group.cohesion = soft * group.material.cohesion;
   }
 }
 
@@ -220,6 +220,12 @@ double Oracle::mean_external_acceleration(std::size_t group) const {
   return count > 0 ? sum / count : 0;
 }
 
+// Of the pull [TK eq. 13].
+double Oracle::stiffness(const Group& group) const {
+  const std::optional<float>& given = group.material.elastic_time_step;
+  return (1 - group.alpha) / (dt0_ * (given ? double{*given} : dt0_));
+}
+
 double Oracle::passed_periods(double time) const {
   return std::floor((time + 1e-6 * dt0_) / period_);
 }
@@ -245,6 +251,12 @@ std::vector<std::size_t> Oracle::update_references() {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const double threshold = groups_[g].update_threshold * (1 - groups_[g].alpha);
     if (is_always_fluid(groups_[g]) || judged_acceleration(g) <= threshold) continue;
+    // Velocities are those of half a step ago: what the old shape pulled since then is part of them.
+    if (groups_[g].alpha < 1) match_shapes();
+    for (Particle& p : particles_) {
+      if (p.group == g && !p.pinned && groups_[g].alpha < 1)
+        p.v += (time_ - last_start_) / 2 * stiffness(groups_[g]) * (p.goal - p.x);
+    }
     rebuild_regions(g);
     updated.push_back(g);
   }
@@ -262,7 +274,7 @@ void Oracle::sum_densities() {
     }
     i.density = group.rest_density * sum;
     i.pressure = group.pressure_coefficient * (i.density - group.rest_density);
-    if (i.pressure < 0) i.pressure *= group.material.cohesion;
+    if (i.pressure < 0) i.pressure *= group.cohesion;
   }
 }
 
@@ -327,14 +339,12 @@ double Oracle::time_step(double max_velocity) const {
   double dt = std::min(longest, 0.999 * sigma / max_velocity);
   if (config_.acoustic_limit) {
     for (const Group& group : groups_) {
-      const Material& material = group.material;
       dt = std::min(dt, sigma * sigma * group.rest_density / (25 * group.viscosity));
       const bool alone = groups_.size() == 1;
       const double push = alone ? group.alpha : group.contact_share, drag = alone ? group.alpha : 1;
       const double a = push * group.pressure_coefficient / (sigma * sigma);
       const double b = 800 * drag * group.viscosity / group.rest_density / (sigma * sigma);
-      const double dt_sm = material.elastic_time_step ? double{*material.elastic_time_step} : dt0_;
-      const double pull = (1 - group.alpha) / (dt0_ * dt_sm);
+      const double pull = stiffness(group);
       if (a > 0)
         dt = std::min({dt, (b + std::sqrt(b * b + 0.2 * a)) / (2 * a), std::sqrt(1.4 / a),
                        std::sqrt(3.4 / (2 * a + pull))});
@@ -421,10 +431,8 @@ void Oracle::move(double dt) {
       p.v = p.pin_velocity;
     } else {
       const Vec before = p.v;
-      const std::optional<float>& given = group.material.elastic_time_step;
-      const double dt_sm = given ? double{*given} : dt0_;
       p.v += dt * p.external + group.alpha * dt * p.sph;
-      if (!is_always_fluid(group)) p.v += (1 - group.alpha) * dt / (dt0_ * dt_sm) * (p.goal - p.x);
+      if (!is_always_fluid(group)) p.v += dt * stiffness(group) * (p.goal - p.x);
       const Vec blended = p.v;
       for (const Obstacle& obstacle : obstacles_) touch(obstacle, p, before, dt, p.v);
       p.contact = (p.v - blended) / dt;

@@ -49,6 +49,7 @@ struct Group {
   double alpha = 0;                 ///< of the last step
   double pressure_coefficient = 0;  ///< k of the last step
   double contact_share = 1;         ///< of its pressure that acts between groups
+  double cohesion = 0;              ///< share of its negative pressure
   /// Mean |a_ext| over the unpinned, from the start to the end of every step.
   struct External {
     double start, end, mean;
@@ -101,6 +102,7 @@ class Oracle {
   double judged_acceleration(std::size_t group) const;
   bool counts_steps() const { return config_.update_interval && config_.time_step_factor == 1; }
   double passed_periods(double time) const;
+  double stiffness(const Group& group) const;
   std::vector<std::size_t> update_references();
   void sum_densities();
   Vec pair_acceleration(const Particle& i, const Particle& j) const;

@@ -120,6 +120,25 @@ TEST(contact, a_body_thrown_at_a_floor_touches_it_at_any_speed) {
   }
 }
 
+TEST(energy, is_never_gained_where_a_reference_shape_is_updated) {
+  for (const auto& [pull, alpha] : {std::pair{1.0f, 0.0f}, {2.25f, 0.0f}, {2.5f, 0.0f}, {1.5f, 0.3f}}) {
+    SolverConfig config = solver();
+    config.update_interval = 4;
+    Simulation s(config);
+    s.add_collider({.shape = Plane{}, .friction = 0.3f});
+    s.add_body(cube(6, 10),
+               {.alpha = alpha, .update_threshold = 0.36f, .elastic_time_step = 0.15f * (1 - alpha) / pull});
+    int updates = 0;
+    for (int step = 0; step < 600; ++step) {
+      const double before = s.energy().conserved;
+      if (s.step().updated_references == 0) continue;
+      ++updates;
+      EXPECT_LT(s.energy().conserved, 1.001 * before) << "step " << step << ", pull " << pull;
+    }
+    EXPECT_GT(updates, 30);
+  }
+}
+
 TEST(viscosity, keeps_the_spin_of_a_free_body) {
   for (const float alpha : {0.5f, 1.0f}) {
     SolverConfig config = solver();
