@@ -97,6 +97,10 @@ struct Sample {
     Eigen::Vector3d origin;
     const Mesh mesh = read_mesh(file, origin);
     try {
+      // Before the placed shape's bounds are rounded until they are empty.
+      if (source.placement.center && source.sampling.spacing)
+        if (const auto why = why_too_far(*source.placement.center, *source.sampling.spacing))
+          throw ConfigError("center", *why);
       const ImplicitShape shape = mesh_shape(mesh, k_mesh_voxels, threads);
       Body body = mallow::sample(place(shape, source.placement), source.sampling);
       for (std::string& note : body.notes) note = file.string() + ": " + note;

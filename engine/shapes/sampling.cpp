@@ -253,7 +253,7 @@ std::string why_volume_differs(const ImplicitShape& shape, const Candidate& chos
   std::ostringstream text;
   text << chosen.count << (chosen.count == 1 ? " point" : " points") << " with spacing " << chosen.spacing
        << " stand for a volume of " << filled(double(chosen.count), chosen.spacing) << ", but the shape's is "
-       << *shape.volume << ": the spacing is too large for its thin parts";
+       << *shape.volume << ": the spacing is too large for its size, or for its thin parts";
   // Each try holds twice the points of the one before.
   constexpr int k_tries = 24;
   constexpr std::int64_t k_most_tried = 4'000'000;

@@ -41,6 +41,11 @@ float default_viscosity(const SceneScale& scale, float time_step, const Group& g
   return default_kinematic_viscosity(scale, time_step) * group.mass / volume;
 }
 
+/// That a default k suits [s].
+float pressed_step(const Simulation::State& state) {
+  return std::max(state.base_step(), state.longest_step());
+}
+
 /// Counted at a time: how many multiples of the period have passed.
 double passed_periods(const Simulation::State& state, double time) {
   const double tolerance = k_tolerance * static_cast<double>(state.base_step());
@@ -95,7 +100,7 @@ void resolve_settings(Simulation::State& state) {
 
 float pressure_coefficient(const Simulation::State& state, const Group& group) {
   if (group.material.pressure_coefficient) return *group.material.pressure_coefficient;
-  const float time_step = std::max(state.base_step(), state.longest_step());
+  const float time_step = pressed_step(state);
   return default_pressure_coefficient(state.config.support_radius, group.alpha,
                                       state.stiffness(group) * time_step * time_step, time_step);
 }
@@ -105,7 +110,12 @@ void resolve_pressures(Simulation::State& state) {
     const Group& group = state.groups[g];
     SphGroup& sums = state.sph.groups[g];
     sums.pressure_coefficient = pressure_coefficient(state, group);
-    sums.contact_share = group.material.pressure_coefficient ? 1.0f : contact_share(group.alpha);
+    sums.contact_share = 1;
+    sums.cohesion = group.material.cohesion;
+    if (group.material.pressure_coefficient) continue;
+    sums.contact_share = contact_share(group.alpha);
+    sums.cohesion *=
+        cohesive_share(state.config.support_radius, sums.pressure_coefficient, pressed_step(state));
   }
 }
 

@@ -16,6 +16,8 @@ struct Group;
 float largest_norm(const VectorColumn& vectors);
 /// Share of k that acts between groups where k follows alpha: what makes it that of alpha 1.
 float contact_share(float alpha);
+/// Share of a default k that negative pressures have before cohesion takes its own.
+float cohesive_share(float support_radius, float pressure_coefficient, float time_step);
 
 /// Spacing and speeds -> scale, time_step and its source, if this is the first prepare(); γ_u and μ of every
 /// group.

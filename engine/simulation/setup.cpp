@@ -68,13 +68,14 @@ void describe_groups(Simulation::State& state) {
   double volume = 0;
   for (const Group& group : state.groups) {
     volume += static_cast<double>(group.size()) * std::pow(static_cast<double>(group.spacing), 3);
-    sph.groups.push_back({.mass = group.mass,
-                          .rest_density = group.rest_density,
-                          .rest_volume = group.mass / group.rest_density,
-                          .pressure_coefficient = 0,  // that of the present alpha: resolve_pressures()
-                          .contact_share = 1,
-                          .viscosity = group.viscosity,
-                          .cohesion = group.material.cohesion});
+    sph.groups.push_back(
+        {.mass = group.mass,
+         .rest_density = group.rest_density,
+         .rest_volume = group.mass / group.rest_density,
+         .pressure_coefficient = 0,  // this and the two of pressure follow alpha: resolve_pressures()
+         .contact_share = 1,
+         .viscosity = group.viscosity,
+         .cohesion = 0});
     sph.group_end.push_back(group.end);
     sph.viscous = sph.viscous || group.viscosity > 0;
   }

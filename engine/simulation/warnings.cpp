@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "simulation/settings.h"
@@ -17,6 +19,11 @@ constexpr float k_least_density = 1, k_most_density = 30000;
 constexpr double k_short_steps = 0.5;
 /// Neighbours that slow a step down and show nothing: those of ten spacings.
 constexpr double k_many_neighbors = 4000;
+/// Spacings within which there are the six nearest and the twelve of diagonals: fewer hold no body together.
+constexpr float k_least_radius = 1.45f;
+/// So many particles of other groups within a spacing are inside of these: a lattice has four there on the
+/// mean, and one that touches has one.
+constexpr std::ptrdiff_t k_inside = 3;
 
 class Warnings {
  public:
@@ -29,6 +36,7 @@ class Warnings {
       look_at_limits(group);
       look_at_neighbors(group);
     }
+    if (state_.step == 0 && state_.groups.size() > 1) look_at_overlaps();
     return std::move(list_);
   }
 
@@ -85,9 +93,13 @@ class Warnings {
     if (group.material.pressure_coefficient)
       add(group, "pressure_coefficient ", *group.material.pressure_coefficient, shortens(limits.by_pressure),
           "lower it, or solver.time_step, or raise viscosity");
-    else
+    else if (group.material.viscosity)
       add(group, "viscosity ", group.viscosity, " is too low to calm the pressure that keeps the volume, and",
           shortens(limits.by_pressure), "leave it out, raise it, or give a lower pressure_coefficient");
+    else
+      add(group, "support_radius ", state_.config.support_radius, ", ",
+          state_.config.support_radius / group.spacing, " spacings,", shortens(limits.by_pressure),
+          "2 to 3 spacings are usual, or give a lower pressure_coefficient");
   }
 
   void look_at_neighbors(const Group& group) {
@@ -96,9 +108,39 @@ class Warnings {
       if (each > k_many_neighbors)
         add(group, field, ' ', radius, " is ", radius / group.spacing, " spacings: up to ", each,
             " neighbours each, where 30 to 80 are usual, and steps take that much longer");
+      if (radius < k_least_radius * group.spacing && group.size() > 1)
+        add(group, field, ' ', radius, " is ", radius / group.spacing, " spacings: about ", std::round(each),
+            " neighbours each, where 30 to 80 are usual; so few hold no body together, 2.1 spacings do");
     };
     if (state_.needs_sph()) look("support_radius", state_.config.support_radius, state_.store.size());
     if (group.keeps_reference()) look("the radius of its regions,", group.shape.region_radius, group.size());
+  }
+
+  /// Particles that start within another group, which drives them out.
+  void look_at_overlaps() {
+    float reach = std::numeric_limits<float>::infinity();
+    for (const Group& group : state_.groups) reach = std::min(reach, group.spacing);
+    const std::size_t n = state_.store.size();
+    CellGrid grid;
+    NeighborLists lists;
+    build_cell_grid(state_.store.position, 0, n, reach, state_.threads, state_.level, grid);
+    build_neighbor_lists(grid, reach, state_.threads, state_.level, lists);
+    const auto group_of = [&](std::uint32_t row) {
+      return std::find_if(state_.groups.begin(), state_.groups.end(),
+                          [&](const Group& group) { return row < group.end; });
+    };
+    std::vector<std::size_t> overlapping(state_.groups.size());
+    for (std::size_t s = 0; s < n; ++s) {
+      const auto own = group_of(grid.order[s]);
+      const auto list = lists.of(s);
+      if (std::count_if(list.begin(), list.end(),
+                        [&](std::uint32_t t) { return group_of(grid.order[t]) != own; }) >= k_inside)
+        ++overlapping[static_cast<std::size_t>(own - state_.groups.begin())];
+    }
+    for (std::size_t g = 0; g < overlapping.size(); ++g)
+      if (overlapping[g] > 0)
+        add(state_.groups[g], overlapping[g], " of ", state_.groups[g].size(),
+            " particles start within another group, which drives them out; move one of the bodies");
   }
 
   const Simulation::State& state_;

@@ -189,7 +189,7 @@ TEST(mesh_shape, points_of_walls_thinner_than_the_spacing_are_noted_as_too_few) 
   const Body thin = sample(shape, {.spacing = 0.1f, .jitter = 0});
   ASSERT_EQ(thin.notes.size(), 2u);
   expect_words(thin.notes[1], {"points with spacing 0.1 stand for a volume of ", "but the shape's is 0.96",
-                               "too large for its thin parts; with "});
+                               "too large for its size, or for its thin parts; with "});
   EXPECT_EQ(sample(shape, {.spacing = 0.025f, .jitter = 0}).notes.size(), 1u);
   EXPECT_TRUE(sample(mesh_shape(k_outer, k_voxels), {.spacing = 0.1f}).notes.empty());
   // The volume follows a placement.

@@ -25,10 +25,13 @@ TEST_F(scene_warnings, name_a_film_that_is_many_times_slower_than_real_time_and_
   ASSERT_EQ(slow.size(), 1u);
   EXPECT_EQ(
       slow[0],
-      "run: 30 frames of 0.00143674 s cover 0.0431023 s, and the film of them takes 1 s, 23 times slower; "
+      "run: 30 frames of 0.00143674 s cover 0.0431022 s, and the film of them takes 1 s, 23 times slower; "
       "frame_time = 0.0333333 shows real time");
   EXPECT_TRUE(warnings_of(read(falling("0.003", "0.0063", "-9.81", "frame_time = 0.0333333\n"))).empty());
-  EXPECT_TRUE(warnings_of(read(falling("0.1", "0.21", "-9.81", ""))).empty()) << "four times slower";
+  EXPECT_EQ(warnings_of(read(falling("0.1", "0.21", "-9.81", ""))).size(), 1u)
+      << "four times, without a word";
+  EXPECT_TRUE(warnings_of(read(falling("0.1", "0.21", "-9.81", "frame_time = 0.008\n"))).empty())
+      << "as asked";
   EXPECT_TRUE(warnings_of(read(falling("1.0", "2.1", "-0.3", ""))).empty()) << "free units";
 }
 

@@ -101,6 +101,25 @@ TEST(defaults, are_settled_once) {
   EXPECT_EQ(again.config().time_step, before);
 }
 
+TEST(defaults, keep_a_cohesive_body_together) {
+  for (const float alpha : {0.3f, 0.9f, 1.0f}) {
+    SolverConfig config = in_metres(0.1f);
+    config.gravity = {0, 0, 0};
+    config.time_step = 0.0083f;
+    Simulation s(config);
+    s.add_body(cube(7, 0.1f), {.alpha = alpha, .rest_density = 1000.0f, .cohesion = 1.0f});
+    float fastest = 0, last = 0;
+    for (int k = 0; k < 100; ++k) {
+      s.step();
+      last = 0;
+      for (const Vec3& v : s.velocities_by_id()) last = std::max(last, v.norm());
+      fastest = std::max(fastest, last);
+    }
+    EXPECT_LT(fastest * 0.0083f, 0.4f * 0.1f) << "alpha " << alpha << ", as with the paper's coefficient";
+    EXPECT_LT(last * 0.0083f, 0.1f * 0.1f) << "alpha " << alpha;
+  }
+}
+
 TEST(defaults, do_not_shorten_steps_by_the_speed_of_sound) {
   for (const float alpha : {0.01f, 0.05f, 0.1f, 0.3f, 0.7f, 1.0f}) {
     Simulation s(in_metres(0.1f));
@@ -225,6 +244,22 @@ TEST(warnings, are_none_for_settings_that_are_left_out) {
     s.add_body(cube(4, 0.1f), {.alpha = alpha, .rest_density = 1000.0f});
     EXPECT_TRUE(s.info().warnings.empty()) << s.info().warnings[0];
   }
+}
+
+TEST(warnings, name_groups_that_start_within_each_other) {
+  SolverConfig config = in_metres(0.1f);
+  config.support_radius = 0.21f;
+  Simulation s(config);
+  s.add_body(cube(4, 0.1f), {.rest_density = 1000.0f}, "one");
+  s.add_body(cube(4, 0.1f, {0.25f, 0.05f, 0.05f}), {.rest_density = 1000.0f}, "two");
+  s.add_body(cube(4, 0.1f, {0, 0, 0.45f}), {.rest_density = 1000.0f}, "three, which touches");
+  const std::vector<std::string> all = s.info().warnings;
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].find("group 'one': "), 0u);
+  EXPECT_NE(all[0].find("of 64 particles start within another group"), std::string::npos) << all[0];
+  EXPECT_EQ(all[1].find("group 'two': "), 0u);
+  s.step();
+  EXPECT_TRUE(s.info().warnings.empty()) << "they are on their way";
 }
 
 TEST(warnings, name_what_is_hardly_meant) {

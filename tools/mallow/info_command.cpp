@@ -51,13 +51,13 @@ void print_times(const Scene& scene, const SimulationInfo& info) {
   std::printf("time step        %g s, %s\n", static_cast<double>(info.time_step), source);
   if (info.longest_step != info.time_step) std::printf("longest step     %g s\n", longest);
   if (std::isfinite(info.unlimited_step))
-    std::printf("unlimited up to  %g s\n", info.unlimited_step);
+    std::printf("step limit       %g s, as things are now\n", info.unlimited_step);
   else
-    std::printf("unlimited        at any step\n");
+    std::printf("step limit       none\n");
   std::printf("shape checks     every %g s\n", info.update_period);
-  std::printf("frames           %d of %g s, %.3g steps each%s, %g s in all\n", scene.run.frames, frame,
-              frame / std::min(longest, info.unlimited_step), info.unlimited_step < longest ? " or more" : "",
-              scene.run.frames * frame);
+  const double steps = std::max(1.0, std::ceil(frame / std::min(longest, info.unlimited_step) - 1e-6));
+  std::printf("frames           %d of %g s, %g step%s each or more, %g s in all\n", scene.run.frames, frame,
+              steps, steps == 1 ? "" : "s", scene.run.frames * frame);
 }
 
 void info(const InfoOptions& options) {
@@ -80,6 +80,9 @@ void info(const InfoOptions& options) {
   std::printf("SPH              %s\n", on_off(info.sph));
   std::printf("viscosity        %s\n", on_off(info.viscosity));
   std::printf("group contact    %s\n", on_off(info.cross_group));
+  const Vec3& gravity = scene.solver.gravity;
+  std::printf("gravity          %g %g %g m/s2\n", static_cast<double>(gravity.x()),
+              static_cast<double>(gravity.y()), static_cast<double>(gravity.z()));
   std::printf("colliders        %zu\n", scene.colliders.size());
   std::printf("pins             %zu\n", scene.pins.size());
   std::printf("instructions     %s\n", name(info.instruction_level));

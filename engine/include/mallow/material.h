@@ -54,7 +54,8 @@ struct Material {
   std::optional<float> particle_mass = {};
   /// ρ0 [kg/m³], > 0. Left out: follows from particle_mass, so that a full lattice is at rest pressure.
   std::optional<float> rest_density = {};
-  /// Share of a negative pressure that acts, in [0, 1].
+  /// Share of a negative pressure that acts, in [0, 1]. Where pressure_coefficient is left out it is that of a k
+  /// of 0.08 σ²/Δt² at most, as soft as the paper's: the pull of a stiffer one tears bodies apart.
   float cohesion = 0.0f;
   /// Radius of the shape matching regions [m], > 0; left out: the solver's support_radius. [TK eq. 7]
   std::optional<float> region_radius = {};
