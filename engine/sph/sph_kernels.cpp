@@ -73,10 +73,14 @@ void density(const SphInput& in, std::size_t begin, std::size_t end, const NearL
   }
 }
 
-/// Both formulations are a_i = (F/ρ_i) Σ_j V_j t (push (x_i − x_j) + drag v), each with its own falloff t. v
-/// is the velocity of j, or the part along the pair of that relative to i's.
-struct Pair {
-  Floats t, push, drag;
+/// Of eight i beside one j: both formulations are a_i = (F/ρ_i) Σ_j V_j t (...), each with its own falloff t.
+struct Sides {
+  Floats own_pressure;
+  float pressure, volume;  ///< p_j, V_j
+  Floats viscosity;        ///< μ_i + μ_j, twice their mean
+  /// Volume of j in the viscous term of Conservative, times the share of each i there, see sum_pairs().
+  Floats viscous_volume;
+  Floats3 velocity;  ///< v_j − v_i, or v_j
 };
 
 /// What squared distances are at least when something is divided by them: far below those of particles that
@@ -105,10 +109,19 @@ struct Conservative {
     // push in.
     return {d, square_root(r2), 1.0f / larger(r2, all(k_least))};
   }
-  MALLOW_INLINE Pair pair(const SphInput& in, const Separation& apart, const Floats& own_pressure,
-                          float pressure, const Floats& viscosities) {
+
+  /// What both terms share is taken last: t/r² times (x_i − x_j).
+  template <bool viscous>
+  MALLOW_INLINE Floats3 acceleration(const SphInput& in, const Separation& apart, const Sides& sides) {
+    const Floats3& d = apart.d;
     const Floats t = not_negative(in.radius - apart.r);
-    return {t, (own_pressure + pressure) * t * (apart.r * apart.inverse_square), 5.0f * viscosities};
+    Floats push = (sides.volume * (sides.own_pressure + sides.pressure)) * (t * apart.r);
+    if (viscous) {
+      const Floats3& w = sides.velocity;
+      push -= sides.viscous_volume * (5.0f * sides.viscosity) * (w.x * d.x + w.y * d.y + w.z * d.z);
+    }
+    push *= t * apart.inverse_square;
+    return {-(push * d.x), -(push * d.y), -(push * d.z)};
   }
 };
 
@@ -118,11 +131,15 @@ struct Printed {
   static float factor(const SphInput& in) { return in.poly6_gradient; }
 
   MALLOW_INLINE Separation separate(const Floats3& d) { return {d, Floats{}, Floats{}}; }
-  MALLOW_INLINE Pair pair(const SphInput& in, const Separation& apart, const Floats&, float pressure,
-                          const Floats& viscosities) {
-    const Floats q2 = squared_length(apart.d) * (in.inverse_radius * in.inverse_radius);
-    const Floats t = not_negative(1.0f - q2);
-    return {t, pressure * t, -0.5f * viscosities * (3.0f - 7.0f * q2)};
+
+  template <bool viscous>
+  MALLOW_INLINE Floats3 acceleration(const SphInput& in, const Separation& apart, const Sides& sides) {
+    const Floats3 &d = apart.d, &w = sides.velocity;
+    const Floats q2 = squared_length(d) * (in.inverse_radius * in.inverse_radius);
+    const Floats t = not_negative(1.0f - q2), weight = sides.volume * t, push = weight * (sides.pressure * t);
+    if (!viscous) return {-(push * d.x), -(push * d.y), -(push * d.z)};
+    const Floats drag = weight * (-0.5f * sides.viscosity * (3.0f - 7.0f * q2));
+    return {drag * w.x - push * d.x, drag * w.y - push * d.y, drag * w.z - push * d.z};
   }
 };
 
@@ -130,13 +147,6 @@ MALLOW_INLINE void add(const Ints& mask, const Floats3& value, Floats3& sum) {
   sum.x += where(mask, value.x);
   sum.y += where(mask, value.y);
   sum.z += where(mask, value.z);
-}
-
-/// Of the groups of eight particles.
-Floats contact_shares(const SphInput& in, const Ints& groups) {
-  Floats shares = {};
-  for (std::size_t lane = 0; lane < k_cluster; ++lane) shares[lane] = in.groups[groups[lane]].contact_share;
-  return shares;
 }
 
 /// Σ_j of a cluster's pairs within their groups and with others, without F/ρ.
@@ -153,11 +163,14 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
   if (viscous && Formula::central) v = load_vectors(in.velocity, first);
   Ints own = Ints{} + (grouped ? in.group[first] : 0);  // lanes without a particle too
   Floats own_viscosity = all(in.groups[0].viscosity), own_rest = all(in.groups[0].rest_volume);
+  Floats touching_pressure = {};
   if (grouped) {
     for (std::size_t i = first; i < in.cluster_start[cluster + 1]; ++i) {
+      const SphGroup& group = in.groups[in.group[i]];
       own[i - first] = in.group[i];
-      own_viscosity[i - first] = in.groups[in.group[i]].viscosity;
-      own_rest[i - first] = in.groups[in.group[i]].rest_volume;
+      own_viscosity[i - first] = group.viscosity;
+      own_rest[i - first] = group.rest_volume;
+      touching_pressure[i - first] = pressures[i] * group.contact_share;
     }
   }
   // Where there are few neighbours, viscosity takes the rest density for the density: with its own a thin
@@ -165,33 +178,20 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
   const Floats own_volume = load(volumes + first);
   const Floats own_share = smaller(own_rest / larger(own_volume, all(k_least)), all(1.0f));
   const auto add_pairs = [&](std::uint32_t j, const Separation& apart) {
-    const int group = grouped ? in.group[j] : 0;
-    const Floats3& d = apart.d;
-    const Pair pair =
-        Formula::pair(in, apart, own_pressure, pressures[j], own_viscosity + in.groups[group].viscosity);
-    const Floats weight = volumes[j] * pair.t;
-    const Floats3 w = viscous ? difference(in.velocity, j, v) : Floats3{};
-    const float rest = in.groups[group].rest_volume;
-    // push: of pressure.
-    const auto acceleration = [&](Floats push) -> Floats3 {
-      if (viscous && Formula::central) {
-        const Floats drag = own_share * ((volumes[j] < rest ? volumes[j] : rest) * pair.t) * pair.drag;
-        push -= drag * ((w.x * d.x + w.y * d.y + w.z * d.z) * apart.inverse_square);
-      }
-      if (!viscous || Formula::central) return {-(push * d.x), -(push * d.y), -(push * d.z)};
-      const Floats drag = weight * pair.drag;
-      return {drag * w.x - push * d.x, drag * w.y - push * d.y, drag * w.z - push * d.z};
-    };
-    const Floats3 a = acceleration(weight * pair.push);
+    const int number = grouped ? in.group[j] : 0;
+    const SphGroup& group = in.groups[number];
+    Sides sides{own_pressure, pressures[j], volumes[j], own_viscosity + group.viscosity, {}, {}};
+    if (viscous) sides.velocity = difference(in.velocity, j, v);
+    if (viscous && Formula::central)
+      sides.viscous_volume = own_share * (volumes[j] < group.rest_volume ? volumes[j] : group.rest_volume);
+    const Floats3 a = Formula::template acceleration<viscous>(in, apart, sides);
     // Where groups do not touch, which is nearly everywhere, the branch is foreseen.
-    const Ints alike = is_equal(own, group);
+    const Ints alike = is_equal(own, number);
     if (grouped && any(~alike)) {
       add(alike, a, same);
-      const SphGroup& other = in.groups[group];
-      const Pair touching =
-          Formula::pair(in, apart, own_pressure * contact_shares(in, own), pressures[j] * other.contact_share,
-                        own_viscosity + other.viscosity);
-      add(~alike, acceleration(weight * touching.push), cross);
+      sides.own_pressure = touching_pressure;
+      sides.pressure *= group.contact_share;
+      add(~alike, Formula::template acceleration<viscous>(in, apart, sides), cross);
     } else {
       same = {same.x + a.x, same.y + a.y, same.z + a.z};
     }
