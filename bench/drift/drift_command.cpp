@@ -1,5 +1,6 @@
 #include "drift/drift_command.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <memory>

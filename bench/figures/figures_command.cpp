@@ -1,5 +1,6 @@
 #include "figures/figures_command.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,7 @@
 #include "harness/command.h"
 
+#include <CLI/CLI.hpp>
+
 #include "mallow/errors.h"
 #include "mallow/failure.h"
 #include "mallow/interrupt.h"

@@ -1,12 +1,15 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "harness/results.h"
+
+namespace CLI {
+class App;
+}
 
 namespace mallow::bench {
 

@@ -1,5 +1,6 @@
 #include "kernels/kernels_command.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 

@@ -1,5 +1,6 @@
 #include "stability/stability_command.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>

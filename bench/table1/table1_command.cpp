@@ -1,5 +1,6 @@
 #include "table1/table1_command.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>

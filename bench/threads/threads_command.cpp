@@ -1,5 +1,6 @@
 #include "threads/threads_command.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <functional>
 #include <memory>

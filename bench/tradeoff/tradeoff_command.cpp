@@ -1,5 +1,6 @@
 #include "tradeoff/tradeoff_command.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 

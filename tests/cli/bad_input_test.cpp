@@ -1,6 +1,7 @@
 #include "cli/program.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 namespace mallow::test {
 namespace {

@@ -1,4 +1,5 @@
 #include <sys/mount.h>
+#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <csignal>

@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 #include "mallow/external_program.h"

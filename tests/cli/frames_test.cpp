@@ -1,3 +1,4 @@
+#include <nlohmann/json.hpp>
 // Frame k of a run shows the time k · frame_time, whatever the steps are, and all that a run writes says so.
 #include <array>
 #include <cstdio>

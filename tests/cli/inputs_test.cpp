@@ -1,5 +1,7 @@
 #include "cli/program.h"
 
+#include <nlohmann/json.hpp>
+
 namespace mallow::test {
 namespace {
 

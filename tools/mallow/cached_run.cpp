@@ -1,6 +1,7 @@
 #include "mallow/cached_run.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "mallow/errors.h"

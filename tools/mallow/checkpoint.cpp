@@ -1,6 +1,7 @@
 #include "mallow/checkpoint.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "mallow/errors.h"
 #include "mallow/files.h"

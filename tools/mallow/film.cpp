@@ -1,5 +1,6 @@
 #include "mallow/film.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <vector>
 

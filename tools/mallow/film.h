@@ -1,10 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 
 #include "mallow/cache.h"
+
+namespace CLI {
+class App;
+}
 
 namespace mallow::cli {
 

@@ -1,5 +1,6 @@
 #include "mallow/program.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -44,8 +44,8 @@ struct RunReport {
   std::vector<std::string> group_materials;  ///< name of each group's material
 
   bool complete = false;
-  std::string error;  ///< why the run ended early; empty where it did not
-  int frames = 0;     ///< frames of the film after frame 0
+  std::string error;      ///< why the run ended early; empty where it did not
+  int frames = 0;         ///< frames of the film after frame 0
   double frame_time = 0;  ///< simulated time from one to the next [s]
   std::int64_t steps = 0;
   double simulated_time = 0;  ///< [s]

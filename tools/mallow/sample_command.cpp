@@ -1,5 +1,6 @@
 #include "mallow/sample_command.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>

@@ -1,5 +1,6 @@
 #include "mallow/scene_options.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
 #include <string>
