@@ -4,14 +4,14 @@
 #include <sstream>
 
 #include "mallow/scene.h"
+#include "simulation/settings.h"
 
 namespace mallow {
 namespace {
 
 /// A film slower than this share of real time is hardly meant, and one whose frame_time is left out slower
-/// than that, if gravity is in metres and seconds, that is, between these [m/s²].
+/// than that, where seconds are seconds.
 constexpr double k_slowest_film = 0.1, k_slowest_by_default = 0.5;
-constexpr double k_least_gravity = 1.5, k_most_gravity = 30;
 
 /// Of what a scene says moves from the start [m/s].
 double fastest(const Scene& scene) {
@@ -39,7 +39,7 @@ std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info
   if (way > 0 && way < spacing)
     text << ", in which nothing falls or flies farther than " << way << " m, less than the spacing of "
          << spacing << " m; give more frames, or a longer frame_time";
-  else if (gravity >= k_least_gravity && gravity <= k_most_gravity &&
+  else if (is_in_metres(scene.solver.gravity) &&
            seconds < (scene.run.frame_time ? k_slowest_film : k_slowest_by_default) * film)
     text << ", and the film of them takes " << film << " s, " << std::round(film / seconds)
          << " times slower; frame_time = " << 1.0 / scene.render.frames_per_second << " shows real time";

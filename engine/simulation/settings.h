@@ -53,6 +53,8 @@ struct MaterialLimits {
   double by_viscosity;  ///< which diffuses
 };
 MaterialLimits material_limits(const Simulation::State& state, const Group& group);
+/// Whether gravity is that of a planet or moon in metres and seconds, by its size.
+bool is_in_metres(const Vec3& gravity);
 /// What can be run, but is hardly meant. alpha and defaults are settled.
 std::vector<std::string> warnings(const Simulation::State& state);
 /// The longest step that no limit shortens, as fast as things are now [s].

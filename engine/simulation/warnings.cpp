@@ -11,9 +11,7 @@ namespace {
 
 /// Weight and rest make a mean |a_ext| of up to about this many |g|.
 constexpr float k_resting = 2;
-/// Between these gravity is that of a planet in metres and seconds [m/s²], and matter has a density that
-/// there is: from foam to the heaviest metals [kg/m³].
-constexpr float k_least_gravity = 1.5f, k_most_gravity = 30;
+/// From foam to the heaviest metals [kg/m³].
 constexpr float k_least_density = 1, k_most_density = 30000;
 /// Share of the longest step to which a limit may shorten all of them.
 constexpr double k_short_steps = 0.5;
@@ -65,8 +63,8 @@ class Warnings {
   }
 
   void look_at_density(const Group& group) {
-    const float gravity = state_.config.gravity.norm(), density = group.rest_density;
-    if (gravity < k_least_gravity || gravity > k_most_gravity) return;
+    const float density = group.rest_density;
+    if (!is_in_metres(state_.config.gravity)) return;
     if (density >= k_least_density && density <= k_most_density) return;
     std::ostringstream source;
     if (group.material.rest_density)
@@ -125,17 +123,15 @@ class Warnings {
     NeighborLists lists;
     build_cell_grid(state_.store.position, 0, n, reach, state_.threads, state_.level, grid);
     build_neighbor_lists(grid, reach, state_.threads, state_.level, lists);
-    const auto group_of = [&](std::uint32_t row) {
-      return std::find_if(state_.groups.begin(), state_.groups.end(),
-                          [&](const Group& group) { return row < group.end; });
-    };
+    std::vector<std::size_t> group_of(n);
+    for (std::size_t g = 0; g < state_.groups.size(); ++g)
+      for (std::size_t row = state_.groups[g].begin; row < state_.groups[g].end; ++row) group_of[row] = g;
     std::vector<std::size_t> overlapping(state_.groups.size());
     for (std::size_t s = 0; s < n; ++s) {
-      const auto own = group_of(grid.order[s]);
+      const std::size_t own = group_of[grid.order[s]];
       const auto list = lists.of(s);
-      if (std::count_if(list.begin(), list.end(),
-                        [&](std::uint32_t t) { return group_of(grid.order[t]) != own; }) >= k_inside)
-        ++overlapping[static_cast<std::size_t>(own - state_.groups.begin())];
+      const auto is_another = [&](std::uint32_t t) { return group_of[grid.order[t]] != own; };
+      if (std::count_if(list.begin(), list.end(), is_another) >= k_inside) ++overlapping[own];
     }
     for (std::size_t g = 0; g < overlapping.size(); ++g)
       if (overlapping[g] > 0)
@@ -148,6 +144,12 @@ class Warnings {
 };
 
 }  // namespace
+
+bool is_in_metres(const Vec3& gravity) {
+  constexpr float k_moon = 1.5f, k_jupiter = 30;  // [m/s²]
+  const float size = gravity.norm();
+  return size >= k_moon && size <= k_jupiter;
+}
 
 std::vector<std::string> warnings(const Simulation::State& state) {
   return Warnings(state).list();
