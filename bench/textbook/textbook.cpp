@@ -242,8 +242,10 @@ void Textbook::choose_time_step(Step& step) const {
   for (std::size_t id = 0; id < particles_.size(); ++id) {
     const Particle& p = particles_[id];
     if (p.pinned) continue;
+    const Group& group = groups_[p.group];
+    const double share = group.material.pressure_coefficient ? 1 : group.alpha;
     const double velocity =
-        (p.velocity + longest_step_ * (p.sph_acceleration + p.external_acceleration)).norm();
+        (p.velocity + longest_step_ * (share * p.sph_acceleration + p.external_acceleration)).norm();
     // Not `>`: a velocity that is not a number must win, so that it is seen.
     if (velocity <= step.max_velocity || std::isnan(step.max_velocity)) continue;
     step.max_velocity = velocity;
@@ -259,6 +261,9 @@ void Textbook::choose_time_step(Step& step) const {
 
 // Sections 4 and 5 of the model [TK eq. 10, 11, 13].
 void Textbook::move_particles(double time_step) {
+  // From the middle of the last step to the middle of this one.
+  const double last_step = time_ - last_start_;
+  const double pull_time = steps_ > 0 ? (last_step + time_step) / 2 : time_step;
   for (Particle& p : particles_) {
     const Group& group = groups_[p.group];
     p.contact_acceleration = Vec::Zero();
@@ -267,7 +272,7 @@ void Textbook::move_particles(double time_step) {
     } else {
       const Vec before = p.velocity;
       p.velocity += time_step * (p.external_acceleration + group.alpha * p.sph_acceleration);
-      if (group.alpha < 1) p.velocity += time_step * stiffness(group) * (p.goal - p.position);
+      if (group.alpha < 1) p.velocity += pull_time * stiffness(group) * (p.goal - p.position);
       const Vec blended = p.velocity;
       const ContactStep contact{
           .time_step = time_step,

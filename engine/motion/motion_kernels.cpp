@@ -96,7 +96,8 @@ float fastest(const ForcesInput& in, std::size_t begin, std::size_t end) noexcep
   Lanes most = all_lanes(-1);
   LaneMask undefined = {};
   for_rows(begin, end, [&](auto rows) {
-    LaneVec3 a = get(rows, in.sph_acceleration);
+    const LaneVec3 sph = get(rows, in.sph_acceleration);
+    LaneVec3 a = {in.sph_factor * sph.x, in.sph_factor * sph.y, in.sph_factor * sph.z};
     add(gravity(in), a);
     LaneVec3 v = get(rows, in.velocity);
     add(all_lanes(in.time_step), external_acceleration(in, rows, a), v);

@@ -51,9 +51,10 @@ double pressure_limit(const TimeStepLimits::Pressure& pressure, double support_r
 
 }  // namespace
 
-Fastest fastest_particle(const ParticleStore& store, float time_step, const VectorColumn& sph_acceleration,
-                         const Vec3& gravity, const VectorColumn* cross_group, const VectorColumn* user,
-                         const Threads& threads, InstructionLevel level, std::vector<Fastest>& partial) {
+Fastest fastest_particle(const ParticleStore& store, std::size_t begin, std::size_t end, float time_step,
+                         const VectorColumn& sph_acceleration, float share, const Vec3& gravity,
+                         const VectorColumn* cross_group, const VectorColumn* user, const Threads& threads,
+                         InstructionLevel level, std::vector<Fastest>& partial) {
   const MotionKernels& kernels = MALLOW_SELECT(level, motion_kernels);
   const ForcesInput forces{.position = {},
                            .velocity = raw(store.velocity),
@@ -65,7 +66,7 @@ Fastest fastest_particle(const ParticleStore& store, float time_step, const Vect
                            .pin = store.pin.empty() ? nullptr : store.pin.data(),
                            .gravity = {gravity[0], gravity[1], gravity[2]},
                            .time_step = time_step,
-                           .sph_factor = 0,
+                           .sph_factor = share,
                            .elastic_factor = 0};
   const auto faster = [](const Fastest& a, const Fastest& b) {
     // Not `>`: a velocity that is not a number must win, so that it is seen.
@@ -73,13 +74,14 @@ Fastest fastest_particle(const ParticleStore& store, float time_step, const Vect
   };
   // Of each block the speed; whose it is, is asked of one block only.
   Fastest fastest = parallel_reduce(
-      threads, store.size(), partial, Fastest{},
-      [&](std::size_t begin, std::size_t end) {
-        return Fastest{kernels.fastest(forces, begin, end), static_cast<std::uint32_t>(begin)};
+      threads, end - begin, partial, Fastest{},
+      [&](std::size_t first, std::size_t last) {
+        return Fastest{kernels.fastest(forces, begin + first, begin + last),
+                       static_cast<std::uint32_t>(begin + first)};
       },
       faster);
-  fastest.row = static_cast<std::uint32_t>(row_of(fastest.squared_velocity, forces, kernels, fastest.row,
-                                                  std::min(store.size(), fastest.row + k_block)));
+  fastest.row = static_cast<std::uint32_t>(
+      row_of(fastest.squared_velocity, forces, kernels, fastest.row, std::min(end, fastest.row + k_block)));
   return fastest;
 }
 

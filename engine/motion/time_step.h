@@ -17,11 +17,12 @@ struct Fastest {
   std::uint32_t row = 0;
 };
 
-/// V = max |v + Δt0 (a^SPH + a_ext)|, contact not in a_ext. [model 3, TK eq. 12]
-/// external: gravity is `gravity`, user forces and other groups are columns or null.
-Fastest fastest_particle(const ParticleStore& store, float time_step, const VectorColumn& sph_acceleration,
-                         const Vec3& gravity, const VectorColumn* cross_group, const VectorColumn* user,
-                         const Threads& threads, InstructionLevel level, std::vector<Fastest>& partial);
+/// V = max |v + Δt0 (share a^SPH + a_ext)| of the rows [begin, end), contact not in a_ext. [model 3, TK eq.
+/// 12] external: gravity is `gravity`, user forces and other groups are columns or null.
+Fastest fastest_particle(const ParticleStore& store, std::size_t begin, std::size_t end, float time_step,
+                         const VectorColumn& sph_acceleration, float share, const Vec3& gravity,
+                         const VectorColumn* cross_group, const VectorColumn* user, const Threads& threads,
+                         InstructionLevel level, std::vector<Fastest>& partial);
 
 /// What bounds the step beside V.
 struct TimeStepLimits {

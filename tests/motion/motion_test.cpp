@@ -150,7 +150,8 @@ TEST(fastest_particle, sees_numbers_that_are_not_finite_and_passes_over_pinned_o
   std::vector<Fastest> partial;
   for (const InstructionLevel level : levels()) {
     const auto find = [&] {
-      return fastest_particle(store, 0.1f, none, {0, 0, 0}, nullptr, nullptr, 2, level, partial);
+      return fastest_particle(store, 0, store.size(), 0.1f, none, 1, {0, 0, 0}, nullptr, nullptr, 2, level,
+                              partial);
     };
     store.velocity.set(20, v[20]);
     EXPECT_EQ(find().row, 300u);
@@ -175,9 +176,10 @@ TEST(fastest_particle, is_not_there_where_all_are_pinned) {
   const VectorColumn none(20);
   std::vector<Fastest> partial;
   for (const InstructionLevel level : levels())
-    EXPECT_EQ(
-        fastest_particle(store, 0.1f, none, {0, 0, 1}, nullptr, nullptr, 1, level, partial).squared_velocity,
-        -1);
+    EXPECT_EQ(fastest_particle(store, 0, store.size(), 0.1f, none, 1, {0, 0, 1}, nullptr, nullptr, 1, level,
+                               partial)
+                  .squared_velocity,
+              -1);
 }
 
 TEST(move_colliders, takes_every_part_of_a_union_along) {

@@ -327,7 +327,9 @@ bool Oracle::sph_acts() const {
 double Oracle::max_velocity() const {
   double max = 0;
   for (const Particle& p : particles_) {
-    if (!p.pinned) max = std::max(max, (p.v + longest_ * (p.sph + p.external)).norm());
+    const Group& group = groups_[p.group];
+    const double share = group.material.pressure_coefficient ? 1 : group.alpha;
+    if (!p.pinned) max = std::max(max, (p.v + longest_ * (share * p.sph + p.external)).norm());
   }
   return max;
 }
@@ -424,6 +426,8 @@ void Oracle::touch(const Obstacle& obstacle, const Particle& particle, const Vec
 
 // Section 4.
 void Oracle::move(double dt) {
+  // The pull's: from the middle of the last step to the middle of this one.
+  const double pull_time = steps_ > 0 ? (time_ - last_start_ + dt) / 2 : dt;
   for (Particle& p : particles_) {
     const Group& group = groups_[p.group];
     p.contact = Vec::Zero();
@@ -432,7 +436,7 @@ void Oracle::move(double dt) {
     } else {
       const Vec before = p.v;
       p.v += dt * p.external + group.alpha * dt * p.sph;
-      if (!is_always_fluid(group)) p.v += dt * stiffness(group) * (p.goal - p.x);
+      if (!is_always_fluid(group)) p.v += pull_time * stiffness(group) * (p.goal - p.x);
       const Vec blended = p.v;
       for (const Obstacle& obstacle : obstacles_) touch(obstacle, p, before, dt, p.v);
       p.contact = (p.v - blended) / dt;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <random>
 
 #include "mallow/quality.h"
 #include "mallow/simulation.h"
@@ -117,6 +118,52 @@ TEST(contact, a_body_thrown_at_a_floor_touches_it_at_any_speed) {
       ASSERT_GE(lowest, 0.4999f) << speed;
     }
     EXPECT_NEAR(lowest, 0.5f, 1e-4f) << speed;
+  }
+}
+
+TEST(energy, of_a_body_as_stiff_as_its_step_hardly_grows_where_steps_vary_at_random) {
+  for (const unsigned seed : {3u, 4u}) {
+    SolverConfig config = solver();
+    config.gravity.setZero();
+    Simulation s(config);
+    Body body = cube(5, 0);
+    for (const Vec3& x : body.positions)
+      body.velocities.push_back(0.3f * (x - Vec3(2.5f, 2.5f, 2.5f)).cwiseProduct(Vec3(1, -1, 0.5f)));
+    s.add_body(body, Material{});
+    std::mt19937 random(seed);
+    s.step();
+    const double start = s.energy().conserved;
+    double largest = 0;
+    for (int step = 0; step < 2000; ++step) {
+      const double share = 0.55 + 0.45 * static_cast<double>(random()) / 4294967296.0;
+      s.step_towards(s.time() + share * 0.15);
+      largest = std::max(largest, s.energy().conserved / start);
+    }
+    // 5 and 575 with the whole step in place of the mean of two.
+    EXPECT_LT(largest, 1.4);
+  }
+}
+
+TEST(energy, of_a_stiff_jelly_does_not_grow_where_limits_vary_its_steps) {
+  // The bodies of this test boiled, at 3 times their energy.
+  for (const float height : {13.0f, 13.4f, 13.6f}) {
+    SolverConfig config{
+        .time_step_factor = 1.5f, .support_radius = 0.45f, .gravity = {0, 0, -981}, .threads = 1};
+    Simulation s(config);
+    s.add_collider({.shape = Box{{-12, -6, 0}, {8, 6, 0.5f}}, .velocity = {4, 0, 0}, .friction = 0.5f});
+    s.add_body(
+        sample(place(implicit_shape("moai"), {.size = 6.0f, .center = Vec3(0, 0, height)}), {.count = 2500}),
+        {.alpha = 0.05f});
+    s.step();
+    const double start = s.energy().conserved;
+    double largest = 0;
+    bool limited = false;
+    while (s.time() < 0.6) {
+      limited = s.step().limited || limited;
+      if (s.step_count() % 10 == 0) largest = std::max(largest, s.energy().conserved / start);
+    }
+    EXPECT_TRUE(limited);
+    EXPECT_LT(largest, 1.02) << "from " << height;
   }
 }
 
