@@ -91,7 +91,7 @@ std::vector<Run> run_takes(const Figure& figure, const FiguresOptions& options, 
                  if (!sheet) return;
                  if (number == 0) {
                    std::vector<float> spacings;
-                   for (const GroupInfo& group : info.groups) spacings.push_back(group.spacing);
+                   for (const BodyInfo& body : info.bodies) spacings.push_back(body.spacing);
                    sheet->begin_take(scene, frame, spacings);
                  }
                  if (std::ranges::find(figure.moments, number) != figure.moments.end()) sheet->add(frame);

@@ -8,15 +8,15 @@ namespace mallow::bench {
 namespace {
 
 Json about(const Take& take, const Scene& scene, const SimulationInfo& info) {
-  const GroupInfo& group = info.groups.front();
+  const BodyInfo& body = info.bodies.front();
   return {{"take", take.name},
           {"scene", take.scene},
           {"overrides", take.overrides},
           {"particles", info.particles},
-          {"spacing", group.spacing},
+          {"spacing", body.spacing},
           {"support_radius", scene.solver.support_radius},
-          {"region_radius", group.region_radius},
-          {"average_neighbors", group.average_neighbors},
+          {"region_radius", body.region_radius},
+          {"average_neighbors", body.average_neighbors},
           {"alpha", scene.materials.front().material.alpha.at(0)},
           {"steps", scene.run.frames}};
 }
@@ -27,7 +27,7 @@ Run record(const Figure& figure, const Take& take, int threads, const FrameVisit
   const Scene scene = read_scene(data_file("scenes/" + take.scene), take.overrides);
   Simulation simulation = build(scene, threads);
   const SimulationInfo info = simulation.info();
-  const double spacing = static_cast<double>(info.groups.front().spacing);
+  const double spacing = static_cast<double>(info.bodies.front().spacing);
   Run run{.recording = {.spacing = spacing, .curves = {}}, .times = {}, .about = about(take, scene, info)};
 
   const std::vector<Vec3> start = simulation.positions_by_id();

@@ -18,6 +18,7 @@ constexpr std::size_t k_cached_rows = 256;
 struct RegionScene {
   VectorColumn x;
   ShapeMatching shape;
+  MatchedBodies matched;  ///< this one
   ShapeInput input;
   Column<float> sums;            ///< as the first sum leaves them
   Column<float> particle_table;  ///< of the rows of particles; that of the regions is where the shape has it
@@ -26,33 +27,20 @@ struct RegionScene {
     RegionScratch scratch;
     shape.region_radius = scene.radius;
     shape.spacing = scene.spacing;
-    update_reference(x, 0, x.size(), 1, shape);
+    update_reference(x, 0, x.size(), 1, scratch, shape);
     sort_reference(1, scratch.columns, shape);
     x = reordered(x, scratch.columns.order.span());
     build_regions(1, level, scratch, shape);
     x = bent(x);
-    sum_regions(x, 0, 1, level, shape);
+    matched.add(shape, 0);
+    sum_regions(x, 1, level, matched);
     sums.resize(shape.sums.size());
     std::copy(shape.sums.begin(), shape.sums.end(), sums.begin());
     particle_table.resize(shape.table.size());
     std::copy(shape.table.begin(), shape.table.end(), particle_table.begin());
-    solve_rotations(x, 0, k_enough_iterations, 1, level, shape);
-    compute_goals(x, 0, 1, level, shape);
-    const RegionLists lists{shape.regions.begin.data(), shape.regions.count.data(),
-                            shape.regions.entries.data(), false};
-    input = {.regions = lists,
-             .memberships = lists,
-             .position = raw(std::as_const(x)),
-             .reference = raw(std::as_const(shape.reference)),
-             .weight = shape.weight.data(),
-             .region_weight = shape.region_weight.data(),
-             .center = raw(std::as_const(shape.center)),
-             .moment = {},
-             .frame_rotation = {},
-             .frame_translation = {}};
-    const Eigen::Matrix3f rotation = shape.frame.rotation.toRotationMatrix().cast<float>();
-    for (int i = 0; i < 9; ++i) input.frame_rotation[i] = rotation(i / 3, i % 3);
-    for (int i = 0; i < 3; ++i) input.frame_translation[i] = static_cast<float>(shape.frame.translation[i]);
+    solve_rotations(k_enough_iterations, 1, level, matched);
+    compute_goals(1, level, matched);
+    input = shape_input(x, 0, shape);
   }
   const float* region_table() const {
     return shape.regions.lengths.levels > 1 ? shape.table.data() : shape.sums.data();
@@ -84,14 +72,10 @@ Timed on_rows(const LatticeScene& lattice, int threads, InstructionLevel level, 
 }
 
 /// A phase of the step, whole.
-using PhaseFunction = void (*)(const VectorColumn&, std::size_t, const Threads&, InstructionLevel,
-                               ShapeMatching&);
-
-Timed phase(const LatticeScene& lattice, int threads, InstructionLevel level, PhaseFunction run) {
+template <class Phase>
+Timed phase(const LatticeScene& lattice, InstructionLevel level, const Phase& run) {
   const auto scene = std::make_shared<RegionScene>(lattice, level);
-  return {.run = [=] { run(scene->x, 0, threads, level, scene->shape); },
-          .items = scene->neighbors(),
-          .about = scene->about()};
+  return {.run = [=] { run(*scene); }, .items = scene->neighbors(), .about = scene->about()};
 }
 
 /// As many rows as the regions of the scene have neighbours, from a table of `rows` rows, swept from its
@@ -142,14 +126,18 @@ void add_level(const LatticeScene& scene, int threads, InstructionLevel level, K
                    });
   });
   // With the rigid frame and the rows.
-  set.add(compared("region_sums_phase"), [=] { return phase(scene, threads, level, sum_regions); });
+  set.add(compared("region_sums_phase"), [=] {
+    return phase(scene, level, [=](RegionScene& of) { sum_regions(of.x, threads, level, of.matched); });
+  });
   set.add(compared("goals"), [=] {
     return on_rows(scene, threads, level, true,
                    [](const ShapeKernels& k, RegionScene& s, std::size_t begin, std::size_t end) {
                      k.goals(s.input, begin, end, s.region_table(), raw(s.shape.pull));
                    });
   });
-  set.add(compared("goals_phase"), [=] { return phase(scene, threads, level, compute_goals); });
+  set.add(compared("goals_phase"), [=] {
+    return phase(scene, level, [=](RegionScene& of) { compute_goals(threads, level, of.matched); });
+  });
 }
 
 }  // namespace

@@ -37,10 +37,10 @@ struct SphScene {
     sph.factors = kernel_factors(radius);
     sph.viscous = kind != Pairs::pressure;
     sph.groups = {group};
-    sph.group_end = {n};
+    sph.bodies = {{n, 0}};
     if (kind == Pairs::grouped) {
       sph.groups.push_back(group);
-      sph.group_end = {n / 2, n};
+      sph.bodies = {{n / 2, 0}, {n, 1}};
     }
     sph.grid.spacing = scene.spacing;
     find_neighbors(x, threads, level, sph);

@@ -28,7 +28,7 @@ SurfaceScene cube_scene(const LatticeScene& lattice) {
 SurfaceScene balls_scene() {
   const Scene scene = read_scene(data_file("scenes/table1/balls_8264.toml"));
   Simulation simulation = build(scene, 1);
-  return {simulation.positions_by_id(), simulation.info().groups.front().spacing, scene.surface};
+  return {simulation.positions_by_id(), simulation.info().bodies.front().spacing, scene.surface};
 }
 
 /// What is drawn again and again, with memory that stays.

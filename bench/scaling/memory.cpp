@@ -68,7 +68,7 @@ double needed_bytes_per_particle(const std::vector<std::string>& materials, int 
     const SimulationInfo info = simulation.info();
     const double bytes = static_cast<double>(info.bytes) / static_cast<double>(cube.particles());
     most = std::max(
-        most, k_margin * bytes + k_body_bytes + (info.groups.front().shape_matching ? 0.0 : k_count_bytes));
+        most, k_margin * bytes + k_body_bytes + (info.bodies.front().shape_matching ? 0.0 : k_count_bytes));
   }
   return most;
 }

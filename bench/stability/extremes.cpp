@@ -220,7 +220,7 @@ class Catalogue {
   void schedules() {
     Trial switched;
     switched.before_step = [](Simulation& simulation, int step) {
-      simulation.set_alpha(GroupId{0}, step % 2 == 0 ? 1.0f : 0.0f);
+      simulation.set_alpha(MaterialId{0}, step % 2 == 0 ? 1.0f : 0.0f);
     };
     add(
         "alpha switched every step", falling_body(),

@@ -71,7 +71,7 @@ Frames draw_frames(const Scene& scene, const Table1Settings& settings, int threa
   Simulation simulation = build(scene, threads);
   simulation.prepare();
   std::vector<float> spacings;
-  for (const GroupInfo& group : simulation.info().groups) spacings.push_back(group.spacing);
+  for (const BodyInfo& body : simulation.info().bodies) spacings.push_back(body.spacing);
   Surfacer surfacer(scene.surface, threads);
   cli::Stills stills(scene, snapshot(simulation), spacings, threads);
   const std::filesystem::path picture = std::filesystem::temp_directory_path() / "mallow-bench-table1.png";
@@ -165,14 +165,14 @@ Json measure_row(const PaperRow& paper, const Table1Settings& settings, int thre
 
   const double ms = median(step_ms), surface_ms = median(frames.surface), picture_ms = median(frames.picture);
   const SimulationInfo& info = runs.front().info;
-  const GroupInfo& group = info.groups.front();
+  const BodyInfo& body = info.bodies.front();
   Json row = {
       {"name", paper.name},
       {"figure", paper.figure},
       {"scene", "scenes/table1/" + paper.name + ".toml"},
       {"particles", info.particles},
       {"paper_particles", paper.particles},
-      {"avg_neighbors", group.average_neighbors},
+      {"avg_neighbors", body.average_neighbors},
       {"paper_avg_neighbors", paper.neighbors},
       {"alpha", paper.alpha},
       {"gamma_u", paper.update_threshold},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <span>
 #include <type_traits>
@@ -15,6 +16,21 @@ namespace mallow {
 
 constexpr std::size_t padded(std::size_t n) {
   return (n + k_lanes - 1) / k_lanes * k_lanes;
+}
+
+/// Moves values[at, size) up by `count` places, and puts zeros in between.
+template <class T>
+void open_gap(T* values, std::size_t size, std::size_t at, std::size_t count) {
+  std::copy_backward(values + at, values + size, values + size + count);
+  std::fill_n(values + at, count, T{});
+}
+/// Moves the values that are not at one of `places`, ascending, to the front.
+template <class T>
+void close_gaps(T* values, std::size_t size, std::span<const std::uint32_t> places) {
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const std::size_t end = k + 1 < places.size() ? places[k + 1] : size;
+    std::copy(values + places[k] + 1, values + end, values + places[k] - k);
+  }
 }
 
 /// One quantity of all particles: an array on cache line boundaries whose capacity is a whole number of lane
@@ -42,9 +58,10 @@ class Column {
     std::swap(capacity_, other.capacity_);
   }
 
-  /// Keeps the values that fit; new ones are zero. Memory only grows: see release().
+  /// Keeps the values that fit; new ones are zero. Memory only grows, and by a quarter at least once there is
+  /// any, or what gets a little longer in every step would be allocated anew in every step: see release().
   void resize(std::size_t size) {
-    if (padded(size) > capacity_) grow(padded(size));
+    if (padded(size) > capacity_) grow(with_room(padded(size)));
     if (padded(size) > size_)
       std::memset(static_cast<void*>(data_ + size_), 0, (padded(size) - size_) * sizeof(T));
     if (size < size_) std::memset(static_cast<void*>(data_ + size), 0, (padded(size) - size) * sizeof(T));
@@ -54,17 +71,23 @@ class Column {
   /// next, so that the threads that write them touch them first.
   void resize_unset(std::size_t size) {
     if (padded(size) > capacity_) {
+      const std::size_t capacity = with_room(padded(size));
       release();
-      grow(padded(size));
+      grow(capacity);
     }
     std::memset(static_cast<void*>(data_ + size), 0, (padded(size) - size) * sizeof(T));
     size_ = size;
   }
-  /// For what gets longer as a body spreads: a quarter more memory than is asked for whenever it grows, or it
-  /// would be allocated anew in every other step.
-  void resize_with_room(std::size_t size) {
-    if (padded(size) > capacity_) grow(padded(size + size / 4));
-    resize(size);
+  /// Opens a gap of `count` zeros before the value `at`.
+  void insert(std::size_t at, std::size_t count) {
+    const std::size_t old = size_;
+    resize(old + count);
+    open_gap(data_, old, at, count);
+  }
+  /// Takes the values out whose numbers are in `places`, ascending; what is behind them moves up.
+  void erase(std::span<const std::uint32_t> places) {
+    close_gaps(data_, size_, places);
+    resize(size_ - places.size());
   }
   void release() {
     if (data_) free_column(data_, allocated(capacity_));
@@ -89,6 +112,9 @@ class Column {
  private:
   static constexpr std::size_t k_read_ahead = 64;
   static std::size_t allocated(std::size_t capacity) { return capacity * sizeof(T) + k_read_ahead; }
+  std::size_t with_room(std::size_t capacity) const {
+    return std::max(capacity, padded(capacity_ + capacity_ / 4));
+  }
 
   void grow(std::size_t capacity) {
     T* data = static_cast<T*>(allocate_column(allocated(capacity)));
@@ -112,15 +138,13 @@ class VectorColumn {
   VectorColumn() = default;
   explicit VectorColumn(std::size_t size) { resize(size); }
 
+  /// As Column::resize.
   void resize(std::size_t size) {
-    if (size == size_) return;
-    VectorColumn old(std::move(*this));
-    stride_ = padded(size);
-    values_.resize(3 * stride_);
+    if (padded(size) > stride_) grow(std::max(padded(size), padded(stride_ + stride_ / 4)));
+    for (std::size_t axis = 0; axis < 3 && stride_ > 0; ++axis)
+      std::fill(this->axis(axis) + std::min(size, size_), this->axis(axis) + padded(std::max(size, size_)),
+                0.0f);
     size_ = size;
-    const std::size_t kept = std::min(size, old.size_);
-    for (std::size_t axis = 0; axis < 3 && kept > 0; ++axis)
-      std::copy_n(old.axis(axis), kept, this->axis(axis));
   }
   /// Keeps nothing: see Column::resize_unset.
   void resize_unset(std::size_t size) {
@@ -129,6 +153,15 @@ class VectorColumn {
     values_.resize_unset(3 * stride_);
     for (std::size_t axis = 0; axis < 3; ++axis)
       std::fill(this->axis(axis) + size, this->axis(axis) + stride_, 0.0f);
+  }
+  void insert(std::size_t at, std::size_t count) {
+    const std::size_t old = size_;
+    resize(old + count);
+    for (std::size_t axis = 0; axis < 3; ++axis) open_gap(this->axis(axis), old, at, count);
+  }
+  void erase(std::span<const std::uint32_t> places) {
+    for (std::size_t axis = 0; axis < 3; ++axis) close_gaps(this->axis(axis), size_, places);
+    resize(size_ - places.size());
   }
   void release() {
     values_.release();
@@ -157,6 +190,15 @@ class VectorColumn {
   }
 
  private:
+  void grow(std::size_t stride) {
+    Column<float> values;
+    values.resize_unset(3 * stride);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      std::copy_n(this->axis(axis), size_, values.data() + axis * stride);
+    values_.swap(values);
+    stride_ = stride;
+  }
+
   Column<float> values_;
   std::size_t size_ = 0;
   std::size_t stride_ = 0;

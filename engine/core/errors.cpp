@@ -43,7 +43,7 @@ ConfigError::ConfigError(std::string field, std::string message)
 
 IoError::IoError(Problem problem) : Error(to_string(problem)), problem_(std::move(problem)) {}
 
-StepError::StepError(const std::string& message, std::uint32_t particle_id, Phase phase)
+StepError::StepError(const std::string& message, ParticleId particle_id, Phase phase)
     : Error(message), particle_id_(particle_id), phase_(phase) {}
 
 }  // namespace mallow

@@ -97,20 +97,23 @@ MotionSums move_block(const MotionInput& in, const ForcesInput& forces, Instruct
 
 }  // namespace
 
-MotionSums move_particles(const MotionInput& in, const Threads& threads, InstructionLevel level,
-                          ParticleStore& store, std::vector<MotionSums>& partial) {
-  const ForcesInput input = forces(in, store);
-  return parallel_reduce(
-      threads, in.end - in.begin, partial, MotionSums{},
-      [&](std::size_t begin, std::size_t end) {
-        return move_block(in, input, level, in.begin + begin, in.begin + end, store);
-      },
-      [](MotionSums a, const MotionSums& b) {
-        a.external += b.external;
-        a.unpinned += b.unpinned;
-        a.bad_row = std::min(a.bad_row, b.bad_row);
-        return a;
-      });
+void move_particles(const Threads& threads, InstructionLevel level, ParticleStore& store,
+                    MovingBodies& bodies) {
+  bodies.blocks.clear();
+  for (const MotionInput& in : bodies.inputs) bodies.blocks.add(in.end - in.begin);
+  bodies.partial.resize(bodies.blocks.blocks.size());
+  parallel_for(threads, bodies.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
+    const MotionInput& in = bodies.inputs[block.range];
+    bodies.partial[number] =
+        move_block(in, forces(in, store), level, in.begin + block.begin, in.begin + block.end, store);
+  });
+  bodies.sums.assign(bodies.inputs.size(), {});
+  for (std::size_t b = 0; b < bodies.partial.size(); ++b) {
+    MotionSums& sums = bodies.sums[bodies.blocks.blocks[b].range];
+    sums.external += bodies.partial[b].external;
+    sums.unpinned += bodies.partial[b].unpinned;
+    sums.bad_row = std::min(sums.bad_row, bodies.partial[b].bad_row);
+  }
 }
 
 void move_colliders(double time_step, std::span<Collider> colliders) {

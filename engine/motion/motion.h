@@ -5,6 +5,7 @@
 
 #include "core/column.h"
 #include "core/isa.h"
+#include "core/range_blocks.h"
 #include "core/threads.h"
 #include "mallow/collider.h"
 #include "motion/contact.h"
@@ -12,9 +13,9 @@
 
 namespace mallow {
 
-/// What moves the particles of one group in one step. Null columns are terms that the scene does not have.
+/// What moves the particles of one body in one step. Null columns are terms that the scene does not have.
 struct MotionInput {
-  std::size_t begin, end;                ///< rows of the group
+  std::size_t begin, end;                ///< rows of the body
   float time_step;                       ///< Δt [s]
   float alpha;                           ///< α
   float elastic_factor;                  ///< (1 − α) Δt/(Δt0 Δt_SM) [1/s]
@@ -22,23 +23,33 @@ struct MotionInput {
   const VectorColumn* sph_acceleration;  ///< by row of the store [m/s²]
   const VectorColumn* cross_group;       ///< by row of the store [m/s²]
   const VectorColumn* user;              ///< by row of the store [m/s²]
-  const VectorColumn* pull;              ///< g − x, by row of the group [m]
+  const VectorColumn* pull;              ///< g − x, by row of the body [m]
   std::span<const Collider> colliders;
   ContactStep contact;
   std::span<const Vec3> pin_velocities;
   bool measure_external;  ///< sum |a_ext|
 };
 
-/// What the update rule and the checks want to know of a group's motion.
+/// What the update rule and the checks want to know of a body's motion.
 struct MotionSums {
   double external = 0;  ///< Σ |a_ext| over unpinned particles, contact included [m/s²]
   std::size_t unpinned = 0;
   std::size_t bad_row = SIZE_MAX;  ///< first row whose new velocity or position is not finite
 };
 
+/// Bodies that move together, and what is known of each afterwards.
+struct MovingBodies {
+  std::vector<MotionInput> inputs;
+  std::vector<MotionSums> sums;  ///< of each
+
+  // Scratch.
+  RangeBlocks blocks;
+  std::vector<MotionSums> partial;
+};
+
 /// Blend, contact, positions: v' and x' into the store's next columns. [model 4, 5; TK eq. 10, 11, 13]
-MotionSums move_particles(const MotionInput& input, const Threads& threads, InstructionLevel level,
-                          ParticleStore& store, std::vector<MotionSums>& partial);
+void move_particles(const Threads& threads, InstructionLevel level, ParticleStore& store,
+                    MovingBodies& bodies);
 
 /// Colliders at the end of a step.
 void move_colliders(double time_step, std::span<Collider> colliders);

@@ -51,37 +51,45 @@ double pressure_limit(const TimeStepLimits::Pressure& pressure, double support_r
 
 }  // namespace
 
-Fastest fastest_particle(const ParticleStore& store, std::size_t begin, std::size_t end, float time_step,
-                         const VectorColumn& sph_acceleration, float share, const Vec3& gravity,
-                         const VectorColumn* cross_group, const VectorColumn* user, const Threads& threads,
-                         InstructionLevel level, std::vector<Fastest>& partial) {
+Fastest fastest_particle(const ParticleStore& store, const Threads& threads, InstructionLevel level,
+                         FastestInput& in) {
   const MotionKernels& kernels = MALLOW_SELECT(level, motion_kernels);
-  const ForcesInput forces{.position = {},
-                           .velocity = raw(store.velocity),
-                           .sph_acceleration = raw(sph_acceleration),
-                           .cross_group = cross_group ? raw(*cross_group) : ConstVectors{},
-                           .user = user ? raw(*user) : ConstVectors{},
-                           .pull = {},
-                           .group_begin = 0,
-                           .pin = store.pin.empty() ? nullptr : store.pin.data(),
-                           .gravity = {gravity[0], gravity[1], gravity[2]},
-                           .time_step = time_step,
-                           .sph_factor = share,
-                           .elastic_factor = 0};
-  const auto faster = [](const Fastest& a, const Fastest& b) {
-    // Not `>`: a velocity that is not a number must win, so that it is seen.
-    return b.squared_velocity <= a.squared_velocity || std::isnan(a.squared_velocity) ? a : b;
+  const auto forces = [&](const FastestInput::Body& body) {
+    return ForcesInput{.position = {},
+                       .velocity = raw(store.velocity),
+                       .sph_acceleration = raw(*in.sph_acceleration),
+                       .cross_group = in.cross_group ? raw(*in.cross_group) : ConstVectors{},
+                       .user = in.user ? raw(*in.user) : ConstVectors{},
+                       .pull = {},
+                       .group_begin = 0,
+                       .pin = store.pin.empty() ? nullptr : store.pin.data(),
+                       .gravity = {in.gravity[0], in.gravity[1], in.gravity[2]},
+                       .time_step = in.time_step,
+                       .sph_factor = body.share,
+                       .elastic_factor = 0};
   };
-  // Of each block the speed; whose it is, is asked of one block only.
-  Fastest fastest = parallel_reduce(
-      threads, end - begin, partial, Fastest{},
-      [&](std::size_t first, std::size_t last) {
-        return Fastest{kernels.fastest(forces, begin + first, begin + last),
-                       static_cast<std::uint32_t>(begin + first)};
-      },
-      faster);
-  fastest.row = static_cast<std::uint32_t>(
-      row_of(fastest.squared_velocity, forces, kernels, fastest.row, std::min(end, fastest.row + k_block)));
+  in.blocks.clear();
+  for (const FastestInput::Body& body : in.bodies) in.blocks.add(body.end - body.begin);
+  in.partial.resize(in.blocks.blocks.size());
+  // Of each block the speed; only the winning block is searched for the row.
+  parallel_for(threads, in.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
+    const FastestInput::Body& body = in.bodies[block.range];
+    in.partial[number] = {kernels.fastest(forces(body), body.begin + block.begin, body.begin + block.end), 0};
+  });
+  Fastest fastest;
+  std::size_t winner = 0;
+  for (std::size_t b = 0; b < in.partial.size(); ++b) {
+    // Not `>`: a velocity that is not a number must win, so that it is seen.
+    if (in.partial[b].squared_velocity <= fastest.squared_velocity || std::isnan(fastest.squared_velocity))
+      continue;
+    fastest = in.partial[b];
+    winner = b;
+  }
+  if (in.partial.empty()) return fastest;
+  const RangeBlocks::Block& block = in.blocks.blocks[winner];
+  const FastestInput::Body& body = in.bodies[block.range];
+  fastest.row = static_cast<std::uint32_t>(row_of(fastest.squared_velocity, forces(body), kernels,
+                                                  body.begin + block.begin, body.begin + block.end));
   return fastest;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/column.h"
 #include "core/isa.h"
+#include "core/range_blocks.h"
 #include "core/threads.h"
 #include "particles/particle_store.h"
 
@@ -17,21 +18,36 @@ struct Fastest {
   std::uint32_t row = 0;
 };
 
-/// V = max |v + Δt0 (share a^SPH + a_ext)| of the rows [begin, end), contact not in a_ext. [model 3, TK eq.
-/// 12] external: gravity is `gravity`, user forces and other groups are columns or null.
-Fastest fastest_particle(const ParticleStore& store, std::size_t begin, std::size_t end, float time_step,
-                         const VectorColumn& sph_acceleration, float share, const Vec3& gravity,
-                         const VectorColumn* cross_group, const VectorColumn* user, const Threads& threads,
-                         InstructionLevel level, std::vector<Fastest>& partial);
+/// What makes particles fast. Null columns are terms that the scene does not have.
+struct FastestInput {
+  /// The particles of one body, and the share of the acceleration by SPH that counts for them.
+  struct Body {
+    std::size_t begin, end;  ///< rows
+    float share;
+  };
+  std::vector<Body> bodies;
+  float time_step;                       ///< [s]
+  Vec3 gravity;                          ///< [m/s²]
+  const VectorColumn* sph_acceleration;  ///< [m/s²]; not null
+  const VectorColumn* cross_group;       ///< [m/s²]
+  const VectorColumn* user;              ///< [m/s²]
+
+  // Scratch.
+  RangeBlocks blocks;
+  std::vector<Fastest> partial;
+};
+/// V = max |v + Δt0 (share a^SPH + a_ext)|, contact not in a_ext. [model 3, TK eq. 12]
+Fastest fastest_particle(const ParticleStore& store, const Threads& threads, InstructionLevel level,
+                         FastestInput& input);
 
 /// What bounds the step beside V.
 struct TimeStepLimits {
   float time_step;       ///< Δt0 [s]
   float support_radius;  ///< σ [m]
   bool acoustic;         ///< the limits of `pressures` count
-  /// Of each group, as it acts.
+  /// Of each body, as it acts.
   struct Pressure {
-    float coefficient;          ///< α k, or k where it pushes other groups [m²/s²]
+    float coefficient;          ///< α k, or k where it pushes other bodies [m²/s²]
     float kinematic_viscosity;  ///< α μ/ρ0, or μ/ρ0 likewise [m²/s]
     float stiffness;            ///< (1 − α)/(Δt0 Δt_SM) [1/s²]
   };

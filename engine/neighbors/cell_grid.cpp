@@ -123,7 +123,7 @@ void cut_clusters(const Threads& threads, CellGrid& grid) {
       k_column_block);
   std::uint32_t clusters = 0;
   for (std::uint32_t& sum : grid.block_sums) clusters += std::exchange(sum, clusters);
-  grid.cluster_start.resize_with_room(clusters + 1);
+  grid.cluster_start.resize(clusters + 1);
   grid.cluster_start[clusters] = grid.cell_start[columns * nx];
   parallel_for(
       threads, columns,
@@ -147,7 +147,7 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
   grid.cell_of.resize(n);
   grid.order.resize(n);
   grid.sorted.resize(n);
-  grid.cell_start.resize_with_room(cells + 1);
+  grid.cell_start.resize(cells + 1);
   const ConstVectors x{positions.x() + begin, positions.y() + begin, positions.z() + begin};
 
   const SearchInput input = search_input(grid, radius);
@@ -161,7 +161,7 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
   const std::size_t chunks = std::clamp<std::size_t>(std::min(4 * n / cells, n / k_least_chunk), 1,
                                                      static_cast<std::size_t>(threads.count()));
   const std::size_t chunk = (n + chunks - 1) / chunks;
-  grid.counts.resize_with_room(chunks * cells);
+  grid.counts.resize(chunks * cells);
   const auto counts_of = [&](std::size_t point) { return grid.counts.data() + point / chunk * cells; };
   parallel_for(
       threads, n,

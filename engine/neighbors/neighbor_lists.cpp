@@ -206,8 +206,8 @@ void build_neighbor_lists(const CellGrid& grid, float radius, const Threads& thr
 
 void build_cluster_lists(const CellGrid& grid, float radius, const Threads& threads, InstructionLevel level,
                          NeighborLists& lists) {
-  lists.begin.resize_with_room(grid.clusters());
-  lists.count.resize_with_room(grid.clusters());
+  lists.begin.resize(grid.clusters());
+  lists.count.resize(grid.clusters());
   if (lists.indices.empty()) lists.indices.resize(128 * grid.clusters());
   const Searcher searcher(grid, radius, level);
   build_lists(

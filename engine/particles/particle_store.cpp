@@ -1,69 +1,81 @@
 #include "particles/particle_store.h"
 
-#include <algorithm>
+#include <type_traits>
 
 #include "core/parallel.h"
 
 namespace mallow {
 namespace {
 
-/// Opens a gap of `count` values at `at`.
-template <class T>
-void open_gap(T* values, std::size_t size, std::size_t at, std::size_t count) {
-  std::copy_backward(values + at, values + size, values + size + count);
+/// values[begin + k] becomes what values[begin + order[k]] was; through `scratch`, of as many as the order.
+template <class T, class Scratch>
+void gather(const Threads& threads, std::size_t begin, std::span<const std::uint32_t> order, T* values,
+            Scratch* scratch) {
+  parallel_for(threads, order.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) scratch[k] = values[begin + order[k]];
+  });
+  parallel_for(threads, order.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) values[begin + k] = static_cast<T>(scratch[k]);
+  });
+}
+
+/// The columns of a store that are there, one after the other.
+template <class Visit>
+void for_each_present(ParticleStore& store, const Visit& visit) {
+  ParticleStore::for_each_column(store, [&](auto& column) {
+    if (column.size() > 0) visit(column);
+  });
 }
 
 }  // namespace
 
 std::size_t ParticleStore::bytes() const {
-  return position.bytes() + velocity.bytes() + id.bytes() + row_of_id.bytes() + pin.bytes() +
-         next_position.bytes() + next_velocity.bytes();
+  std::size_t sum = slots.bytes() + next_position.bytes() + next_velocity.bytes() + words.bytes();
+  for_each_column(*this, [&](const auto& column) { sum += column.bytes(); });
+  return sum;
 }
 
 void ParticleStore::insert(std::size_t at, std::span<const Vec3> positions,
                            std::span<const Vec3> velocities) {
-  const std::size_t old = size(), count = positions.size();
-  for (VectorColumn* column : {&position, &velocity}) {
-    column->resize(old + count);
-    for (std::size_t a = 0; a < 3; ++a) open_gap(column->axis(a), old, at, count);
-  }
-  id.resize(old + count);
-  open_gap(id.data(), old, at, count);
-  if (!pin.empty()) {
-    pin.resize(old + count);
-    open_gap(pin.data(), old, at, count);
-    std::fill_n(pin.data() + at, count, std::uint16_t{0});
+  const std::size_t count = positions.size();
+  const bool first = size() == 0;
+  if (first) {
+    for (VectorColumn* column : {&position, &velocity}) column->resize(count);
+    id.resize(count);
+  } else {
+    for_each_present(*this, [&](auto& column) { column.insert(at, count); });
   }
   for (std::size_t k = 0; k < count; ++k) {
     position.set(at + k, positions[k]);
     velocity.set(at + k, velocities[k]);
-    id[at + k] = static_cast<std::uint32_t>(old + k);
+    id[at + k] = slots.take();
   }
-  next_position.resize(old + count);
-  next_velocity.resize(old + count);
-  row_of_id.resize(old + count);
-  for (std::size_t row = 0; row < old + count; ++row) row_of_id[id[row]] = static_cast<std::uint32_t>(row);
+  slots.place(at, id.span().subspan(at));
+  next_position.resize(size());
+  next_velocity.resize(size());
+}
+
+void ParticleStore::erase(std::span<const std::uint32_t> rows) {
+  if (rows.empty()) return;
+  for (const std::uint32_t row : rows) slots.give_back(id[row]);
+  for_each_present(*this, [&](auto& column) { column.erase(rows); });
+  slots.place(rows.front(), id.span().subspan(rows.front()));
+  next_position.resize(size());
+  next_velocity.resize(size());
 }
 
 void ParticleStore::permute(std::size_t begin, std::span<const std::uint32_t> order, const Threads& threads) {
-  const std::size_t n = order.size();
-  const auto gather = [&](auto* values, auto* scratch) {
-    parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
-      for (std::size_t k = first; k < last; ++k) scratch[k] = values[begin + order[k]];
-    });
-    parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
-      std::copy(scratch + first, scratch + last, values + begin + first);
-    });
-  };
-  for (VectorColumn* column : {&position, &velocity})
-    for (std::size_t a = 0; a < 3; ++a) gather(column->axis(a), next_position.axis(a));
-  // The scratch columns hold floats; ids travel through them as the bits they are.
-  static_assert(sizeof(std::uint32_t) == sizeof(float));
-  gather(id.data(), reinterpret_cast<std::uint32_t*>(next_position.x()));
-  if (!pin.empty()) gather(pin.data(), reinterpret_cast<std::uint16_t*>(next_position.x()));
-  parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
-    for (std::size_t row = begin + first; row < begin + last; ++row)
-      row_of_id[id[row]] = static_cast<std::uint32_t>(row);
+  for_each_present(*this, [&](auto& column) {
+    if constexpr (std::is_same_v<decltype(column), VectorColumn&>) {
+      for (std::size_t a = 0; a < 3; ++a)
+        gather(threads, begin, order, column.axis(a), next_position.axis(a));
+    } else {
+      words.resize(size());
+      gather(threads, begin, order, column.data(), words.data());
+    }
+  });
+  parallel_for(threads, order.size(), [&](std::size_t first, std::size_t last) {
+    slots.place(begin + first, id.span().subspan(begin + first, last - first));
   });
 }
 

@@ -2,31 +2,44 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "core/column.h"
 #include "core/threads.h"
+#include "particles/particle_slots.h"
 
 namespace mallow {
 
-/// Positions, velocities and names of all particles, a row each. Groups are ranges of rows. A sort moves
+/// Positions, velocities and names of all particles, a row each. Bodies are ranges of rows. A sort moves
 /// rows; ids stay.
 struct ParticleStore {
   VectorColumn position;  ///< [m]
   VectorColumn velocity;  ///< [m/s]
-  Column<std::uint32_t> id;
-  Column<std::uint32_t> row_of_id;
+  Column<ParticleId> id;
   Column<std::uint16_t> pin;  ///< 0: free, else 1 + index of the pin; empty where nothing is pinned
+  ParticleSlots slots;        ///< id -> row
 
   // Where a step writes before it is known to be good; scratch of sorts in between.
   VectorColumn next_position;
   VectorColumn next_velocity;
+  Column<std::uint64_t> words;  ///< scratch of sorts
+
+  /// Calls visit(column) with all that a particle takes along when its row changes. A column that is empty is
+  /// the same for all particles. What is added here is inserted, erased, sorted and counted.
+  template <class Store, class Visit>
+  static void for_each_column(Store& store, const Visit& visit) {
+    visit(store.position);
+    visit(store.velocity);
+    visit(store.id);
+    visit(store.pin);
+  }
 
   std::size_t size() const { return id.size(); }
   std::size_t bytes() const;
 
-  /// Puts particles behind row `at`, moving later rows up. They get the next ids.
+  /// Puts particles behind row `at`, moving later rows up.
   void insert(std::size_t at, std::span<const Vec3> positions, std::span<const Vec3> velocities);
+  /// Takes out the particles of these rows, ascending; the rows of the others keep their order.
+  void erase(std::span<const std::uint32_t> rows);
   /// Row begin + k becomes what row begin + order[k] was.
   void permute(std::size_t begin, std::span<const std::uint32_t> order, const Threads& threads);
 };

@@ -1,4 +1,5 @@
 #include <map>
+#include <optional>
 
 #include "core/precision.h"
 #include "mallow/files.h"
@@ -126,6 +127,7 @@ Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int 
   const std::filesystem::path folder = scene_file.parent_path();
   Body points = std::visit(scene_file::Sample{folder, threads}, body.source);
   points.velocity += body.velocity;
+  points.merges = body.merges;
   return points;
 }
 
@@ -137,12 +139,16 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
   Simulation simulation(config);
   Problems problems(scene.file.string());
 
-  std::vector<GroupId> ids;
-  for (const auto& group : groups.list)
-    collect(problems, 0, "material." + scene.materials[group.material].name, [&] {
-      ids.push_back(simulation.add_group(scene.materials[group.material].material, group.name));
+  std::map<std::size_t, MaterialId> materials;
+  for (const auto& group : groups.list) {
+    const SceneMaterial& material = scene.materials[group.material];
+    if (materials.contains(group.material)) continue;
+    collect(problems, 0, "material." + material.name, [&] {
+      materials[group.material] = simulation.add_material(material.material, material.name);
     });
+  }
   problems.finish();
+  std::vector<std::optional<BodyId>> ids(groups.list.size());
   std::size_t particles = 0;
   for (std::size_t i = 0; i < scene.bodies.size() && particles <= k_most_particles; ++i) {
     const SceneBody& body = scene.bodies[i];
@@ -154,7 +160,12 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
         throw ConfigError({}, "is one body too many: with it there are " + std::to_string(particles) +
                                   " particles, and at most " + std::to_string(k_most_particles) +
                                   " are allowed");
-      simulation.add_body(points, ids[groups.of_body[i]]);
+      const std::size_t number = groups.of_body[i];
+      const auto& group = groups.list[number];
+      if (ids[number])
+        simulation.extend_body(*ids[number], points);
+      else
+        ids[number] = simulation.add_body(points, materials.at(group.material), group.name);
       if (notes)
         for (const std::string& note : points.notes) notes->push_back(path + ": " + note);
     });

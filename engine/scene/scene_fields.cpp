@@ -94,8 +94,10 @@ FieldTable fields(SceneMaterial& material) {
 FieldTable fields(SceneBody& body) {
   return {
       {"material", &body.material, k_any, "", "name of its [[material]]", k_required},
-      {"group", &body.group, k_any, "", "bodies of one group share a reference shape and can merge",
-       "a group of its own"},
+      {"group", &body.group, k_any, "", "bodies of one group are one piece, with one reference shape",
+       "a piece of its own"},
+      {"merges", &body.merges, k_any, "",
+       "acts on others of its material that merge as on itself: two puddles become one"},
       {"velocity", &body.velocity, k_finite, "m/s", "of every particle at the start"},
   };
 }
@@ -191,7 +193,7 @@ FieldTable fields(SurfaceConfig& config) {
       {"particle_radius", &config.particle_radius, between(0.1, 1), "h",
        "distance of the surface from the outermost particles"},
       {"kind", &config.kind, k_any, "", "how the surface is drawn around the particles"},
-      {"joined", &config.joined, k_any, "", "one surface around all groups"},
+      {"joined", &config.joined, k_any, "", "one surface around all bodies"},
       {"adaptivity", &config.adaptivity, between(0, 1), "voxels",
        "how far merging vertices on even parts may move the surface"},
       {"smoothing", &config.smoothing, between(0, 100), "",

@@ -59,8 +59,6 @@ inline constexpr std::size_t k_most_entries = 10'000;
 /// Bytes of a name and of a path: they come back in messages, of which one scene may cause a thousand.
 inline constexpr std::size_t k_max_name_bytes = 256;
 inline constexpr std::size_t k_max_path_bytes = 4096;
-/// Groups of a scene, at most: as many as a Simulation takes.
-inline constexpr std::size_t k_most_groups = 256;
 /// Particles of a body written as implicit = "moai", those of [TK] Fig. 5(a).
 inline constexpr int k_implicit_count = 3764;
 

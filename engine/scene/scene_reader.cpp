@@ -149,18 +149,12 @@ class SceneReader {
                       "material '" + name + "' is not used by any body");
   }
 
-  /// A group has one material, and there are not more groups than a simulation takes.
+  /// A group has one material.
   void check_groups() {
     std::map<std::string, std::size_t> first_body;
-    std::size_t groups = 0;
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
       const SceneBody& body = scene_.bodies[i];
-      const bool named = !body.group.empty();
-      const bool first = !named || first_body.emplace(body.group, i).second;
-      if (first && ++groups == k_most_groups + 1)
-        problems_.add(place_of("body", i, named ? "group" : "material"), element_path("body", i) + ".group",
-                      "is one group too many: at most " + std::to_string(k_most_groups) +
-                          " are allowed, and a body without a group is a group of its own");
+      const bool first = body.group.empty() || first_body.emplace(body.group, i).second;
       if (first || body.material.empty()) continue;
       const std::size_t earlier = first_body[body.group];
       const std::string& material = scene_.bodies[earlier].material;

@@ -31,7 +31,7 @@ std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info
   if (scene.run.frames == 0) return all;
   const double gravity = static_cast<double>(scene.solver.gravity.norm());
   double spacing = std::numeric_limits<double>::infinity();
-  for (const GroupInfo& group : info.groups) spacing = std::min(spacing, static_cast<double>(group.spacing));
+  for (const BodyInfo& body : info.bodies) spacing = std::min(spacing, static_cast<double>(body.spacing));
   const double way = 0.5 * gravity * seconds * seconds + fastest(scene) * seconds;
   const double film = frames / scene.render.frames_per_second;
   std::ostringstream text;

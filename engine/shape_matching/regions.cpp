@@ -98,11 +98,11 @@ void turn_around(const Threads& threads, RegionScratch& scratch) {
 }
 
 /// w_i, from how many regions a particle is in; Σ |N_i| of all particles, whatever the stride.
-std::size_t weigh_particles(bool every, const Threads& threads, const RegionScratch& scratch,
+std::size_t weigh_particles(bool every, const Threads& threads, RegionScratch& scratch,
                             ShapeMatching& shape) {
   const RunLists& near = scratch.near;
   return parallel_reduce(
-      threads, near.count.size(), shape.partial_count, std::size_t{0},
+      threads, near.count.size(), scratch.partial_count, std::size_t{0},
       [&](std::size_t begin, std::size_t end) {
         std::size_t sum = 0;
         for (std::size_t i = begin; i < end; ++i) {
@@ -173,15 +173,15 @@ std::size_t ShapeMatching::bytes() const {
 }
 
 void update_reference(const VectorColumn& positions, std::size_t begin, std::size_t end,
-                      const Threads& threads, ShapeMatching& shape) {
+                      const Threads& threads, RegionScratch& scratch, ShapeMatching& shape) {
   const std::size_t n = end - begin;
-  using Sums = std::array<double, 12>;
+  using Sums = std::array<double, 3>;
   const auto add = [](Sums a, const Sums& b) {
     for (std::size_t k = 0; k < 3; ++k) a[k] += b[k];
     return a;
   };
   Sums mean = parallel_reduce(
-      threads, n, shape.partial, Sums{},
+      threads, n, scratch.partial_sums, Sums{},
       [&](std::size_t first, std::size_t last) {
         Sums sum{};
         for (std::size_t a = 0; a < 3; ++a)
@@ -193,7 +193,7 @@ void update_reference(const VectorColumn& positions, std::size_t begin, std::siz
   for (double& m : mean) m /= static_cast<double>(n);
   shape.reference.resize_unset(n);
   const Sums squares = parallel_reduce(
-      threads, n, shape.partial, Sums{},
+      threads, n, scratch.partial_sums, Sums{},
       [&](std::size_t first, std::size_t last) {
         Sums sum{};
         for (std::size_t a = 0; a < 3; ++a)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -14,20 +15,22 @@ namespace mallow {
 
 struct ShapeMatching;
 
-/// What building regions needs besides them; all groups take turns with it.
+/// What building regions needs besides them; all bodies take turns with it.
 struct RegionScratch {
   ColumnOrder columns;
   RunLists near;                       ///< per particle: those within the region radius
   Column<std::uint32_t> owners;        ///< particles that own a region, ascending; with a stride above 1
   Column<std::uint32_t> first_region;  ///< per particle: regions of the particles before it
   std::vector<std::uint32_t> block_begin;
+  std::vector<std::array<double, 3>> partial_sums;
+  std::vector<std::size_t> partial_count;
 
   std::size_t bytes() const { return columns.bytes() + near.bytes() + owners.bytes() + first_region.bytes(); }
 };
 
 /// x̄ ← x of the rows [begin, end) of a store. Rotations start from none; regions are due to be built.
 void update_reference(const VectorColumn& positions, std::size_t begin, std::size_t end,
-                      const Threads& threads, ShapeMatching& shape);
+                      const Threads& threads, RegionScratch& scratch, ShapeMatching& shape);
 /// Puts the rows of a reference shape in the order in which regions are fast: row k becomes what row
 /// columns.order[k] was. The other columns of the particles have to follow.
 void sort_reference(const Threads& threads, ColumnOrder& columns, ShapeMatching& shape);

@@ -18,54 +18,33 @@ RegionLists raw(const TableLists& lists) {
           lists.rows * lists.lengths.levels * k_row * sizeof(float) > k_near_caches};
 }
 
-ShapeInput input(const VectorColumn& positions, std::size_t begin, const ShapeMatching& shape) {
-  ShapeInput in{
-      .regions = raw(shape.regions),
-      .memberships = raw(shape.by_particle()),
-      .position = {positions.x() + begin, positions.y() + begin, positions.z() + begin},
-      .reference = raw(shape.reference),
-      .weight = shape.weight.data(),
-      .region_weight = shape.region_weight.data(),
-      .center = raw(shape.center),
-      .moment = {},
-      .frame_rotation = {},
-      .frame_translation = {},
-  };
-  for (std::size_t k = 0; k < 6; ++k) in.moment[k] = shape.moment[k].data();
-  const Eigen::Matrix3d rotation = shape.frame.rotation.toRotationMatrix();
-  for (int i = 0; i < 3; ++i) {
-    in.frame_translation[i] = static_cast<float>(shape.frame.translation[i]);
-    for (int j = 0; j < 3; ++j) in.frame_rotation[3 * i + j] = static_cast<float>(rotation(i, j));
-  }
-  return in;
+using FrameSums = std::array<double, 12>;
+
+FrameSums sum_frame(const VectorColumn& positions, const MatchedBodies::Body& body,
+                    const RangeBlocks::Block& block, InstructionLevel level) {
+  const Eigen::Vector3d near_origin = positions.get(body.begin).cast<double>();
+  FrameSums sums;
+  MALLOW_SELECT(level, moment_kernels)
+      .frame_sums({positions.x() + body.begin, positions.y() + body.begin, positions.z() + body.begin},
+                  raw(std::as_const(body.shape->reference)), near_origin.data(), block.begin, block.end,
+                  sums.data());
+  return sums;
 }
 
-/// Any frame near the group's motion does; the best one leaves the smallest u.
-void update_frame(const VectorColumn& positions, std::size_t begin, const Threads& threads,
-                  InstructionLevel level, ShapeMatching& shape) {
-  const std::size_t n = shape.reference.size();
-  const Eigen::Vector3d near_origin = positions.get(begin).cast<double>();
-  const MomentKernels& kernels = MALLOW_SELECT(level, moment_kernels);
-  using Sums = std::array<double, 12>;
-  const Sums sums = parallel_reduce(
-      threads, n, shape.partial, Sums{},
-      [&](std::size_t first, std::size_t last) {
-        Sums s;
-        kernels.frame_sums({positions.x() + begin, positions.y() + begin, positions.z() + begin},
-                           raw(std::as_const(shape.reference)), near_origin.data(), first, last, s.data());
-        return s;
-      },
-      [](Sums a, const Sums& b) {
-        for (std::size_t k = 0; k < a.size(); ++k) a[k] += b[k];
-        return a;
-      });
-  const double count = static_cast<double>(n);
+/// Any frame near the body's motion does; the best one leaves the smallest u.
+void update_frame(const VectorColumn& positions, std::size_t begin, std::span<const FrameSums> partial,
+                  ShapeMatching& shape) {
+  FrameSums sums{};
+  for (const FrameSums& block : partial)
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += block[k];
+  const double count = static_cast<double>(shape.reference.size());
   Eigen::Matrix3d a;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) a(i, j) = sums[static_cast<std::size_t>(3 * i + j)] / count;
   shape.frame.rotation = polar_rotation(a, shape.frame.rotation, shape.total_moment);
   // The reference is centred, so its mean needs no turning.
-  shape.frame.translation = near_origin + Eigen::Vector3d(sums[9], sums[10], sums[11]) / count;
+  shape.frame.translation =
+      positions.get(begin).cast<double>() + Eigen::Vector3d(sums[9], sums[10], sums[11]) / count;
 }
 
 /// The few regions that Newton's method leaves: singular, mirrored, or turned too far.
@@ -102,67 +81,121 @@ void solve_undecided(const ShapeInput& in, std::size_t begin, std::size_t end, S
   }
 }
 
-/// The rows of the particles and the sums of their runs, block by block: a block computes the rows behind it
-/// that its runs reach once more, rather than wait for them.
-void write_particle_table(const ShapeInput& in, const Threads& threads, const ShapeKernels& kernels,
+/// The rows of a block of particles and the sums of their runs: a block computes the rows behind it that its
+/// runs reach once more, rather than wait for them.
+void write_particle_table(const ShapeInput& in, const RangeBlocks::Block& block, const ShapeKernels& kernels,
                           ShapeMatching& shape) {
-  const std::size_t n = shape.reference.size();
+  const std::size_t n = shape.reference.size(), first = block.begin, last = block.end;
   const RunLengths& lengths = shape.regions.lengths;
-  parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
-    float* const table = shape.table.data() + first * k_row;
-    if (lengths.levels == 1) {
-      kernels.write_rows(in, first, last, table);
-      return;
-    }
-    alignas(64) float rows[(k_block + k_longest_run) * k_row];
-    const std::size_t reach = last + lengths.length[lengths.levels - 1] - 1, end = std::min(n, reach);
-    kernels.write_rows(in, first, end, rows);
-    std::fill(rows + (end - first) * k_row, rows + (reach - first) * k_row, 0.0f);
-    kernels.sum_runs(rows, last - first, lengths, n, table);
-  });
+  float* const table = shape.table.data() + first * k_row;
+  if (lengths.levels == 1) {
+    kernels.write_rows(in, first, last, table);
+    return;
+  }
+  alignas(64) float rows[(k_block + k_longest_run) * k_row];
+  const std::size_t reach = last + lengths.length[lengths.levels - 1] - 1, end = std::min(n, reach);
+  kernels.write_rows(in, first, end, rows);
+  std::fill(rows + (end - first) * k_row, rows + (reach - first) * k_row, 0.0f);
+  kernels.sum_runs(rows, last - first, lengths, n, table);
 }
+
+/// Bodies that one thread handles at a time where each takes a microsecond.
+constexpr std::size_t k_body_block = 16;
 
 }  // namespace
 
-void sum_regions(const VectorColumn& positions, std::size_t begin, const Threads& threads,
-                 InstructionLevel level, ShapeMatching& shape) {
-  update_frame(positions, begin, threads, level, shape);
-  const ShapeInput in = input(positions, begin, shape);
-  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
-  write_particle_table(in, threads, kernels, shape);
-  parallel_for(threads, shape.region_weight.size(), [&](std::size_t first, std::size_t last) {
-    kernels.sum_regions(in, first, last, shape.table.data(), shape.sums.data());
-  });
-}
-
-void solve_rotations(const VectorColumn& positions, std::size_t begin, int iterations, const Threads& threads,
-                     InstructionLevel level, ShapeMatching& shape) {
-  const ShapeInput in = input(positions, begin, shape);
-  const RotationKernels& kernels = MALLOW_SELECT(level, rotation_kernels);
-  float* const rotation[4] = {shape.rotation[0].data(), shape.rotation[1].data(), shape.rotation[2].data(),
-                              shape.rotation[3].data()};
-  parallel_for(threads, shape.region_weight.size(), [&](std::size_t first, std::size_t last) {
-    kernels.solve(in, first, last, iterations, shape.sums.data(), rotation, shape.undecided.data());
-    solve_undecided(in, first, last, shape);
-  });
-}
-
-void compute_goals(const VectorColumn& positions, std::size_t begin, const Threads& threads,
-                   InstructionLevel level, ShapeMatching& shape) {
-  const ShapeInput in = input(positions, begin, shape);
-  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
-  const RunLengths& lengths = shape.by_particle().lengths;
-  const float* table = shape.sums.data();
-  if (lengths.levels > 1) {
-    const std::size_t regions = shape.region_weight.size();
-    parallel_for(threads, regions, [&](std::size_t first, std::size_t last) {
-      kernels.sum_runs(shape.sums.data() + first * k_row, last - first, lengths, regions,
-                       shape.table.data() + first * k_row);
-    });
-    table = shape.table.data();
+ShapeInput shape_input(const VectorColumn& positions, std::size_t begin, const ShapeMatching& shape) {
+  ShapeInput in{
+      .regions = raw(shape.regions),
+      .memberships = raw(shape.by_particle()),
+      .position = {positions.x() + begin, positions.y() + begin, positions.z() + begin},
+      .reference = raw(shape.reference),
+      .weight = shape.weight.data(),
+      .region_weight = shape.region_weight.data(),
+      .center = raw(shape.center),
+      .moment = {},
+      .frame_rotation = {},
+      .frame_translation = {},
+  };
+  for (std::size_t k = 0; k < 6; ++k) in.moment[k] = shape.moment[k].data();
+  const Eigen::Matrix3d rotation = shape.frame.rotation.toRotationMatrix();
+  for (int i = 0; i < 3; ++i) {
+    in.frame_translation[i] = static_cast<float>(shape.frame.translation[i]);
+    for (int j = 0; j < 3; ++j) in.frame_rotation[3 * i + j] = static_cast<float>(rotation(i, j));
   }
-  parallel_for(threads, shape.reference.size(), [&](std::size_t first, std::size_t last) {
-    kernels.goals(in, first, last, table, raw(shape.pull));
+  return in;
+}
+
+void MatchedBodies::clear() {
+  bodies.clear();
+  particles.clear();
+  regions.clear();
+}
+
+void MatchedBodies::add(ShapeMatching& shape, std::size_t begin) {
+  bodies.push_back({&shape, begin, {}});
+  particles.add(shape.reference.size());
+  regions.add(shape.region_weight.size());
+}
+
+void sum_regions(const VectorColumn& positions, const Threads& threads, InstructionLevel level,
+                 MatchedBodies& matched) {
+  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
+  matched.partial.resize(matched.particles.blocks.size());
+  parallel_for(threads, matched.particles, [&](const RangeBlocks::Block& block, std::size_t number) {
+    matched.partial[number] = sum_frame(positions, matched.bodies[block.range], block, level);
+  });
+  parallel_for(
+      threads, matched.bodies.size(),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+          MatchedBodies::Body& body = matched.bodies[b];
+          const std::uint32_t first = matched.particles.first[b], last = matched.particles.first[b + 1];
+          update_frame(positions, body.begin, std::span(matched.partial).subspan(first, last - first),
+                       *body.shape);
+          body.input = shape_input(positions, body.begin, *body.shape);
+        }
+      },
+      k_body_block);
+  parallel_for(threads, matched.particles, [&](const RangeBlocks::Block& block, std::size_t) {
+    const MatchedBodies::Body& body = matched.bodies[block.range];
+    write_particle_table(body.input, block, kernels, *body.shape);
+  });
+  parallel_for(threads, matched.regions, [&](const RangeBlocks::Block& block, std::size_t) {
+    const MatchedBodies::Body& body = matched.bodies[block.range];
+    kernels.sum_regions(body.input, block.begin, block.end, body.shape->table.data(),
+                        body.shape->sums.data());
+  });
+}
+
+void solve_rotations(int iterations, const Threads& threads, InstructionLevel level, MatchedBodies& matched) {
+  const RotationKernels& kernels = MALLOW_SELECT(level, rotation_kernels);
+  parallel_for(threads, matched.regions, [&](const RangeBlocks::Block& block, std::size_t) {
+    const MatchedBodies::Body& body = matched.bodies[block.range];
+    ShapeMatching& shape = *body.shape;
+    float* const rotation[4] = {shape.rotation[0].data(), shape.rotation[1].data(), shape.rotation[2].data(),
+                                shape.rotation[3].data()};
+    kernels.solve(body.input, block.begin, block.end, iterations, shape.sums.data(), rotation,
+                  shape.undecided.data());
+    solve_undecided(body.input, block.begin, block.end, shape);
+  });
+}
+
+void compute_goals(const Threads& threads, InstructionLevel level, MatchedBodies& matched) {
+  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
+  const auto has_table = [](const ShapeMatching& shape) { return shape.by_particle().lengths.levels > 1; };
+  parallel_for(threads, matched.regions, [&](const RangeBlocks::Block& block, std::size_t) {
+    ShapeMatching& shape = *matched.bodies[block.range].shape;
+    if (!has_table(shape)) return;
+    kernels.sum_runs(shape.sums.data() + block.begin * k_row, block.end - block.begin,
+                     shape.by_particle().lengths, shape.region_weight.size(),
+                     shape.table.data() + block.begin * k_row);
+  });
+  parallel_for(threads, matched.particles, [&](const RangeBlocks::Block& block, std::size_t) {
+    const MatchedBodies::Body& body = matched.bodies[block.range];
+    ShapeMatching& shape = *body.shape;
+    kernels.goals(body.input, block.begin, block.end,
+                  has_table(shape) ? shape.table.data() : shape.sums.data(), raw(shape.pull));
   });
 }
 

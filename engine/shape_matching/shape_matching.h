@@ -7,6 +7,7 @@
 
 #include "core/column.h"
 #include "core/isa.h"
+#include "core/range_blocks.h"
 #include "core/threads.h"
 #include "shape_matching/regions.h"
 #include "shape_matching/rotation_kernels.h"
@@ -15,20 +16,20 @@
 
 namespace mallow {
 
-/// The rigid motion that takes a group's reference shape nearest to where it is: x ≈ R x̄ + t.
+/// The rigid motion that takes a body's reference shape nearest to where it is: x ≈ R x̄ + t.
 struct RigidFrame {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation{0, 0, 0};
 };
 
-/// Shape matching of one group: its reference shape and the regions on it. Particles are counted from the
-/// group's first, regions by their owners in the order of particles: with a stride of 1 every particle owns a
+/// Shape matching of one body: its reference shape and the regions on it. Particles are counted from the
+/// body's first, regions by their owners in the order of particles: with a stride of 1 every particle owns a
 /// region, and region j is that of particle j.
 struct ShapeMatching {
   float region_radius = 0;  ///< [m]
   int region_stride = 1;    ///< every so many particles one owns a region; >= 1
   float spacing = 0;        ///< of the particles [m]; 0: not known
-  VectorColumn reference;   ///< x̄ relative to the group's centre [m]
+  VectorColumn reference;   ///< x̄ relative to the body's centre [m]
   bool built = false;       ///< the regions belong to the reference shape
 
   TableLists regions;      ///< per region: its particles
@@ -49,8 +50,6 @@ struct ShapeMatching {
 
   double total_moment = 0;  ///< trace of Σ x̄ x̄ᵀ / n [m²]
   RigidFrame frame;
-  std::vector<std::array<double, 12>> partial;
-  std::vector<std::size_t> partial_count;
 
   /// A particle of region j: the owner, or with a stride above 1 the first that the region's list names.
   std::size_t first_row(std::size_t region) const {
@@ -60,15 +59,34 @@ struct ShapeMatching {
   std::size_t bytes() const;
 };
 
+/// What kernels see of a shape whose particles are in the rows from `begin` on.
+ShapeInput shape_input(const VectorColumn& positions, std::size_t begin, const ShapeMatching& shape);
+
+/// Bodies whose shapes are matched together: each phase runs once over the blocks of all of them.
+class MatchedBodies {
+ public:
+  void clear();
+  /// One more body, whose particles are in the rows from `begin` on. Its regions are built, and stay as they
+  /// are until clear().
+  void add(ShapeMatching& shape, std::size_t begin);
+
+  struct Body {
+    ShapeMatching* shape;
+    std::size_t begin;
+    ShapeInput input;  ///< since the last sum_regions()
+  };
+  std::vector<Body> bodies;
+  RangeBlocks particles, regions;
+  std::vector<std::array<double, 12>> partial;
+};
+
 /// First sums over the regions. [model 2]
-void sum_regions(const VectorColumn& positions, std::size_t begin, const Threads& threads,
-                 InstructionLevel level, ShapeMatching& shape);
+void sum_regions(const VectorColumn& positions, const Threads& threads, InstructionLevel level,
+                 MatchedBodies& matched);
 /// R_j of every region from last step's, by at most `iterations` of Newton's method: with k_enough_iterations
 /// to single precision, with fewer as near as they come, with 0 exactly, in double. [model 2]
-void solve_rotations(const VectorColumn& positions, std::size_t begin, int iterations, const Threads& threads,
-                     InstructionLevel level, ShapeMatching& shape);
+void solve_rotations(int iterations, const Threads& threads, InstructionLevel level, MatchedBodies& matched);
 /// g − x of every particle. [TK eq. 7]
-void compute_goals(const VectorColumn& positions, std::size_t begin, const Threads& threads,
-                   InstructionLevel level, ShapeMatching& shape);
+void compute_goals(const Threads& threads, InstructionLevel level, MatchedBodies& matched);
 
 }  // namespace mallow

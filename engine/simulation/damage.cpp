@@ -48,10 +48,10 @@ std::optional<Damage> search_state(const Simulation::State& state) {
   moving.column(Phase::motion, "position", state.store.position, same_row);
   moving.column(Phase::motion, "velocity", state.store.velocity, same_row);
   if (moving.found()) return moving.found();
-  for (const Group& group : state.groups) {
-    const ShapeMatching& shape = group.shape;
-    const auto particle = [&](std::size_t i) { return group.begin + i; };
-    const auto region = [&](std::size_t j) { return group.begin + shape.first_row(j); };
+  for (const BodyState& body : state.bodies) {
+    const ShapeMatching& shape = body.shape;
+    const auto particle = [&](std::size_t i) { return body.begin + i; };
+    const auto region = [&](std::size_t j) { return body.begin + shape.first_row(j); };
     shapes.column(Phase::reference_update, "reference position", shape.reference, particle);
     if (!shape.built) continue;
     shapes.column(Phase::reference_update, "weight", shape.weight, particle);
@@ -75,16 +75,16 @@ void search_sph(const Simulation::State& state, Search& search) {
   if (sph.viscous) search.column(Phase::accelerations, "sorted velocity", sph.velocity, sorted);
   search.column(Phase::accelerations, "acceleration by SPH", sph.acceleration, same_row);
   if (sph.groups.size() > 1)
-    search.column(Phase::accelerations, "acceleration by other groups", sph.cross_group, same_row);
+    search.column(Phase::accelerations, "acceleration by other bodies", sph.cross_group, same_row);
 }
 
-void search_goals(const Group& group, Search& search) {
-  const ShapeMatching& shape = group.shape;
+void search_goals(const BodyState& body, Search& search) {
+  const ShapeMatching& shape = body.shape;
   // The padding of a row is nobody's.
   for (std::size_t j = 0; j < shape.region_weight.size(); ++j)
     search.column(Phase::region_sums, "sum of its region", shape.sums.span().subspan(j * k_row, k_row_sums),
-                  [&](std::size_t) { return group.begin + shape.first_row(j); });
-  search.column(Phase::goals, "pull", shape.pull, [&](std::size_t i) { return group.begin + i; });
+                  [&](std::size_t) { return body.begin + shape.first_row(j); });
+  search.column(Phase::goals, "pull", shape.pull, [&](std::size_t i) { return body.begin + i; });
 }
 
 }  // namespace
@@ -95,8 +95,8 @@ std::optional<Damage> find_damage(const Simulation::State& state, Phase last) {
   if (state.sph_ran) search_sph(state, search);
   if (state.force)
     search.column(Phase::time_step, "acceleration by the force callback", state.user_acceleration, same_row);
-  for (const Group& group : state.groups)
-    if (group.matches_shape()) search_goals(group, search);
+  for (const BodyState& body : state.bodies)
+    if (body.matches_shape()) search_goals(body, search);
   return search.found();
 }
 

@@ -10,15 +10,15 @@ namespace {
 
 using Vec = Eigen::Vector3d;
 
-/// Σ_j ½ Σ_i w_i |x_i − goal_ij|² of a group of unit masses [m²], and g − x of its particles [m].
-double match(const Simulation::State& state, const Group& group, std::vector<Vec>& pull) {
-  const ShapeMatching& shape = group.shape;
+/// Σ_j ½ Σ_i w_i |x_i − goal_ij|² of a body of unit masses [m²], and g − x of its particles [m].
+double match(const Simulation::State& state, const BodyState& body, std::vector<Vec>& pull) {
+  const ShapeMatching& shape = body.shape;
   const auto x = [&](std::uint32_t i) {
-    return Vec(state.store.position.get(group.begin + i).cast<double>());
+    return Vec(state.store.position.get(body.begin + i).cast<double>());
   };
   const auto rest = [&](std::uint32_t i) { return Vec(shape.reference.get(i).cast<double>()); };
-  std::vector<double> regions(group.size(), 0);
-  pull.assign(group.size(), Vec::Zero());
+  std::vector<double> regions(body.size(), 0);
+  pull.assign(body.size(), Vec::Zero());
   double sum = 0;
   for (std::size_t j = 0; j < shape.region_weight.size(); ++j) {
     const std::vector<std::uint32_t> members = decode(shape.regions, j);
@@ -61,16 +61,16 @@ Energy Simulation::energy() {
   Energy energy;
   const Vec gravity = s.config.gravity.cast<double>();
   std::vector<Vec> pull;
-  for (const Group& group : s.groups) {
-    const double mass = static_cast<double>(group.mass);
-    const double stiffness = static_cast<double>(s.stiffness(group));
-    const bool is_elastic = group.matches_shape() && group.shape.built;
-    if (is_elastic) energy.elastic += stiffness * mass * match(s, group, pull);
-    for (std::size_t row = group.begin; row < group.end; ++row) {
+  for (const BodyState& body : s.bodies) {
+    const double mass = static_cast<double>(body.mass);
+    const double stiffness = static_cast<double>(s.stiffness(*body.material));
+    const bool is_elastic = body.matches_shape() && body.shape.built;
+    if (is_elastic) energy.elastic += stiffness * mass * match(s, body, pull);
+    for (std::size_t row = body.begin; row < body.end; ++row) {
       if (!s.store.pin.empty() && s.store.pin[row] != 0) continue;
       const Vec x = s.store.position.get(row).cast<double>() + s.origin.cast<double>();
       const Vec v = s.store.velocity.get(row).cast<double>();
-      const Vec a = is_elastic ? Vec(gravity + stiffness * pull[row - group.begin]) : gravity;
+      const Vec a = is_elastic ? Vec(gravity + stiffness * pull[row - body.begin]) : gravity;
       energy.kinetic += 0.5 * mass * v.squaredNorm();
       energy.gravity -= mass * gravity.dot(x);
       energy.conserved += 0.5 * mass * s.last_time_step * v.dot(a);

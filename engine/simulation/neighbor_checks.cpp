@@ -35,11 +35,11 @@ bool any_pair(const Simulation::State& state, const std::vector<Vec3>& points, f
   return lists.average() > 1;
 }
 
-void check_radius(const Simulation::State& state, const char* field, float radius, const Body& body) {
-  const float spacing = body.spacing;
-  if (radius >= spacing && any_pair(state, body.positions, radius)) return;
+void check_radius(const Simulation::State& state, const char* field, float radius, const Body& points) {
+  const float spacing = points.spacing;
+  if (radius >= spacing && any_pair(state, points.positions, radius)) return;
   // Points may be farther apart than their spacing says, and a jittered lattice is a little.
-  const float nearest = nearest_distance(body.positions, 0, 0);
+  const float nearest = nearest_distance(points.positions, 0, 0);
   const float apart = nearest > 1.5f * spacing ? nearest : spacing;
   std::ostringstream text;
   text << radius << " is not allowed for a body whose particles are " << apart
@@ -49,40 +49,43 @@ void check_radius(const Simulation::State& state, const char* field, float radiu
   throw ConfigError(field, text.str());
 }
 
+/// Where the radius of regions is set.
+const char* region_field(const Material& material) {
+  return material.region_radius ? "material.region_radius" : "solver.support_radius";
+}
+
 /// Where lists of pairs come from.
 struct Pairs {
   const char* field;
   float radius;
-  const Group* group;
+  const BodyState* body;
   double each;   ///< neighbours of a particle, itself included, at most
   double count;  ///< pairs
 };
 
 std::vector<Pairs> pairs_of(const Simulation::State& state) {
   std::vector<Pairs> all;
-  const auto add = [&](const char* field, float radius, const Group& group, std::size_t most) {
-    const double each = std::min(static_cast<double>(most), 1 + full_neighbors(radius, group.spacing));
-    all.push_back({field, radius, &group, each, each * static_cast<double>(group.size())});
+  const auto add = [&](const char* field, float radius, const BodyState& body, std::size_t most) {
+    const double each = std::min(static_cast<double>(most), 1 + full_neighbors(radius, body.spacing));
+    all.push_back({field, radius, &body, each, each * static_cast<double>(body.size())});
   };
-  for (const Group& group : state.groups) {
-    if (group.keeps_reference())
-      add(group.material.region_radius ? "material.region_radius" : "solver.support_radius",
-          group.shape.region_radius, group, group.size());
-    if (state.groups.size() > 1 || group.material.alpha.highest() > 0)
-      add("solver.support_radius", state.config.support_radius, group, state.store.size());
+  for (const BodyState& body : state.bodies) {
+    if (body.keeps_reference())
+      add(region_field(body.material->settings), body.shape.region_radius, body, body.size());
+    if (state.bodies.size() > 1 || body.material->settings.alpha.highest() > 0)
+      add("solver.support_radius", state.config.support_radius, body, state.store.size());
   }
   return all;
 }
 
 }  // namespace
 
-void check_neighbors(const Simulation::State& state, const Group& group, const Body& body) {
-  if (body.positions.size() == 1) return;
-  if (group.material.alpha.highest() > 0)
-    check_radius(state, "solver.support_radius", state.config.support_radius, body);
-  if (group.keeps_reference())
-    check_radius(state, group.material.region_radius ? "material.region_radius" : "solver.support_radius",
-                 group.shape.region_radius, body);
+void check_neighbors(const Simulation::State& state, const Material& material, const Body& points) {
+  if (points.positions.size() == 1) return;
+  const float support_radius = state.config.support_radius;
+  if (material.alpha.highest() > 0) check_radius(state, "solver.support_radius", support_radius, points);
+  if (material.alpha.lowest() < 1)
+    check_radius(state, region_field(material), material.region_radius.value_or(support_radius), points);
 }
 
 void check_memory(const Simulation::State& state) {
@@ -94,9 +97,9 @@ void check_memory(const Simulation::State& state) {
                                      [](const Pairs& a, const Pairs& b) { return a.count < b.count; });
   if (most == all.end() || (bytes <= allowed && most->count <= k_most_pairs)) return;
   std::ostringstream text;
-  const float spacing = most->group->spacing;
-  text << most->radius << " is not allowed: with a spacing of " << spacing << " m in group '"
-       << most->group->name << "' it holds " << full_neighbors(most->radius, spacing)
+  const float spacing = most->body->spacing;
+  text << most->radius << " is not allowed: with a spacing of " << spacing << " m in body '"
+       << most->body->name << "' it holds " << full_neighbors(most->radius, spacing)
        << " neighbours (4/3 pi (radius/spacing)^3), here " << most->each << " of " << state.store.size()
        << " particles, and neighbour lists of " << bytes / std::pow(2.0, 30)
        << " GiB; at most solver.memory_limit = " << state.config.memory_limit << " GiB and " << k_most_pairs

@@ -33,18 +33,18 @@ std::vector<std::uint32_t> rows_near(const ParticleStore& store, std::span<const
 
 /// A point of the new body, or a particle that is there.
 struct Particle {
-  std::size_t id;
-  const Group& group;
+  ParticleId id;
+  const BodyState& body;
   float spacing;
 };
 
 [[noreturn]] void refuse(const Particle& a, const Particle& b, float distance, float limit,
                          const Vec3& place) {
   std::ostringstream text;
-  if (&a.group == &b.group)
-    text << "group '" << a.group.name << "' overlaps itself at (";
+  if (&a.body == &b.body)
+    text << "body '" << a.body.name << "' overlaps itself at (";
   else
-    text << "groups '" << a.group.name << "' and '" << b.group.name << "' overlap at (";
+    text << "bodies '" << a.body.name << "' and '" << b.body.name << "' overlap at (";
   text << text_of(place) << "): particles " << std::min(a.id, b.id) << " and " << std::max(a.id, b.id)
        << " are " << distance << " m apart, at least a tenth of the spacing (" << limit
        << " m) is needed; move a body, or leave out points that are given twice";
@@ -53,7 +53,7 @@ struct Particle {
 
 }  // namespace
 
-void refuse_overlaps(const Simulation::State& state, const Group& group, std::span<const Vec3> positions,
+void refuse_overlaps(const Simulation::State& state, const BodyState& body, std::span<const Vec3> positions,
                      float spacing, const Vec3& origin) {
   const std::vector<std::uint32_t> rows = rows_near(state.store, positions, k_overlap * spacing);
   VectorColumn points(rows.size() + positions.size());
@@ -65,9 +65,8 @@ void refuse_overlaps(const Simulation::State& state, const Group& group, std::sp
   build_neighbor_lists(grid, k_overlap * spacing, state.threads, state.level, lists);
 
   const auto particle = [&](std::uint32_t k) -> Particle {
-    if (k >= rows.size()) return {state.store.size() + k - rows.size(), group, spacing};
-    const Group& other = *std::find_if(state.groups.begin(), state.groups.end(),
-                                       [&](const Group& g) { return rows[k] < g.end; });
+    if (k >= rows.size()) return {state.store.size() + k - rows.size(), body, spacing};
+    const BodyState& other = state.body_of(rows[k]);
     return {state.store.id[rows[k]], other, other.spacing};
   };
   for (std::size_t s = 0; s < grid.order.size(); ++s) {

@@ -17,23 +17,23 @@ constexpr double k_shortest_step = 1e-3;
 constexpr std::int64_t k_sort_interval = 60;
 
 /// σ² ρ0/μ [s]; infinite without viscosity.
-float viscous_time(const SolverConfig& config, const Group& group) {
-  if (!(group.viscosity > 0)) return std::numeric_limits<float>::infinity();
-  return config.support_radius * config.support_radius * group.rest_density / group.viscosity;
+float viscous_time(const SolverConfig& config, const BodyState& body) {
+  if (!(body.viscosity > 0)) return std::numeric_limits<float>::infinity();
+  return config.support_radius * config.support_radius * body.rest_density / body.viscosity;
 }
 
-/// Pressure, viscosity and pull of a group as they act.
-TimeStepLimits::Pressure acting_pressure(const Simulation::State& state, const Group& group) {
-  // Other groups feel the whole pressure, whatever this one's alpha, unless it follows alpha.
-  const bool follows = !group.material.pressure_coefficient;
-  const float push = state.groups.size() > 1 ? (follows ? contact_share(group.alpha) : 1.0f) : group.alpha;
-  const float drag = state.groups.size() > 1 ? 1.0f : group.alpha;
-  return {.coefficient = push * pressure_coefficient(state, group),
-          .kinematic_viscosity = drag * group.viscosity / group.rest_density,
-          .stiffness = state.stiffness(group)};
+/// Pressure, viscosity and pull of a body as they act.
+TimeStepLimits::Pressure acting_pressure(const Simulation::State& state, const BodyState& body) {
+  // Other bodies feel the whole pressure, whatever this one's alpha, unless it follows alpha.
+  const bool follows = !body.material->settings.pressure_coefficient;
+  const float push = state.bodies.size() > 1 ? (follows ? contact_share(body.material->alpha) : 1.0f) : body.material->alpha;
+  const float drag = state.bodies.size() > 1 ? 1.0f : body.material->alpha;
+  return {.coefficient = push * pressure_coefficient(state, *body.material),
+          .kinematic_viscosity = drag * body.viscosity / body.rest_density,
+          .stiffness = state.stiffness(*body.material)};
 }
 
-/// pressures: where those of the groups are kept.
+/// pressures: where those of the bodies are kept.
 TimeStepLimits limits(const Simulation::State& state, std::vector<TimeStepLimits::Pressure>& pressures) {
   TimeStepLimits limits{
       .time_step = state.longest_step(),
@@ -43,9 +43,9 @@ TimeStepLimits limits(const Simulation::State& state, std::vector<TimeStepLimits
       .viscous_time = std::numeric_limits<float>::infinity(),
   };
   pressures.clear();
-  for (const Group& group : state.groups) {
-    pressures.push_back(acting_pressure(state, group));
-    limits.viscous_time = std::min(limits.viscous_time, viscous_time(state.config, group));
+  for (const BodyState& body : state.bodies) {
+    pressures.push_back(acting_pressure(state, body));
+    limits.viscous_time = std::min(limits.viscous_time, viscous_time(state.config, body));
   }
   limits.pressures = pressures;
   return limits;
@@ -90,16 +90,16 @@ void check_damage(const Simulation::State& state) {
 
 }  // namespace
 
-MaterialLimits material_limits(const Simulation::State& state, const Group& group) {
+MaterialLimits material_limits(const Simulation::State& state, const BodyState& body) {
   TimeStepLimits none{.time_step = std::numeric_limits<float>::infinity(),
                       .support_radius = state.config.support_radius,
                       .acoustic = state.config.acoustic_limit,
                       .pressures = {},
                       .viscous_time = std::numeric_limits<float>::infinity()};
   TimeStepLimits pressed = none, viscous = none;
-  const TimeStepLimits::Pressure pressure[] = {acting_pressure(state, group)};
+  const TimeStepLimits::Pressure pressure[] = {acting_pressure(state, body)};
   pressed.pressures = pressure;
-  viscous.viscous_time = viscous_time(state.config, group);
+  viscous.viscous_time = viscous_time(state.config, body);
   return {.by_pressure = limited_time_step(pressed, 0), .by_viscosity = limited_time_step(viscous, 0)};
 }
 
@@ -112,20 +112,20 @@ double unlimited_step(const Simulation::State& state) {
 }
 
 bool Simulation::State::needs_sph() const {
-  return groups.size() > 1 || groups.front().alpha > 0.0f;
+  return bodies.size() > 1 || bodies.front().material->alpha > 0.0f;
 }
 
 void read_alphas(Simulation::State& state) {
-  for (Group& group : state.groups) group.alpha = group.material.alpha.at(state.time);
+  for (MaterialState& material : state.materials) material.alpha = material.settings.alpha.at(state.time);
   resolve_pressures(state);
 }
 
-void take_reference(Simulation::State& state, Group& group) {
+void take_reference(Simulation::State& state, BodyState& body) {
   ColumnOrder& columns = state.region_scratch.columns;
-  group.shape.spacing = group.spacing;
-  update_reference(state.store.position, group.begin, group.end, state.threads, group.shape);
-  sort_reference(state.threads, columns, group.shape);
-  state.store.permute(group.begin, columns.order.span(), state.threads);
+  body.shape.spacing = body.spacing;
+  update_reference(state.store.position, body.begin, body.end, state.threads, state.region_scratch, body.shape);
+  sort_reference(state.threads, columns, body.shape);
+  state.store.permute(body.begin, columns.order.span(), state.threads);
   state.rows_moved();
 }
 
@@ -134,18 +134,19 @@ namespace {
 /// Velocities are those of half a step ago. What the old shape pulled since then goes into them before it is
 /// gone: then an update takes energy and never gives any. Without, a body that yields every few steps and is
 /// as stiff as its step gained energy at each update that met it swinging back.
-void catch_up_with_pull(Simulation::State& state, Group& group) {
-  const VectorColumn& x = state.store.position;
-  sum_regions(x, group.begin, state.threads, state.level, group.shape);
-  solve_rotations(x, group.begin, state.config.rotation_iterations, state.threads, state.level, group.shape);
-  compute_goals(x, group.begin, state.threads, state.level, group.shape);
-  const float kick = 0.5f * static_cast<float>(state.last_time_step) * state.stiffness(group);
+void catch_up_with_pull(Simulation::State& state, BodyState& body) {
+  MatchedBodies matched;
+  matched.add(body.shape, body.begin);
+  sum_regions(state.store.position, state.threads, state.level, matched);
+  solve_rotations(state.config.rotation_iterations, state.threads, state.level, matched);
+  compute_goals(state.threads, state.level, matched);
+  const float kick = 0.5f * static_cast<float>(state.last_time_step) * state.stiffness(*body.material);
   ParticleStore& store = state.store;
-  parallel_for(state.threads, group.size(), [&](std::size_t begin, std::size_t end) {
+  parallel_for(state.threads, body.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t row = group.begin + i;
+      const std::size_t row = body.begin + i;
       if (!store.pin.empty() && store.pin[row] != 0) continue;
-      store.velocity.set(row, store.velocity.get(row) + kick * group.shape.pull.get(i));
+      store.velocity.set(row, store.velocity.get(row) + kick * body.shape.pull.get(i));
     }
   });
 }
@@ -155,33 +156,37 @@ void catch_up_with_pull(Simulation::State& state, Group& group) {
 int update_references(Simulation::State& state) {
   int updated = 0;
   const bool check = update_is_due(state);
-  for (Group& group : state.groups) {
-    const double threshold = static_cast<double>(group.update_threshold * (1.0f - group.alpha));
-    const bool yields = check && group.keeps_reference() && group.mean_external() > threshold;
-    const auto due = [&] { return group.matches_shape() && !group.shape.built; };
+  for (BodyState& body : state.bodies) {
+    const double threshold =
+        static_cast<double>(body.material->update_threshold * (1.0f - body.material->alpha));
+    const bool yields = check && body.keeps_reference() && body.mean_external() > threshold;
+    const auto due = [&] { return body.matches_shape() && !body.shape.built; };
     // A reference shape outlives the step: nothing that is not finite may get into it.
     if (yields || due()) check_damage(state);
     if (yields) {
-      if (group.matches_shape() && group.shape.built) catch_up_with_pull(state, group);
-      take_reference(state, group);
+      if (body.matches_shape() && body.shape.built) catch_up_with_pull(state, body);
+      take_reference(state, body);
       ++updated;
     }
-    if (due()) build_regions(state.threads, state.level, state.region_scratch, group.shape);
+    if (due()) build_regions(state.threads, state.level, state.region_scratch, body.shape);
   }
+  state.matched.clear();
+  for (BodyState& body : state.bodies)
+    if (body.matches_shape()) state.matched.add(body.shape, body.begin);
   return updated;
 }
 
 void sort_fluids(Simulation::State& state) {
   const CellGrid& grid = state.sph.grid;
   if (state.step % k_sort_interval != 1 || grid.order.size() != state.store.size()) return;
-  for (const Group& group : state.groups) {
-    if (group.keeps_reference()) continue;
+  for (const BodyState& body : state.bodies) {
+    if (body.keeps_reference()) continue;
     std::size_t count = 0;
-    state.fluid_order.resize(group.size());
+    state.fluid_order.resize(body.size());
     for (const std::uint32_t row : grid.order)
-      if (row >= group.begin && row < group.end)
-        state.fluid_order[count++] = row - static_cast<std::uint32_t>(group.begin);
-    state.store.permute(group.begin, state.fluid_order.span(), state.threads);
+      if (row >= body.begin && row < body.end)
+        state.fluid_order[count++] = row - static_cast<std::uint32_t>(body.begin);
+    state.store.permute(body.begin, state.fluid_order.span(), state.threads);
     state.rows_moved();
   }
 }
@@ -204,21 +209,29 @@ void call_force(Simulation::State& state) {
 
 namespace {
 
+/// V, and who is that fast.
+Fastest find_fastest(Simulation::State& state) {
+  FastestInput& input = state.fastest;
+  input.time_step = state.longest_step();
+  input.gravity = state.config.gravity;
+  input.sph_acceleration = &state.sph.acceleration;
+  input.cross_group = state.cross_group();
+  input.user = state.user();
+  input.bodies.clear();
+  for (const BodyState& body : state.bodies) {
+    // The paper's bound takes the whole acceleration, of which alpha acts. A k that is left out grows as
+    // alpha falls: steps would be shortened, and varied, by what does not act.
+    const float share = body.material->settings.pressure_coefficient ? 1.0f : body.material->alpha;
+    input.bodies.push_back({body.begin, body.end, share});
+  }
+  return fastest_particle(state.store, state.threads, state.level, input);
+}
+
 /// The longest step that velocities and accelerations allow.
 float longest_time_step(Simulation::State& state, StepReport& report) {
   const float longest = state.longest_step();
   if (!state.sph_ran) return longest;
-  Fastest fastest;
-  for (const Group& group : state.groups) {
-    // The paper's bound takes the whole acceleration, of which alpha acts. A k that is left out grows as
-    // alpha falls: steps would be shortened, and varied, by what does not act.
-    const float share = group.material.pressure_coefficient ? 1.0f : group.alpha;
-    const Fastest one = fastest_particle(state.store, group.begin, group.end, longest, state.sph.acceleration,
-                                         share, state.config.gravity, state.cross_group(), state.user(),
-                                         state.threads, state.level, state.partial_fastest);
-    if (!(one.squared_velocity <= fastest.squared_velocity) && !std::isnan(fastest.squared_velocity))
-      fastest = one;
-  }
+  const Fastest fastest = find_fastest(state);
   const double velocity =
       fastest.squared_velocity == -1 ? 0.0 : std::sqrt(static_cast<double>(fastest.squared_velocity));
   const double step = limited_time_step(limits(state, state.pressures), velocity);
@@ -251,42 +264,53 @@ ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& re
   return {time_step, lands ? end : state.time + report.time_step};
 }
 
-void move_groups(Simulation::State& state, float time_step) {
+namespace {
+
+/// What moves a body in a step; its pull acts for pull_time [s].
+MotionInput motion_of(Simulation::State& state, const BodyState& body, float time_step, float pull_time) {
   const SolverConfig& config = state.config;
-  const float base_step = state.base_step();
+  return {
+      .begin = body.begin,
+      .end = body.end,
+      .time_step = time_step,
+      .alpha = body.material->alpha,
+      .elastic_factor = pull_time * state.stiffness(*body.material),
+      .gravity = config.gravity,
+      .sph_acceleration = state.sph_ran && body.material->alpha > 0 ? &state.sph.acceleration : nullptr,
+      .cross_group = state.cross_group(),
+      .user = state.user(),
+      .pull = body.matches_shape() ? &body.shape.pull : nullptr,
+      .colliders = state.contact_colliders(),
+      .contact = {.time_step = time_step,
+                  .max_push = config.support_radius / (10.0f * state.base_step()),
+                  .contact_offset = config.contact_offset.value_or(0.5f * body.spacing),
+                  .gravity = {config.gravity[0], config.gravity[1], config.gravity[2]},
+                  .least_bounce = 2.0f * config.gravity.norm() * time_step},
+      .pin_velocities = state.pin_velocities,
+      .measure_external = body.step_weight > 0,
+  };
+}
+
+}  // namespace
+
+void move_bodies(Simulation::State& state, float time_step) {
   const double weight = external_weight(state, time_step);
   // Velocities go from the middle of the last step to the middle of this one: with the whole of this one in
   // its place, steps that a limit varies feed a stiff body. The two are the same where steps are equal.
   const auto last_step = static_cast<float>(state.last_time_step);
   const float pull_time = last_step > 0 ? 0.5f * (last_step + time_step) : time_step;
-  for (Group& group : state.groups) {
-    const bool measure = weight > 0 && group.keeps_reference();
-    const MotionInput input{
-        .begin = group.begin,
-        .end = group.end,
-        .time_step = time_step,
-        .alpha = group.alpha,
-        .elastic_factor = pull_time * state.stiffness(group),
-        .gravity = config.gravity,
-        .sph_acceleration = state.sph_ran && group.alpha > 0 ? &state.sph.acceleration : nullptr,
-        .cross_group = state.cross_group(),
-        .user = state.user(),
-        .pull = group.matches_shape() ? &group.shape.pull : nullptr,
-        .colliders = state.contact_colliders(),
-        .contact = {.time_step = time_step,
-                    .max_push = config.support_radius / (10.0f * base_step),
-                    .contact_offset = config.contact_offset.value_or(0.5f * group.spacing),
-                    .gravity = {config.gravity[0], config.gravity[1], config.gravity[2]},
-                    .least_bounce = 2.0f * config.gravity.norm() * time_step},
-        .pin_velocities = state.pin_velocities,
-        .measure_external = measure,
-    };
-    const MotionSums sums =
-        move_particles(input, state.threads, state.level, state.store, state.partial_motion);
+  state.moving.inputs.clear();
+  for (BodyState& body : state.bodies) {
+    body.step_weight = body.keeps_reference() ? weight : 0.0;
+    state.moving.inputs.push_back(motion_of(state, body, time_step, pull_time));
+  }
+  move_particles(state.threads, state.level, state.store, state.moving);
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    const MotionSums& sums = state.moving.sums[b];
     if (sums.bad_row != SIZE_MAX)
       refuse_damage(state, Phase::motion, static_cast<std::uint32_t>(sums.bad_row));
-    group.step_weight = measure ? weight : 0.0;
-    group.step_external = sums.unpinned > 0 ? sums.external / static_cast<double>(sums.unpinned) : 0.0;
+    state.bodies[b].step_external =
+        sums.unpinned > 0 ? sums.external / static_cast<double>(sums.unpinned) : 0.0;
   }
 }
 

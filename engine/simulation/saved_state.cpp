@@ -12,7 +12,7 @@ namespace mallow {
 namespace {
 
 /// Counted up whenever the chunks or what they mean change.
-constexpr std::uint32_t k_version = 2;
+constexpr std::uint32_t k_version = 3;
 static_assert(sizeof(std::size_t) == sizeof(std::uint64_t), "sizes are saved as they are");
 
 // One list of members a type, for both ways: see PackingArchive.
@@ -95,28 +95,28 @@ void pass_material(Archive& archive, Material& material) {
   archive(material.region_stride);
 }
 
-/// How much of the chunks with a row a particle or region is a group's.
+/// How much of the chunks with a row a particle or region is a body's.
 struct ShapeSizes {
   std::uint64_t references = 0, regions = 0;
 };
 
-template <class Archive, class Group>
-void pass_group(Archive& archive, Group& group, ShapeSizes& sizes) {
-  auto& frame = group.shape.frame;
-  archive(group.name);
-  pass_material(archive, group.material);
-  archive(group.begin);
-  archive(group.end);
-  archive(group.spacing);
-  archive(group.mass);
-  archive(group.rest_density);
-  archive(group.alpha);
-  archive(group.external_sum);
-  archive(group.external_weight);
-  archive(group.grew);
-  archive(group.shape.built);
-  archive(group.shape.spacing);
-  archive(group.shape.total_moment);
+/// All of a body but its material.
+template <class Archive, class BodyState>
+void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
+  auto& frame = body.shape.frame;
+  archive(body.name);
+  archive(body.merges);
+  archive(body.begin);
+  archive(body.end);
+  archive(body.spacing);
+  archive(body.mass);
+  archive(body.rest_density);
+  archive(body.external_sum);
+  archive(body.external_weight);
+  archive(body.grew);
+  archive(body.shape.built);
+  archive(body.shape.spacing);
+  archive(body.shape.total_moment);
   archive.array(frame.rotation.coeffs().data(), 4);
   archive.array(frame.translation.data(), 3);
   archive(sizes.references);
@@ -216,47 +216,66 @@ void require_permutation(const UnpackingArchive& archive, std::span<const std::u
   }
 }
 
-void require_valid(const UnpackingArchive& archive, const Simulation::State& state, const Group& group,
+void require_valid(const UnpackingArchive& archive, const Simulation::State& state, const BodyState& body,
                    const ShapeSizes& sizes, std::size_t begin) {
-  Checks checks;
-  check(group.material, checks);
-  check_stiffness(state.config, group.material, checks);
-  checks.finish();
   const auto require = [&](bool ok, const char* what) {
-    if (!ok) archive.fail("group '" + group.name + "': " + what);
+    if (!ok) archive.fail("body '" + body.name + "': " + what);
   };
-  require(group.begin == begin && group.end >= begin, "its rows must follow those of the group before it");
-  require(group.size() > 0 || !state.prepared, "it has no particles");
-  for (const float value : {group.spacing, group.mass, group.rest_density})
-    require(std::isfinite(value) && (value > 0 || group.size() == 0),
+  require(body.begin == begin && body.end >= begin, "its rows must follow those of the body before it");
+  require(body.size() > 0, "it has no particles");
+  for (const float value : {body.spacing, body.mass, body.rest_density})
+    require(std::isfinite(value) && value > 0,
             "spacing, particle mass and rest density must be finite and above 0");
-  require(group.alpha >= 0 && group.alpha <= 1, "alpha must be in [0, 1]");
-  require(std::isfinite(group.external_sum) && group.external_sum >= 0 &&
-              std::isfinite(group.external_weight) && group.external_weight >= 0,
+  require(std::isfinite(body.external_sum) && body.external_sum >= 0 &&
+              std::isfinite(body.external_weight) && body.external_weight >= 0,
           "mean acceleration must be finite and 0 or above");
-  require(group.shape.spacing >= 0 && std::isfinite(group.shape.spacing),
+  require(body.shape.spacing >= 0 && std::isfinite(body.shape.spacing),
           "spacing of the regions must be finite and 0 or above");
-  require(!(group.grew && state.prepared), "it has particles that were not prepared");
-  require(group.grew || !group.keeps_reference() || sizes.references == group.size(),
-          "its reference shape must have as many particles as the group");
-  require(sizes.references <= group.size(), "its reference shape has more particles than the group");
-  require(!group.shape.built || sizes.references > 0, "there are regions without a reference shape");
+  require(!(body.grew && state.prepared), "it has particles that were not prepared");
+  require(body.grew || !body.keeps_reference() || sizes.references == body.size(),
+          "its reference shape must have as many particles as the body");
+  require(sizes.references <= body.size(), "its reference shape has more particles than the body");
+  require(!body.shape.built || sizes.references > 0, "there are regions without a reference shape");
 }
 
-std::vector<ShapeSizes> unpack_groups(const SavedState& saved, Simulation::State& state) {
+void unpack_materials(const SavedState& saved, Simulation::State& state) {
+  unpack(saved, "materials", [&](UnpackingArchive& archive) {
+    Checks checks;
+    constexpr std::size_t k_least_bytes = 16;
+    pass_list(archive, state.materials, k_least_bytes, [&](MaterialState& material) {
+      archive(material.name);
+      pass_material(archive, material.settings);
+      archive(material.alpha);
+      if (!(material.alpha >= 0 && material.alpha <= 1))
+        archive.fail("material '" + material.name + "': alpha must be in [0, 1]");
+      check(material.settings, checks);
+      check_stiffness(state.config, material.settings, checks);
+    });
+    checks.finish();
+    for (std::size_t m = 0; m < state.materials.size(); ++m)
+      state.materials[m].number = static_cast<std::uint32_t>(m);
+  });
+}
+
+std::vector<ShapeSizes> unpack_bodies(const SavedState& saved, Simulation::State& state) {
   std::vector<ShapeSizes> sizes;
-  unpack(saved, "groups", [&](UnpackingArchive& archive) {
+  unpack(saved, "bodies", [&](UnpackingArchive& archive) {
     std::size_t rows = 0;
     constexpr std::size_t k_least_bytes = 64;
-    pass_list(archive, state.groups, k_least_bytes, [&](Group& group) {
-      pass_group(archive, group, sizes.emplace_back());
-      require_valid(archive, state, group, sizes.back(), rows);
-      rows = group.end;
-      group.shape.region_radius = group.material.region_radius.value_or(state.config.support_radius);
-      group.shape.region_stride = group.material.region_stride;
+    pass_list(archive, state.bodies, k_least_bytes, [&](BodyState& body) {
+      std::uint32_t material = 0;
+      archive(material);
+      if (material >= state.materials.size())
+        archive.fail("there is no material " + std::to_string(material));
+      body.material = &state.materials[material];
+      pass_body(archive, body, sizes.emplace_back());
+      require_valid(archive, state, body, sizes.back(), rows);
+      rows = body.end;
+      const Material& settings = body.material->settings;
+      body.shape.region_radius = settings.region_radius.value_or(state.config.support_radius);
+      body.shape.region_stride = settings.region_stride;
     });
-    if (state.groups.size() > k_max_groups) archive.fail("there are more than 256");
-    if (state.groups.empty() && state.prepared) archive.fail("there are none");
+    if (state.bodies.empty() && state.prepared) archive.fail("there are none");
   });
   return sizes;
 }
@@ -287,14 +306,44 @@ void unpack_obstacles(const SavedState& saved, Simulation::State& state) {
   });
 }
 
+/// Who has which slot, from the ids that the rows hold.
+void unpack_slots(const SavedState& saved, ParticleStore& store) {
+  ParticleSlots& slots = store.slots;
+  unpack(saved, "generations", [&](UnpackingArchive& archive) { unpack_column(archive, slots.generation); });
+  unpack(saved, "free_slots", [&](UnpackingArchive& archive) {
+    pass_list(archive, slots.free, sizeof(std::uint32_t), [&](std::uint32_t& slot) { archive(slot); });
+    if (!slots.generation.empty() && slots.generation.size() != store.size() + slots.free.size())
+      archive.fail("there must be a generation for each slot, or none");
+    if (slots.generation.empty() && !slots.free.empty()) archive.fail("no slot was given back");
+  });
+  const std::size_t count = store.size() + slots.free.size();
+  slots.row.resize(count);
+  std::vector<bool> taken(count, false);
+  const auto take = [&](const UnpackingArchive& archive, std::uint32_t slot) {
+    if (slot >= count || taken[slot]) archive.fail(std::to_string(slot) + " appears twice or is too large");
+    taken[slot] = true;
+  };
+  const UnpackingArchive ids("ids", {}), free_slots("free_slots", {});
+  for (const ParticleId id : store.id) {
+    take(ids, slot_of(id));
+    if (generation_of(id) != (slots.generation.empty() ? 0 : slots.generation[slot_of(id)]))
+      ids.fail(std::to_string(id) + " is not of the generation of its slot");
+  }
+  for (const std::uint32_t slot : slots.free) {
+    take(free_slots, slot);
+    slots.row[slot] = ParticleSlots::k_free;
+  }
+  slots.place(0, store.id.span());
+}
+
 void unpack_particles(const SavedState& saved, Simulation::State& state) {
   ParticleStore& store = state.store;
-  const std::size_t n = state.groups.empty() ? 0 : state.groups.back().end;
+  const std::size_t n = state.bodies.empty() ? 0 : state.bodies.back().end;
   unpack(saved, "ids", [&](UnpackingArchive& archive) {
     unpack_column(archive, store.id);
-    if (store.size() != n) archive.fail("there must be one for each particle of the groups");
-    require_permutation(archive, store.id.span());
+    if (store.size() != n) archive.fail("there must be one for each particle of the bodies");
   });
+  unpack_slots(saved, store);
   unpack(saved, "positions", [&](UnpackingArchive& archive) { archive.columns(store.position, n); });
   unpack(saved, "velocities", [&](UnpackingArchive& archive) { archive.columns(store.velocity, n); });
   unpack(saved, "pinned", [&](UnpackingArchive& archive) {
@@ -304,8 +353,6 @@ void unpack_particles(const SavedState& saved, Simulation::State& state) {
     for (const std::uint16_t pin : store.pin)
       if (pin > state.pin_velocities.size()) archive.fail("there is no pin " + std::to_string(pin - 1));
   });
-  store.row_of_id.resize(n);
-  for (std::size_t row = 0; row < n; ++row) store.row_of_id[store.id[row]] = static_cast<std::uint32_t>(row);
   store.next_position.resize(n);
   store.next_velocity.resize(n);
 }
@@ -313,18 +360,18 @@ void unpack_particles(const SavedState& saved, Simulation::State& state) {
 /// Reference shapes, regions built on them anew, and the rotations that those start from.
 void unpack_shapes(const SavedState& saved, const std::vector<ShapeSizes>& sizes, Simulation::State& state) {
   unpack(saved, "references", [&](UnpackingArchive& archive) {
-    for (std::size_t g = 0; g < sizes.size(); ++g)
-      archive.columns(state.groups[g].shape.reference, sizes[g].references);
+    for (std::size_t b = 0; b < sizes.size(); ++b)
+      archive.columns(state.bodies[b].shape.reference, sizes[b].references);
   });
   unpack(saved, "rotations", [&](UnpackingArchive& archive) {
-    for (std::size_t g = 0; g < sizes.size(); ++g) {
-      ShapeMatching& shape = state.groups[g].shape;
+    for (std::size_t b = 0; b < sizes.size(); ++b) {
+      ShapeMatching& shape = state.bodies[b].shape;
       if (!shape.built) continue;
       build_regions(state.threads, state.level, state.region_scratch, shape);
-      if (shape.region_weight.size() != sizes[g].regions)
+      if (shape.region_weight.size() != sizes[b].regions)
         archive.fail("this build of mallow makes " + std::to_string(shape.region_weight.size()) +
-                     " regions of group '" + state.groups[g].name + "', not " +
-                     std::to_string(sizes[g].regions));
+                     " regions of body '" + state.bodies[b].name + "', not " +
+                     std::to_string(sizes[b].regions));
       for (Column<float>& component : shape.rotation) archive.array(component.data(), component.size());
     }
   });
@@ -362,11 +409,18 @@ SavedState Simulation::save() const {
   add(packed("version", [&](PackingArchive& archive) { archive(k_version); }));
   add(packed("solver", [&](PackingArchive& archive) { pass_solver(archive, s.config); }));
   add(packed("clock", [&](PackingArchive& archive) { pass_clock(archive, s); }));
-  add(packed("groups", [&](PackingArchive& archive) {
-    pass_list(archive, s.groups, 0, [&](const Group& group) {
-      ShapeSizes sizes{group.shape.reference.size(),
-                       group.shape.built ? group.shape.region_weight.size() : 0};
-      pass_group(archive, group, sizes);
+  add(packed("materials", [&](PackingArchive& archive) {
+    pass_list(archive, s.materials, 0, [&](const MaterialState& material) {
+      archive(material.name);
+      pass_material(archive, material.settings);
+      archive(material.alpha);
+    });
+  }));
+  add(packed("bodies", [&](PackingArchive& archive) {
+    pass_list(archive, s.bodies, 0, [&](const BodyState& body) {
+      ShapeSizes sizes{body.shape.reference.size(), body.shape.built ? body.shape.region_weight.size() : 0};
+      archive(body.material->number);
+      pass_body(archive, body, sizes);
     });
   }));
   add(packed("origin", [&](PackingArchive& archive) { archive(s.origin); }));
@@ -378,16 +432,20 @@ SavedState Simulation::save() const {
     pass_list(archive, s.pin_velocities, 0, [&](const Vec3& velocity) { archive(velocity); });
   }));
   add(packed_column("ids", s.store.id));
+  add(packed_column("generations", s.store.slots.generation));
+  add(packed("free_slots", [&](PackingArchive& archive) {
+    pass_list(archive, s.store.slots.free, 0, [&](std::uint32_t slot) { archive(slot); });
+  }));
   add(packed_columns("positions", s.store.position));
   add(packed_columns("velocities", s.store.velocity));
   add(packed_column("pinned", s.store.pin));
   add(packed("references", [&](PackingArchive& archive) {
-    for (const Group& group : s.groups) archive.columns(group.shape.reference);
+    for (const BodyState& body : s.bodies) archive.columns(body.shape.reference);
   }));
   add(packed("rotations", [&](PackingArchive& archive) {
-    for (const Group& group : s.groups)
-      for (const Column<float>& component : group.shape.rotation)
-        if (group.shape.built) archive.array(component.data(), component.size());
+    for (const BodyState& body : s.bodies)
+      for (const Column<float>& component : body.shape.rotation)
+        if (body.shape.built) archive.array(component.data(), component.size());
   }));
   add(packed("cell_order", [&](PackingArchive& archive) {
     // An order of fewer rows than there are is never used again.
@@ -423,12 +481,13 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
         (!settled && (state.prepared || scale.spacing > 0)))
       archive.fail("what settings follow from is not known");
   });
-  const std::vector<ShapeSizes> sizes = unpack_groups(saved, state);
+  unpack_materials(saved, state);
+  const std::vector<ShapeSizes> sizes = unpack_bodies(saved, state);
   unpack_obstacles(saved, state);
   unpack_particles(saved, state);
   unpack_shapes(saved, sizes, state);
   if (state.scale.spacing > 0) resolve_settings(state);
-  if (state.prepared) describe_groups(state);
+  if (state.prepared) describe_bodies(state);
   unpack_neighbors(saved, state);
   return simulation;
 }

@@ -36,9 +36,9 @@ TimeStepSource resolve_time_step(const SceneScale& scale, SolverConfig& config) 
   return config.gravity.isZero() ? TimeStepSource::speed : TimeStepSource::gravity;
 }
 
-float default_viscosity(const SceneScale& scale, float time_step, const Group& group) {
-  const float volume = group.spacing * group.spacing * group.spacing;
-  return default_kinematic_viscosity(scale, time_step) * group.mass / volume;
+float default_viscosity(const SceneScale& scale, float time_step, const BodyState& body) {
+  const float volume = body.spacing * body.spacing * body.spacing;
+  return default_kinematic_viscosity(scale, time_step) * body.mass / volume;
 }
 
 /// That a default k suits [s].
@@ -68,52 +68,54 @@ float largest_norm(const VectorColumn& vectors) {
 void resolve_settings(Simulation::State& state) {
   if (state.scale.spacing == 0) {
     SceneScale scale{.spacing = std::numeric_limits<float>::max(), .gravity = state.config.gravity};
-    for (const Group& group : state.groups) scale.spacing = std::min(scale.spacing, group.spacing);
+    for (const BodyState& body : state.bodies) scale.spacing = std::min(scale.spacing, body.spacing);
     scale.speed = fastest_speed(state);
     SolverConfig config = state.config;
     const TimeStepSource source = resolve_time_step(scale, config);
     Checks checks;
-    for (const Group& group : state.groups) {
-      check_stiffness(config, group.material, checks);
-      if (!group.material.pressure_coefficient &&
+    for (const MaterialState& material : state.materials) {
+      check_stiffness(config, material.settings, checks);
+      if (!material.settings.pressure_coefficient &&
           !std::isfinite(default_pressure_coefficient(config.support_radius, 0, 0, *config.time_step)))
         checks.problem("material.pressure_coefficient",
                        "is missing: what follows from support_radius and time_step is no number of single "
                        "precision; give it");
-      if (!group.material.viscosity && !std::isfinite(default_viscosity(scale, *config.time_step, group)))
+    }
+    for (const BodyState& body : state.bodies)
+      if (!body.material->settings.viscosity &&
+          !std::isfinite(default_viscosity(scale, *config.time_step, body)))
         checks.problem("material.viscosity",
                        "is missing: what follows from spacing, gravity and mass is no number of single "
                        "precision; give it");
-    }
     checks.finish();
     state.config = config;
     state.scale = scale;
     state.time_step_source = source;
   }
   const float threshold = default_update_threshold(state.scale, state.base_step());
-  for (Group& group : state.groups) {
-    group.update_threshold = group.material.update_threshold.value_or(threshold);
-    group.viscosity =
-        group.material.viscosity.value_or(default_viscosity(state.scale, state.base_step(), group));
-  }
+  for (MaterialState& material : state.materials)
+    material.update_threshold = material.settings.update_threshold.value_or(threshold);
+  for (BodyState& body : state.bodies)
+    body.viscosity = body.material->settings.viscosity.value_or(
+        default_viscosity(state.scale, state.base_step(), body));
 }
 
-float pressure_coefficient(const Simulation::State& state, const Group& group) {
-  if (group.material.pressure_coefficient) return *group.material.pressure_coefficient;
+float pressure_coefficient(const Simulation::State& state, const MaterialState& material) {
+  if (material.settings.pressure_coefficient) return *material.settings.pressure_coefficient;
   const float time_step = pressed_step(state);
-  return default_pressure_coefficient(state.config.support_radius, group.alpha,
-                                      state.stiffness(group) * time_step * time_step, time_step);
+  return default_pressure_coefficient(state.config.support_radius, material.alpha,
+                                      state.stiffness(material) * time_step * time_step, time_step);
 }
 
 void resolve_pressures(Simulation::State& state) {
-  for (std::size_t g = 0; g < state.groups.size(); ++g) {
-    const Group& group = state.groups[g];
-    SphGroup& sums = state.sph.groups[g];
-    sums.pressure_coefficient = pressure_coefficient(state, group);
+  for (const BodyState& body : state.bodies) {
+    const MaterialState& material = *body.material;
+    SphGroup& sums = state.sph.groups[body.sph_group];
+    sums.pressure_coefficient = pressure_coefficient(state, material);
     sums.contact_share = 1;
-    sums.cohesion = group.material.cohesion;
-    if (group.material.pressure_coefficient) continue;
-    sums.contact_share = contact_share(group.alpha);
+    sums.cohesion = material.settings.cohesion;
+    if (material.settings.pressure_coefficient) continue;
+    sums.contact_share = contact_share(material.alpha);
     sums.cohesion *=
         cohesive_share(state.config.support_radius, sums.pressure_coefficient, pressed_step(state));
   }
@@ -144,10 +146,10 @@ double external_weight(const Simulation::State& state, float time_step) {
 
 void add_external(Simulation::State& state) {
   const bool judged = update_is_due(state);
-  for (Group& group : state.groups) {
-    if (judged) group.external_sum = group.external_weight = 0;
-    group.external_sum += group.step_weight * group.step_external;
-    group.external_weight += group.step_weight;
+  for (BodyState& body : state.bodies) {
+    if (judged) body.external_sum = body.external_weight = 0;
+    body.external_sum += body.step_weight * body.step_external;
+    body.external_weight += body.step_weight;
   }
   if (!counts_steps(state.config)) state.passed_periods = passed_periods(state, state.time);
 }

@@ -10,24 +10,24 @@
 /// What configs leave out, and what they ask for: settled in prepare(), before anything is allocated.
 namespace mallow {
 
-struct Group;
+struct BodyState;
+struct MaterialState;
 
 /// The longest of some vectors.
 float largest_norm(const VectorColumn& vectors);
-/// Share of k that acts between groups where k follows alpha: what makes it that of alpha 1.
+/// Share of k that acts between bodies where k follows alpha: what makes it that of alpha 1.
 float contact_share(float alpha);
 /// Share of a default k that negative pressures have before cohesion takes its own.
 float cohesive_share(float support_radius, float pressure_coefficient, float time_step);
 
-/// Spacing and speeds -> scale, time_step and its source, if this is the first prepare(); γ_u and μ of every
-/// group.
-/// Throws ConfigError where nothing says how long a step is, where steps are too long for a material's
+/// Spacing and speeds -> scale, time_step and its source, if this is the first prepare(); γ_u of every
+/// material and μ of every body. Throws ConfigError where nothing says how long a step is, where steps are too long for a material's
 /// springs, or where a default is beyond single precision.
 void resolve_settings(Simulation::State& state);
-/// α, settings -> k of every group in the sums of SPH.
+/// α, settings -> k of every body in the sums of SPH.
 void resolve_pressures(Simulation::State& state);
 /// k in force.
-float pressure_coefficient(const Simulation::State& state, const Group& group);
+float pressure_coefficient(const Simulation::State& state, const MaterialState& material);
 
 /// Time between checks of the reference shapes, where no step is shortened [s].
 double update_period(const Simulation::State& state);
@@ -41,18 +41,17 @@ double external_weight(const Simulation::State& state, float time_step);
 /// was judged at its start no more.
 void add_external(Simulation::State& state);
 
-/// Throws ConfigError where a body of several particles has no neighbours at all within the radii of its
-/// group.
-void check_neighbors(const Simulation::State& state, const Group& group, const Body& body);
+/// Throws ConfigError where several points have no neighbours at all within the radii of their material.
+void check_neighbors(const Simulation::State& state, const Material& material, const Body& points);
 /// Throws ConfigError where neighbour lists would take more memory than allowed.
 void check_memory(const Simulation::State& state);
 
-/// To what a material bounds all steps where SPH acts [s].
+/// To what the material of a body bounds all steps where SPH acts [s].
 struct MaterialLimits {
   double by_pressure;   ///< which viscosity calms
   double by_viscosity;  ///< which diffuses
 };
-MaterialLimits material_limits(const Simulation::State& state, const Group& group);
+MaterialLimits material_limits(const Simulation::State& state, const BodyState& body);
 /// Whether gravity is that of a planet or moon in metres and seconds, by its size.
 bool is_in_metres(const Vec3& gravity);
 /// What can be run, but is hardly meant. alpha and defaults are settled.

@@ -12,15 +12,16 @@
 namespace mallow {
 namespace {
 
-/// Bodies of one group share their spacing to this relative difference.
+/// The particles of one body share their spacing to this relative difference.
 constexpr float k_same_spacing = 1e-3f;
 
-Group& checked(std::vector<Group>& groups, GroupId id) {
+template <class List, class Id>
+auto& checked(List& list, Id id, const char* kind) {
   const auto index = static_cast<std::size_t>(id);
-  if (index >= groups.size())
-    throw ConfigError("group", "there is no group " + std::to_string(index) +
-                                   "; groups so far: " + std::to_string(groups.size()));
-  return groups[index];
+  if (index >= list.size())
+    throw ConfigError(kind, std::string("there is no ") + kind + ' ' + std::to_string(index) + "; there are " +
+                                std::to_string(list.size()));
+  return list[index];
 }
 
 void normalize(Plane& plane) {
@@ -34,19 +35,33 @@ void normalize(Union& shapes) {
   for (Primitive& part : shapes.parts) std::visit([](auto& shape) { normalize(shape); }, part);
 }
 
-/// m and ρ0 of a group; what the material leaves out follows from ρ0 = m Σ W over the lattice. [model 1]
-void derive_density(const SolverConfig& config, Group& group) {
+/// m and ρ0 of a body; what the material leaves out follows from ρ0 = m Σ W over the lattice. [model 1]
+void derive_density(const SolverConfig& config, BodyState& body) {
   const double per_mass =
-      lattice_density(static_cast<double>(config.support_radius), static_cast<double>(group.spacing));
-  const Material& material = group.material;
+      lattice_density(static_cast<double>(config.support_radius), static_cast<double>(body.spacing));
+  const Material& material = body.material->settings;
   if (material.particle_mass)
-    group.mass = *material.particle_mass;
+    body.mass = *material.particle_mass;
   else
-    group.mass = material.rest_density
-                     ? static_cast<float>(static_cast<double>(*material.rest_density) / per_mass)
-                     : 1.0f;
-  group.rest_density =
-      material.rest_density.value_or(static_cast<float>(static_cast<double>(group.mass) * per_mass));
+    body.mass = material.rest_density
+                    ? static_cast<float>(static_cast<double>(*material.rest_density) / per_mass)
+                    : 1.0f;
+  body.rest_density =
+      material.rest_density.value_or(static_cast<float>(static_cast<double>(body.mass) * per_mass));
+}
+
+/// Whether two bodies act on each other as parts of one.
+bool merge(const BodyState& a, const BodyState& b) {
+  return a.merges && b.merges && a.material == b.material &&
+         std::abs(a.spacing - b.spacing) <= k_same_spacing * a.spacing;
+}
+
+/// Why an id names no particle.
+std::string why_unknown(const ParticleStore& store, ParticleId id) {
+  if (slot_of(id) < store.slots.size() && !store.slots.generation.empty())
+    return "particle " + std::to_string(id) + " was removed";
+  return "there is no particle " + std::to_string(id) + "; ids are 0 to " +
+         std::to_string(static_cast<std::int64_t>(store.slots.size()) - 1);
 }
 
 /// Colliders that are there already are seen from the origin too.
@@ -60,26 +75,38 @@ void take_origin(Simulation::State& state, const Vec3& origin) {
 
 }  // namespace
 
-void describe_groups(Simulation::State& state) {
+void describe_bodies(Simulation::State& state) {
   Sph& sph = state.sph;
   sph.groups.clear();
-  sph.group_end.clear();
+  sph.bodies.clear();
   sph.viscous = false;
   double volume = 0;
-  for (const Group& group : state.groups) {
-    volume += static_cast<double>(group.size()) * std::pow(static_cast<double>(group.spacing), 3);
-    sph.groups.push_back(
-        {.mass = group.mass,
-         .rest_density = group.rest_density,
-         .rest_volume = group.mass / group.rest_density,
-         .pressure_coefficient = 0,  // this and the two of pressure follow alpha: resolve_pressures()
-         .contact_share = 1,
-         .viscosity = group.viscosity,
-         .cohesion = 0});
-    sph.group_end.push_back(group.end);
-    sph.viscous = sph.viscous || group.viscosity > 0;
+  std::vector<const BodyState*> merging;  // the first of each group that merges
+  for (BodyState& body : state.bodies) {
+    volume += static_cast<double>(body.size()) * std::pow(static_cast<double>(body.spacing), 3);
+    sph.viscous = sph.viscous || body.viscosity > 0;
+    const auto known = std::ranges::find_if(merging, [&](const BodyState* one) { return merge(*one, body); });
+    if (known != merging.end()) {
+      body.sph_group = (*known)->sph_group;
+    } else {
+      body.sph_group = static_cast<std::uint32_t>(sph.groups.size());
+      if (body.merges) merging.push_back(&body);
+      sph.groups.push_back(
+          {.mass = body.mass,
+           .rest_density = body.rest_density,
+           .rest_volume = body.mass / body.rest_density,
+           .pressure_coefficient = 0,  // this and the two of pressure follow alpha: resolve_pressures()
+           .contact_share = 1,
+           .viscosity = body.viscosity,
+           .cohesion = 0});
+    }
+    sph.bodies.push_back({body.end, body.sph_group});
   }
   sph.grid.spacing = static_cast<float>(std::cbrt(volume / static_cast<double>(state.store.size())));
+}
+
+const BodyState& Simulation::State::body(BodyId id) const {
+  return checked(bodies, id, "body");
 }
 
 void Simulation::State::refuse_in_callback() const {
@@ -103,76 +130,98 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
-GroupId Simulation::add_group(const Material& material, std::string name) {
+MaterialId Simulation::add_material(const Material& material, std::string name) {
   state_->refuse_in_callback();
+  State& s = *state_;
   Checks checks;
   check(material, checks);
   checks.finish();
-  check_stiffness(state_->config, material, checks);
+  check_stiffness(s.config, material, checks);
   checks.finish();
-  State& s = *state_;
-  if (s.groups.size() == k_max_groups) throw ConfigError("group", "at most 256 groups are possible");
-  Group group;
-  group.name = name.empty() ? "group " + std::to_string(s.groups.size()) : std::move(name);
-  group.material = material;
-  group.begin = group.end = s.store.size();
-  group.shape.region_radius = material.region_radius.value_or(s.config.support_radius);
-  group.shape.region_stride = material.region_stride;
-  s.groups.push_back(std::move(group));
+  if (name.empty()) name = "material " + std::to_string(s.materials.size());
+  const auto number = static_cast<std::uint32_t>(s.materials.size());
+  s.materials.push_back({.name = std::move(name), .number = number, .settings = material});
   s.prepared = false;
-  return static_cast<GroupId>(s.groups.size() - 1);
+  return MaterialId{number};
 }
 
-void Simulation::add_body(const Body& body, GroupId id) {
-  state_->refuse_in_callback();
-  State& s = *state_;
-  Group& group = checked(s.groups, id);
-  Checks checks;
-  check(body, checks);
-  if (group.spacing > 0 && !(std::abs(body.spacing - group.spacing) <= k_same_spacing * group.spacing)) {
-    std::ostringstream text;
-    text << body.spacing << " is not allowed in group '" << group.name << "', whose spacing is "
-         << group.spacing << ": bodies of one group share one spacing";
-    checks.problem("body.spacing", text.str());
-  }
-  checks.finish();
-  const Vec3 origin = s.store.size() == 0 ? choose_origin(body) : s.origin;
+namespace {
+
+/// Puts the points of a body behind its last row. Throws ConfigError, and changes nothing.
+void add_points(Simulation::State& s, const Body& points, BodyState& body) {
+  const Vec3 origin = s.store.size() == 0 ? choose_origin(points) : s.origin;
   std::vector<Vec3> positions;
-  positions.reserve(body.positions.size());
-  for (const Vec3& x : body.positions) positions.push_back(relative_to(origin, x));
-  refuse_overlaps(s, group, positions, body.spacing, origin);
-  check_neighbors(s, group, body);
-  std::vector<Vec3> velocities(body.positions.size(), body.velocity);
-  for (std::size_t i = 0; i < body.velocities.size(); ++i) velocities[i] += body.velocities[i];
+  positions.reserve(points.positions.size());
+  for (const Vec3& x : points.positions) positions.push_back(relative_to(origin, x));
+  refuse_overlaps(s, body, positions, points.spacing, origin);
+  check_neighbors(s, body.material->settings, points);
+  std::vector<Vec3> velocities(points.positions.size(), points.velocity);
+  for (std::size_t i = 0; i < points.velocities.size(); ++i) velocities[i] += points.velocities[i];
   if (s.store.size() == 0) take_origin(s, origin);
-  s.store.insert(group.end, positions, velocities);
-  group.end += body.positions.size();
-  for (std::size_t g = static_cast<std::size_t>(id) + 1; g < s.groups.size(); ++g) {
-    s.groups[g].begin += body.positions.size();
-    s.groups[g].end += body.positions.size();
-  }
-  if (group.spacing == 0) group.spacing = body.spacing;
-  derive_density(s.config, group);
-  group.grew = true;
+  s.store.insert(body.end, positions, velocities);
+  body.end += positions.size();
+  body.grew = true;
   s.prepared = false;
   s.sph_ran = false;
   s.far_step = -1;
 }
 
-GroupId Simulation::add_body(const Body& body, const Material& material, std::string name) {
+}  // namespace
+
+BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  MaterialState& material = checked(s.materials, id, "material");
   Checks checks;
-  check(body, checks);
+  check(points, checks);
+  checks.finish();
+  BodyState body;
+  body.name = name.empty() ? "body " + std::to_string(s.bodies.size()) : std::move(name);
+  body.material = &material;
+  body.merges = points.merges;
+  body.begin = body.end = s.store.size();
+  body.spacing = points.spacing;
+  body.shape.region_radius = material.settings.region_radius.value_or(s.config.support_radius);
+  body.shape.region_stride = material.settings.region_stride;
+  derive_density(s.config, body);
+  add_points(s, points, body);
+  s.bodies.push_back(std::move(body));
+  return static_cast<BodyId>(s.bodies.size() - 1);
+}
+
+BodyId Simulation::add_body(const Body& points, const Material& material, std::string name) {
+  Checks checks;
+  check(points, checks);
   checks.finish();
   const bool was_prepared = state_->prepared;
-  const GroupId group = add_group(material, std::move(name));
+  const MaterialId id = add_material(material, name);
   try {
-    add_body(body, group);
+    return add_body(points, id, std::move(name));
   } catch (...) {
-    state_->groups.pop_back();
+    state_->materials.pop_back();
     state_->prepared = was_prepared;
     throw;
   }
-  return group;
+}
+
+void Simulation::extend_body(BodyId id, const Body& points) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  BodyState& body = checked(s.bodies, id, "body");
+  Checks checks;
+  check(points, checks);
+  if (!(std::abs(points.spacing - body.spacing) <= k_same_spacing * body.spacing)) {
+    std::ostringstream text;
+    text << points.spacing << " is not allowed in body '" << body.name << "', whose spacing is "
+         << body.spacing << ": all particles of a body share one spacing";
+    checks.problem("body.spacing", text.str());
+  }
+  checks.finish();
+  add_points(s, points, body);
+  for (std::size_t b = static_cast<std::size_t>(id) + 1; b < s.bodies.size(); ++b) {
+    s.bodies[b].begin += points.positions.size();
+    s.bodies[b].end += points.positions.size();
+  }
 }
 
 ColliderId Simulation::add_collider(const Collider& collider) {
@@ -208,18 +257,20 @@ PinId Simulation::pin(std::span<const ParticleId> ids, const Vec3& velocity) {
   State& s = *state_;
   Checks checks;
   checks.vector("pin.velocity", velocity);
+  std::vector<std::size_t> rows;
   for (const ParticleId id : ids) {
-    if (id < s.store.size()) continue;
-    checks.problem("pin", "there is no particle " + std::to_string(id) + "; ids are 0 to " +
-                              std::to_string(static_cast<std::int64_t>(s.store.size()) - 1));
+    if (const std::optional<std::size_t> row = s.store.slots.find(id)) {
+      rows.push_back(*row);
+      continue;
+    }
+    checks.problem("pin", why_unknown(s.store, id));
     break;
   }
   if (s.pin_velocities.size() == k_max_pins) checks.problem("pin", "at most 65535 pins are possible");
   checks.finish();
   s.pin_velocities.push_back(velocity);
   if (s.store.pin.empty()) s.store.pin.resize(s.store.size());
-  for (const ParticleId id : ids)
-    s.store.pin[s.store.row_of_id[id]] = static_cast<std::uint16_t>(s.pin_velocities.size());
+  for (const std::size_t row : rows) s.store.pin[row] = static_cast<std::uint16_t>(s.pin_velocities.size());
   return static_cast<PinId>(s.pin_velocities.size() - 1);
 }
 
@@ -229,28 +280,32 @@ void Simulation::set_force(ForceCallback callback) {
   if (!state_->force) state_->user_acceleration.release();
 }
 
-void Simulation::set_alpha(GroupId id, const AlphaSchedule& alpha) {
+void Simulation::set_alpha(MaterialId id, const AlphaSchedule& alpha) {
   state_->refuse_in_callback();
-  Group& group = checked(state_->groups, id);
+  State& s = *state_;
+  MaterialState& material = checked(s.materials, id, "material");
   Checks checks;
   check(alpha, checks);
   checks.finish();
-  Material changed = group.material;
+  Material changed = material.settings;
   changed.alpha = alpha;
-  check_stiffness(state_->config, changed, checks);
+  check_stiffness(s.config, changed, checks);
   checks.finish();
-  group.material.alpha = alpha;
-  if (!group.keeps_reference()) {
-    // Rows of fluids are sorted, which a reference shape that is kept would not follow.
-    ShapeMatching none;
-    none.region_radius = group.shape.region_radius;
-    none.region_stride = group.shape.region_stride;
-    group.shape = std::move(none);
-  }
-  // A fluid that may turn elastic remembers the shape it has now.
-  if (group.keeps_reference() && group.shape.reference.size() != group.size()) {
-    group.grew = true;
-    state_->prepared = false;
+  material.settings.alpha = alpha;
+  for (BodyState& body : s.bodies) {
+    if (body.material != &material) continue;
+    if (!body.keeps_reference()) {
+      // Rows of fluids are sorted, which a reference shape that is kept would not follow.
+      ShapeMatching none;
+      none.region_radius = body.shape.region_radius;
+      none.region_stride = body.shape.region_stride;
+      body.shape = std::move(none);
+    }
+    // A fluid that may turn elastic remembers the shape it has now.
+    if (body.keeps_reference() && body.shape.reference.size() != body.size()) {
+      body.grew = true;
+      s.prepared = false;
+    }
   }
 }
 
@@ -281,22 +336,20 @@ void Simulation::prepare() {
   if (s.prepared) return;
   Checks checks;
   if (s.store.size() == 0) checks.problem("body", "no particles: a simulation needs at least one");
-  for (const Group& group : s.groups)
-    if (group.size() == 0) checks.problem("group", "group '" + group.name + "' has no particles");
   checks.finish();
   resolve_settings(s);
   check_memory(s);
 
   s.sph.kept.forget();
-  describe_groups(s);
-  for (Group& group : s.groups) {
-    if (group.grew && group.keeps_reference()) take_reference(s, group);
-    group.grew = false;
+  describe_bodies(s);
+  for (BodyState& body : s.bodies) {
+    if (body.grew && body.keeps_reference()) take_reference(s, body);
+    body.grew = false;
   }
   read_alphas(s);
-  for (Group& group : s.groups)
-    if (group.matches_shape() && !group.shape.built)
-      build_regions(s.threads, s.level, s.region_scratch, group.shape);
+  for (BodyState& body : s.bodies)
+    if (body.matches_shape() && !body.shape.built)
+      build_regions(s.threads, s.level, s.region_scratch, body.shape);
   s.prepared = true;
 }
 

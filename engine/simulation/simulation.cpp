@@ -35,20 +35,14 @@ StepReport Simulation::step_towards(double end) {
   const ChosenStep step = choose_time_step(s, end, report);  // v, a, time left -> Δt        [TK eq. 12]
   timer.lap(Phase::time_step);
 
-  for (Group& g : s.groups)
-    if (g.matches_shape()) sum_regions(x, g.begin, s.threads, s.level, g.shape);  // x, x̄ -> sums over N_j
+  sum_regions(x, s.threads, s.level, s.matched);  // x, x̄ -> sums over N_j
   timer.lap(Phase::region_sums);
-  const int iterations = s.config.rotation_iterations;
-  for (Group& g : s.groups)
-    if (g.matches_shape())
-      solve_rotations(x, g.begin, iterations, s.threads, s.level, g.shape);  // sums -> R_j
+  solve_rotations(s.config.rotation_iterations, s.threads, s.level, s.matched);  // sums -> R_j
   timer.lap(Phase::rotations);
-  for (Group& g : s.groups)
-    if (g.matches_shape())
-      compute_goals(x, g.begin, s.threads, s.level, g.shape);  // R_j -> g − x       [TK eq. 7]
+  compute_goals(s.threads, s.level, s.matched);  // R_j -> g − x       [TK eq. 7]
   timer.lap(Phase::goals);
 
-  move_groups(s, step.time_step);  // a, g − x -> v', x'           [TK eq. 10, 11, 13]
+  move_bodies(s, step.time_step);  // a, g − x -> v', x'           [TK eq. 10, 11, 13]
   finish_step(s, step);            // v', x' -> v, x; c ← c + 1
   timer.lap(Phase::motion);
   return report;

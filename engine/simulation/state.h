@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -16,33 +18,43 @@
 
 namespace mallow {
 
-/// Groups, and pins, are named by 8 and 16 bits a particle.
-inline constexpr std::size_t k_max_groups = 256;
+/// Pins are named by 16 bits a particle.
 inline constexpr std::size_t k_max_pins = 65535;
 
-/// One material, one reference shape, one range of rows.
-struct Group {
+/// What bodies are made of, for all of them that share it.
+struct MaterialState {
   std::string name;
-  Material material;
+  std::uint32_t number = 0;  ///< its MaterialId
+  Material settings;
+  float alpha = 0;             ///< at the present time
+  float update_threshold = 0;  ///< γ_u in force [m/s²]
+
+  bool keeps_reference() const { return settings.alpha.lowest() < 1.0f; }
+};
+
+/// A range of rows and its reference shape.
+struct BodyState {
+  std::string name;
+  MaterialState* material = nullptr;
+  bool merges = false;             ///< Body::merges
   std::size_t begin = 0, end = 0;  ///< rows
-  float spacing = 0;               ///< h [m]; 0 while it has no particles
+  float spacing = 0;               ///< h [m]
   float mass = 0;                  ///< m [kg]
   float rest_density = 0;          ///< ρ0 [kg/m³]
-  float update_threshold = 0;      ///< γ_u in force [m/s²]
   float viscosity = 0;             ///< μ in force [Pa s]
-  float alpha = 0;                 ///< at the present time
+  std::uint32_t sph_group = 0;     ///< that of bodies which merge with this one, and its own
   double external_sum = 0;         ///< Σ of mean |a_ext|, times external_weight(), for the next check
   double external_weight = 0;      ///< Σ of these weights
   double step_external = 0;        ///< mean |a_ext| in the step under way [m/s²], and its weight
   double step_weight = 0;
-  bool grew = false;    ///< has particles that prepare() has not seen
+  bool grew = true;     ///< has particles that prepare() has not seen
   ShapeMatching shape;  ///< empty where alpha is never below 1
 
   std::size_t size() const { return end - begin; }
   /// Mean |a_ext| before the check that is next [m/s²].
   double mean_external() const { return external_weight > 0 ? external_sum / external_weight : 0.0; }
-  bool keeps_reference() const { return material.alpha.lowest() < 1.0f; }
-  bool matches_shape() const { return alpha < 1.0f; }
+  bool keeps_reference() const { return material->keeps_reference(); }
+  bool matches_shape() const { return material->alpha < 1.0f; }
 };
 
 /// All that a simulation is.
@@ -59,7 +71,8 @@ struct Simulation::State {
 
   Vec3 origin{0, 0, 0};  ///< that positions in the store are relative to, see choose_origin() [m]
   ParticleStore store;
-  std::vector<Group> groups;
+  std::deque<MaterialState> materials;  ///< bodies point to them
+  std::vector<BodyState> bodies;        ///< in the order of their rows
   std::vector<Collider> colliders;       ///< as the user sees them
   std::vector<Collider> near_colliders;  ///< relative to the origin; empty where that is 0
   std::vector<Vec3> pin_velocities;
@@ -75,14 +88,21 @@ struct Simulation::State {
   bool sph_ran = false;  ///< in the last step
   // Scratch.
   RegionScratch region_scratch;
+  MatchedBodies matched;  ///< those whose shape is matched in the step under way
+  FastestInput fastest;
+  MovingBodies moving;
   Column<std::uint32_t> fluid_order;
-  std::vector<Fastest> partial_fastest;
   std::vector<TimeStepLimits::Pressure> pressures;
-  std::vector<MotionSums> partial_motion;
 
   /// Δt0, and what bounds the steps that are taken. Known from the first prepare() on [s].
   float base_step() const { return *config.time_step; }
   float longest_step() const { return config.time_step_factor * *config.time_step; }
+  /// Throws ConfigError where there is none of this name.
+  const BodyState& body(BodyId id) const;
+  /// The body of a row.
+  const BodyState& body_of(std::size_t row) const {
+    return *std::ranges::upper_bound(bodies, row, {}, &BodyState::end);
+  }
   bool is_far() const { return origin != Vec3(0, 0, 0); }
   /// A position of the store as the user sees it.
   Vec3 far(const Vec3& x) const { return (origin.cast<double>() + x.cast<double>()).cast<float>(); }
@@ -105,26 +125,27 @@ struct Simulation::State {
   /// Throws ConfigError where a step cannot lead towards `end`, as that is not after the present time.
   void require_ahead(double end) const;
 
-  /// Some acceleration of SPH counts: pairs within a group that is not purely elastic, or between groups.
+  /// Some acceleration of SPH counts: pairs within a body that is not purely elastic, or between bodies.
   bool needs_sph() const;
-  /// Of a group's pull towards its goals, (1 − α)/(Δt0 Δt_SM) [1/s²]. [TK eq. 13]
-  float stiffness(const Group& group) const {
-    return (1.0f - group.alpha) / (base_step() * group.material.elastic_time_step.value_or(base_step()));
+  /// Of the pull towards goals, (1 − α)/(Δt0 Δt_SM) [1/s²]. [TK eq. 13]
+  float stiffness(const MaterialState& material) const {
+    const float elastic_step = material.settings.elastic_time_step.value_or(base_step());
+    return (1.0f - material.alpha) / (base_step() * elastic_step);
   }
   const VectorColumn* cross_group() const {
-    return sph_ran && groups.size() > 1 ? &sph.cross_group : nullptr;
+    return sph_ran && sph.groups.size() > 1 ? &sph.cross_group : nullptr;
   }
   const VectorColumn* user() const { return force ? &user_acceleration : nullptr; }
 };
 
 // The phases of step(), in its order. Each says what it reads -> what it writes.
 
-/// time -> alpha of every group, and k where that follows it.
+/// time -> alpha of every material, and k where that follows it.
 void read_alphas(Simulation::State& state);
-/// mean |a_ext| -> reference shapes that give way, their rows sorted; regions that are due. Returns how many
-/// gave way. [TK 3.2, model 6]
+/// mean |a_ext| -> reference shapes that give way, their rows sorted; regions that are due; the bodies whose
+/// shapes are matched in this step. Returns how many gave way. [TK 3.2, model 6]
 int update_references(Simulation::State& state);
-/// Rows of groups without a reference shape into the cell order of the last neighbour search, now and then:
+/// Rows of bodies without a reference shape into the cell order of the last neighbour search, now and then:
 /// what is near in space is near in memory.
 void sort_fluids(Simulation::State& state);
 /// positions, velocities -> user accelerations.
@@ -139,15 +160,15 @@ struct ChosenStep {
 ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& report);
 /// everything -> next positions and velocities, mean |a_ext|. [TK eq. 10, 11, 13, model 4, 5] Throws
 /// StepError.
-void move_groups(Simulation::State& state, float time_step);
+void move_bodies(Simulation::State& state, float time_step);
 /// next positions and velocities become the present ones; time, step and colliders move on.
 void finish_step(Simulation::State& state, const ChosenStep& step);
 
-/// Takes the positions of a group as its reference shape and sorts its rows for that.
-void take_reference(Simulation::State& state, Group& group);
+/// Takes the positions of a body as its reference shape and sorts its rows for that.
+void take_reference(Simulation::State& state, BodyState& body);
 
-/// groups -> their constants in SPH, the typical spacing of particles.
-void describe_groups(Simulation::State& state);
+/// bodies -> groups of SPH, which of them belong together, the typical spacing of particles.
+void describe_bodies(Simulation::State& state);
 
 /// Writes the wall time between laps into a report.
 class PhaseTimer {

@@ -12,19 +12,26 @@ VectorView view(const VectorColumn& column) {
   return {column.x(), column.size(), column.stride()};
 }
 
-std::vector<Vec3> by_id(const ParticleStore& store, const VectorColumn& column) {
-  std::vector<Vec3> values(store.size());
-  for (std::size_t id = 0; id < values.size(); ++id) values[id] = column.get(store.row_of_id[id]);
+/// value(row) of every particle, in the order of slots.
+template <class Value>
+auto by_id(const ParticleStore& store, const Value& value) {
+  std::vector<decltype(value(std::size_t{}))> values;
+  values.reserve(store.size());
+  for (const std::uint32_t row : store.slots.row)
+    if (row != ParticleSlots::k_free) values.push_back(value(row));
   return values;
 }
+std::vector<Vec3> by_id(const ParticleStore& store, const VectorColumn& column) {
+  return by_id(store, [&](std::size_t row) { return column.get(row); });
+}
 
-/// Mean |N_i| over the present positions of a group that has no reference shape.
-double count_neighbors(const Simulation::State& s, const Group& group) {
+/// Mean |N_i| over the present positions of a body that has no reference shape.
+double count_neighbors(const Simulation::State& s, const BodyState& body) {
   CellGrid grid;
   NeighborLists lists;
-  build_cell_grid(s.store.position, group.begin, group.end, group.shape.region_radius, s.threads, s.level,
-                  grid);
-  build_neighbor_lists(grid, group.shape.region_radius, s.threads, s.level, lists);
+  const float radius = body.shape.region_radius;
+  build_cell_grid(s.store.position, body.begin, body.end, radius, s.threads, s.level, grid);
+  build_neighbor_lists(grid, radius, s.threads, s.level, lists);
   return lists.average();
 }
 
@@ -61,8 +68,8 @@ void AdvanceReport::add(const StepReport& step) {
 std::size_t Simulation::particle_count() const {
   return state_->store.size();
 }
-std::size_t Simulation::group_count() const {
-  return state_->groups.size();
+std::size_t Simulation::body_count() const {
+  return state_->bodies.size();
 }
 double Simulation::time() const {
   return state_->time;
@@ -90,11 +97,12 @@ std::span<const float> Simulation::densities() const {
   return state_->sph_ran ? state_->sph.density_by_row.span() : std::span<const float>{};
 }
 
-Simulation::Rows Simulation::rows(GroupId group) const {
-  const auto index = static_cast<std::size_t>(group);
-  if (index >= state_->groups.size())
-    throw ConfigError("group", "there is no group " + std::to_string(index));
-  return {state_->groups[index].begin, state_->groups[index].end};
+Simulation::Rows Simulation::rows(BodyId id) const {
+  const BodyState& body = state_->body(id);
+  return {body.begin, body.end};
+}
+MaterialId Simulation::material(BodyId id) const {
+  return MaterialId{state_->body(id).material->number};
 }
 
 std::vector<Vec3> Simulation::positions_by_id() const {
@@ -104,12 +112,11 @@ std::vector<Vec3> Simulation::velocities_by_id() const {
   return by_id(state_->store, state_->store.velocity);
 }
 
-std::vector<std::uint8_t> Simulation::groups_by_id() const {
-  std::vector<std::uint8_t> groups(state_->store.size());
-  for (std::size_t g = 0; g < state_->groups.size(); ++g)
-    for (std::size_t row = state_->groups[g].begin; row < state_->groups[g].end; ++row)
-      groups[state_->store.id[row]] = static_cast<std::uint8_t>(g);
-  return groups;
+std::vector<std::uint32_t> Simulation::bodies_by_id() const {
+  const State& s = *state_;
+  return by_id(s.store, [&](std::size_t row) {
+    return static_cast<std::uint32_t>(&s.body_of(row) - s.bodies.data());
+  });
 }
 
 std::uint64_t Simulation::state_hash() const {
@@ -130,7 +137,7 @@ SimulationInfo Simulation::info() {
   info.particles = s.store.size();
   info.sph = s.needs_sph();
   info.viscosity = info.sph && s.sph.viscous;
-  info.cross_group = s.groups.size() > 1;
+  info.cross_group = s.sph.groups.size() > 1;
   info.instruction_level = s.level;
   info.bytes = s.store.bytes() + s.sph.bytes() + s.fluid_order.bytes() + s.user_acceleration.bytes() +
                s.far_position.bytes() + s.region_scratch.bytes();
@@ -140,22 +147,24 @@ SimulationInfo Simulation::info() {
   info.update_period = update_period(s);
   info.unlimited_step = unlimited_step(s);
   info.warnings = warnings(s);
-  for (const Group& group : s.groups) {
-    info.bytes += group.shape.bytes();
-    info.groups.push_back(
-        {.name = group.name,
-         .particles = group.size(),
-         .spacing = group.spacing,
-         .particle_mass = group.mass,
-         .rest_density = group.rest_density,
-         .region_radius = group.shape.region_radius,
-         .alpha = group.alpha,
-         .update_threshold = group.update_threshold,
-         .pressure_coefficient = pressure_coefficient(s, group),
-         .viscosity = group.viscosity,
-         .average_neighbors = group.shape.built ? group.shape.average_neighbors : count_neighbors(s, group),
-         .regions = group.shape.built ? group.shape.region_weight.size() : 0,
-         .shape_matching = group.matches_shape()});
+  for (const BodyState& body : s.bodies) {
+    info.bytes += body.shape.bytes();
+    const ShapeMatching& shape = body.shape;
+    info.bodies.push_back(
+        {.name = body.name,
+         .material = body.material->name,
+         .particles = body.size(),
+         .spacing = body.spacing,
+         .particle_mass = body.mass,
+         .rest_density = body.rest_density,
+         .region_radius = shape.region_radius,
+         .alpha = body.material->alpha,
+         .update_threshold = body.material->update_threshold,
+         .pressure_coefficient = pressure_coefficient(s, *body.material),
+         .viscosity = body.viscosity,
+         .average_neighbors = shape.built ? shape.average_neighbors : count_neighbors(s, body),
+         .regions = shape.built ? shape.region_weight.size() : 0,
+         .shape_matching = body.matches_shape()});
   }
   return info;
 }

@@ -19,7 +19,7 @@ constexpr double k_short_steps = 0.5;
 constexpr double k_many_neighbors = 4000;
 /// Spacings within which there are the six nearest and the twelve of diagonals: fewer hold no body together.
 constexpr float k_least_radius = 1.45f;
-/// So many particles of other groups within a spacing are inside of these: a lattice has four there on the
+/// So many particles of other bodies within a spacing are inside of these: a lattice has four there on the
 /// mean, and one that touches has one.
 constexpr std::ptrdiff_t k_inside = 3;
 
@@ -28,115 +28,115 @@ class Warnings {
   explicit Warnings(const Simulation::State& state) : state_(state) {}
 
   std::vector<std::string> list() && {
-    for (const Group& group : state_.groups) {
-      look_at_threshold(group);
-      look_at_density(group);
-      look_at_limits(group);
-      look_at_neighbors(group);
+    for (const BodyState& body : state_.bodies) {
+      look_at_threshold(body);
+      look_at_density(body);
+      look_at_limits(body);
+      look_at_neighbors(body);
     }
-    if (state_.step == 0 && state_.groups.size() > 1) look_at_overlaps();
+    if (state_.step == 0 && state_.bodies.size() > 1) look_at_overlaps();
     return std::move(list_);
   }
 
  private:
   template <class... Words>
-  void add(const Group& group, const Words&... words) {
+  void add(const BodyState& body, const Words&... words) {
     std::ostringstream text;
-    text << "group '" << group.name << "': ";
+    text << "body '" << body.name << "': ";
     (text << ... << words);
     list_.push_back(text.str());
   }
 
-  void look_at_threshold(const Group& group) {
-    if (!group.material.update_threshold) return;
+  void look_at_threshold(const BodyState& body) {
+    if (!body.material->settings.update_threshold) return;
     const float gravity = state_.config.gravity.norm();
     float alpha = -1;  // the largest below 1 that the schedule names: there the threshold is lowest
-    for (const AlphaKey& key : group.material.alpha.keys())
+    for (const AlphaKey& key : body.material->settings.alpha.keys())
       if (key.alpha < 1) alpha = std::max(alpha, key.alpha);
-    const float threshold = group.update_threshold * (1 - alpha);
+    const float threshold = body.material->update_threshold * (1 - alpha);
     if (alpha < 0 || threshold >= k_resting * gravity) return;
-    add(group, "update_threshold ", group.update_threshold, " times 1 - alpha (", alpha, ") is ", threshold,
+    add(body, "update_threshold ", body.material->update_threshold, " times 1 - alpha (", alpha, ") is ", threshold,
         " m/s2, below twice gravity (", k_resting * gravity,
         " m/s2): at rest its own weight updates the reference shape, so that it sinks like clay; 40 times "
         "gravity is ",
         40 * gravity);
   }
 
-  void look_at_density(const Group& group) {
-    const float density = group.rest_density;
+  void look_at_density(const BodyState& body) {
+    const float density = body.rest_density;
     if (!is_in_metres(state_.config.gravity)) return;
     if (density >= k_least_density && density <= k_most_density) return;
     std::ostringstream source;
-    if (group.material.rest_density)
+    if (body.material->settings.rest_density)
       source << "is given";
     else
-      source << "follows from the spacing and particles of " << group.mass << " kg";
-    add(group, "a rest density of ", density, " kg/m3 ", source.str(),
+      source << "follows from the spacing and particles of " << body.mass << " kg";
+    add(body, "a rest density of ", density, " kg/m3 ", source.str(),
         ": no material has it, if gravity is in metres and seconds; give rest_density, 1000 for water");
   }
 
-  void look_at_limits(const Group& group) {
+  void look_at_limits(const BodyState& body) {
     if (!state_.needs_sph() || !state_.config.acoustic_limit) return;
     const double longest = static_cast<double>(state_.longest_step());
-    const MaterialLimits limits = material_limits(state_, group);
+    const MaterialLimits limits = material_limits(state_, body);
     const auto shortens = [&](double step) {
       std::ostringstream text;
       text << " shortens every step from " << longest << " s to " << step << " s or less; ";
       return text.str();
     };
     if (limits.by_viscosity < k_short_steps * longest)
-      add(group, "viscosity ", group.viscosity, shortens(limits.by_viscosity),
+      add(body, "viscosity ", body.viscosity, shortens(limits.by_viscosity),
           "lower it, or solver.time_step");
     if (limits.by_pressure >= k_short_steps * longest) return;
-    if (group.material.pressure_coefficient)
-      add(group, "pressure_coefficient ", *group.material.pressure_coefficient, shortens(limits.by_pressure),
+    if (body.material->settings.pressure_coefficient)
+      add(body, "pressure_coefficient ", *body.material->settings.pressure_coefficient, shortens(limits.by_pressure),
           "lower it, or solver.time_step, or raise viscosity");
-    else if (group.material.viscosity)
-      add(group, "viscosity ", group.viscosity, " is too low to calm the pressure that keeps the volume, and",
+    else if (body.material->settings.viscosity)
+      add(body, "viscosity ", body.viscosity, " is too low to calm the pressure that keeps the volume, and",
           shortens(limits.by_pressure), "leave it out, raise it, or give a lower pressure_coefficient");
     else
-      add(group, "support_radius ", state_.config.support_radius, ", ",
-          state_.config.support_radius / group.spacing, " spacings,", shortens(limits.by_pressure),
+      add(body, "support_radius ", state_.config.support_radius, ", ",
+          state_.config.support_radius / body.spacing, " spacings,", shortens(limits.by_pressure),
           "2 to 3 spacings are usual, or give a lower pressure_coefficient");
   }
 
-  void look_at_neighbors(const Group& group) {
+  void look_at_neighbors(const BodyState& body) {
     const auto look = [&](const char* field, float radius, std::size_t most) {
-      const double each = std::min(static_cast<double>(most), full_neighbors(radius, group.spacing));
+      const double each = std::min(static_cast<double>(most), full_neighbors(radius, body.spacing));
       if (each > k_many_neighbors)
-        add(group, field, ' ', radius, " is ", radius / group.spacing, " spacings: up to ", each,
+        add(body, field, ' ', radius, " is ", radius / body.spacing, " spacings: up to ", each,
             " neighbours each, where 30 to 80 are usual, and steps take that much longer");
-      if (radius < k_least_radius * group.spacing && group.size() > 1)
-        add(group, field, ' ', radius, " is ", radius / group.spacing, " spacings: about ", std::round(each),
+      if (radius < k_least_radius * body.spacing && body.size() > 1)
+        add(body, field, ' ', radius, " is ", radius / body.spacing, " spacings: about ", std::round(each),
             " neighbours each, where 30 to 80 are usual; so few hold no body together, 2.1 spacings do");
     };
     if (state_.needs_sph()) look("support_radius", state_.config.support_radius, state_.store.size());
-    if (group.keeps_reference()) look("the radius of its regions,", group.shape.region_radius, group.size());
+    if (body.keeps_reference()) look("the radius of its regions,", body.shape.region_radius, body.size());
   }
 
-  /// Particles that start within another group, which drives them out.
+  /// Particles that start within another body, which drives them out.
   void look_at_overlaps() {
     float reach = std::numeric_limits<float>::infinity();
-    for (const Group& group : state_.groups) reach = std::min(reach, group.spacing);
+    for (const BodyState& body : state_.bodies) reach = std::min(reach, body.spacing);
     const std::size_t n = state_.store.size();
     CellGrid grid;
     NeighborLists lists;
     build_cell_grid(state_.store.position, 0, n, reach, state_.threads, state_.level, grid);
     build_neighbor_lists(grid, reach, state_.threads, state_.level, lists);
-    std::vector<std::size_t> group_of(n);
-    for (std::size_t g = 0; g < state_.groups.size(); ++g)
-      for (std::size_t row = state_.groups[g].begin; row < state_.groups[g].end; ++row) group_of[row] = g;
-    std::vector<std::size_t> overlapping(state_.groups.size());
+    std::vector<std::size_t> body_of(n);
+    for (std::size_t g = 0; g < state_.bodies.size(); ++g)
+      for (std::size_t row = state_.bodies[g].begin; row < state_.bodies[g].end; ++row) body_of[row] = g;
+    std::vector<std::size_t> overlapping(state_.bodies.size());
     for (std::size_t s = 0; s < n; ++s) {
-      const std::size_t own = group_of[grid.order[s]];
+      const std::size_t own = body_of[grid.order[s]];
       const auto list = lists.of(s);
-      const auto is_another = [&](std::uint32_t t) { return group_of[grid.order[t]] != own; };
+      const auto is_another = [&](std::uint32_t t) { return body_of[grid.order[t]] != own; };
       if (std::count_if(list.begin(), list.end(), is_another) >= k_inside) ++overlapping[own];
     }
     for (std::size_t g = 0; g < overlapping.size(); ++g)
       if (overlapping[g] > 0)
-        add(state_.groups[g], overlapping[g], " of ", state_.groups[g].size(),
-            " particles start within another group, which drives them out; move one of the bodies");
+        add(state_.bodies[g], overlapping[g], " of ", state_.bodies[g].size(),
+            " particles start within another body, which drives them out; move one of the two");
   }
 
   const Simulation::State& state_;

@@ -50,8 +50,8 @@ bool find_neighbors(const VectorColumn& positions, const Threads& threads, Instr
   sph.group.resize(n);
   parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto behind = std::upper_bound(sph.group_end.begin(), sph.group_end.end(), sph.grid.order[i]);
-      sph.group[i] = static_cast<std::uint8_t>(behind - sph.group_end.begin());
+      sph.group[i] =
+          std::ranges::upper_bound(sph.bodies, std::size_t{sph.grid.order[i]}, {}, &Sph::Body::end)->group;
     }
   });
   return true;

@@ -22,14 +22,21 @@ struct Sph {
   Formulation formulation = Formulation::conservative;
   bool viscous = false;                ///< some group has μ > 0
   float neighbor_slack = 0;            ///< share of σ by which lists reach farther
-  std::vector<SphGroup> groups;        ///< constants per group
-  std::vector<std::size_t> group_end;  ///< per group: row behind its last
+  /// Constants of particles that act on each other as parts of one body: that of one body, or of several
+  /// that merge.
+  std::vector<SphGroup> groups;
+  /// The rows up to `end`, behind those of the body before.
+  struct Body {
+    std::size_t end;
+    std::uint32_t group;
+  };
+  std::vector<Body> bodies;
 
   CellGrid grid;
   NeighborLists lists;  ///< a list per cluster of the grid
   KeptLists kept;       ///< empty without slack
   // Sorted order.
-  Column<std::uint8_t> group;  ///< empty where there is one group
+  Column<std::uint32_t> group;  ///< empty where there is one group
   VectorColumn velocity;       ///< empty without viscosity
   Column<float> density, pressure, volume;
   // By row of the particle store.

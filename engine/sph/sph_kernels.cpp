@@ -161,13 +161,13 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
   const Floats own_pressure = load(pressures + first);
   Floats3 v = {};
   if (viscous && Formula::central) v = load_vectors(in.velocity, first);
-  Ints own = Ints{} + (grouped ? in.group[first] : 0);  // lanes without a particle too
+  Ints own = Ints{} + (grouped ? static_cast<int>(in.group[first]) : 0);  // lanes without a particle too
   Floats own_viscosity = all(in.groups[0].viscosity), own_rest = all(in.groups[0].rest_volume);
   Floats touching_pressure = {};
   if (grouped) {
     for (std::size_t i = first; i < in.cluster_start[cluster + 1]; ++i) {
       const SphGroup& group = in.groups[in.group[i]];
-      own[i - first] = in.group[i];
+      own[i - first] = static_cast<int>(in.group[i]);
       own_viscosity[i - first] = group.viscosity;
       own_rest[i - first] = group.rest_volume;
       touching_pressure[i - first] = pressures[i] * group.contact_share;
@@ -178,7 +178,7 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
   const Floats own_volume = load(volumes + first);
   const Floats own_share = smaller(own_rest / larger(own_volume, all(k_least)), all(1.0f));
   const auto add_pairs = [&](std::uint32_t j, const Separation& apart) {
-    const int number = grouped ? in.group[j] : 0;
+    const int number = grouped ? static_cast<int>(in.group[j]) : 0;
     const SphGroup& group = in.groups[number];
     Sides sides{own_pressure, pressures[j], volumes[j], own_viscosity + group.viscosity, {}, {}};
     if (viscous) sides.velocity = difference(in.velocity, j, v);

@@ -32,7 +32,7 @@ struct SphInput {
   const std::uint32_t* list_count;
   const std::uint32_t* indices;
   const std::uint32_t* row_of;  ///< sorted place -> row of the particle store
-  const std::uint8_t* group;    ///< null: all in group 0
+  const std::uint32_t* group;   ///< null: all in group 0
   const SphGroup* groups;
   ConstVectors position;
   ConstVectors velocity;  ///< accelerations only; null without viscosity

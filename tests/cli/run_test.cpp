@@ -101,7 +101,7 @@ TEST_F(cli_run, results_go_to_stdout_and_progress_to_stderr) {
 TEST_F(cli_run, info_names_what_would_run) {
   const Outcome outcome = run_mallow({"info", scene_, "--set", "material[0].viscosity=0.0"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("particles        125 in 1 group"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("particles        125 in 1 body"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("SPH              on"), std::string::npos);
   EXPECT_NE(outcome.out.find("viscosity        off"), std::string::npos);
 }

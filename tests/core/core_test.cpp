@@ -27,17 +27,50 @@ TEST(column, keeps_values_when_it_grows_and_pads_with_zeros) {
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(column.data()) % 64, 0u);
 }
 
-TEST(column, with_room_keeps_its_memory_as_it_grows_a_little) {
-  Column<float> column(5);
+TEST(column, that_grows_again_and_again_is_rarely_allocated_anew) {
+  Column<float> column(1000);
+  VectorColumn vectors(1000);
   column[4] = 7;
-  column.resize_with_room(1000);
-  const float* const memory = column.data();
-  for (std::size_t size = 1001; size <= 1250; ++size) {
-    column.resize_with_room(size);
-    ASSERT_EQ(column.data(), memory);
+  vectors.set(4, {7, 8, 9});
+  EXPECT_EQ(column.bytes(), padded(1000) * sizeof(float)) << "what is made at once has no room to spare";
+  int moved = 0;
+  for (std::size_t size = 1001; size <= 10000; ++size) {
+    const float *const memory = column.data(), *const of_vectors = vectors.x();
+    column.resize(size);
+    vectors.resize(size);
+    moved += column.data() != memory;
+    moved += vectors.x() != of_vectors;
     ASSERT_EQ(column[size - 1], 0.0f);
+    ASSERT_EQ(vectors.get(size - 1), Vec3(0, 0, 0));
   }
+  EXPECT_LE(moved, 2 * 11) << "1.25^11 is above 10";
   EXPECT_EQ(column[4], 7.0f);
+  EXPECT_EQ(vectors.get(4), Vec3(7, 8, 9));
+}
+
+TEST(column, opens_and_closes_gaps_and_keeps_its_padding_zero) {
+  Column<std::uint16_t> column(20);
+  VectorColumn vectors(20);
+  for (std::size_t i = 0; i < 20; ++i) {
+    column[i] = static_cast<std::uint16_t>(i);
+    vectors.set(i, Vec3::Constant(static_cast<float>(i)));
+  }
+  column.insert(5, 3);
+  vectors.insert(5, 3);
+  const std::vector<std::uint32_t> places{0, 6, 7, 22};
+  column.erase(places);
+  vectors.erase(places);
+  const std::vector<std::uint16_t> expected{1, 2, 3, 4, 0, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18};
+  ASSERT_EQ(column.size(), expected.size());
+  ASSERT_EQ(vectors.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(column[i], expected[i]);
+    EXPECT_EQ(vectors.get(i), Vec3::Constant(expected[i]));
+  }
+  for (std::size_t i = expected.size(); i < padded(expected.size()); ++i) {
+    EXPECT_EQ(column.data()[i], 0);
+    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(vectors.axis(axis)[i], 0.0f);
+  }
 }
 
 TEST(vector_column, keeps_all_three_axes_when_the_stride_changes) {

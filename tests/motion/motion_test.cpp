@@ -135,6 +135,17 @@ TEST(time_step,
   EXPECT_DOUBLE_EQ(limited_time_step(limits, 6), static_cast<double>(0.4f) / 25);
 }
 
+FastestInput fastest_input(const Vec3& gravity, const VectorColumn& sph_acceleration) {
+  return {.bodies = {},
+          .time_step = 0.1f,
+          .gravity = gravity,
+          .sph_acceleration = &sph_acceleration,
+          .cross_group = nullptr,
+          .user = nullptr,
+          .blocks = {},
+          .partial = {}};
+}
+
 TEST(fastest_particle, sees_numbers_that_are_not_finite_and_passes_over_pinned_ones) {
   // No whole number of lanes.
   constexpr std::size_t n = 603;
@@ -147,12 +158,11 @@ TEST(fastest_particle, sees_numbers_that_are_not_finite_and_passes_over_pinned_o
   store.pin.resize(n);
   store.pin[310] = 1;
   const VectorColumn none(n);
-  std::vector<Fastest> partial;
+  // Two bodies, of which neither is a whole number of blocks.
+  FastestInput input = fastest_input({0, 0, 0}, none);
+  input.bodies = {{0, 290, 1}, {290, n, 1}};
   for (const InstructionLevel level : levels()) {
-    const auto find = [&] {
-      return fastest_particle(store, 0, store.size(), 0.1f, none, 1, {0, 0, 0}, nullptr, nullptr, 2, level,
-                              partial);
-    };
+    const auto find = [&] { return fastest_particle(store, 2, level, input); };
     store.velocity.set(20, v[20]);
     EXPECT_EQ(find().row, 300u);
     EXPECT_FLOAT_EQ(find().squared_velocity, 25);
@@ -174,12 +184,10 @@ TEST(fastest_particle, is_not_there_where_all_are_pinned) {
   store.pin.resize(20);
   for (std::uint16_t& pin : store.pin) pin = 1;
   const VectorColumn none(20);
-  std::vector<Fastest> partial;
+  FastestInput input = fastest_input({0, 0, 1}, none);
+  input.bodies = {{0, store.size(), 1}};
   for (const InstructionLevel level : levels())
-    EXPECT_EQ(fastest_particle(store, 0, store.size(), 0.1f, none, 1, {0, 0, 1}, nullptr, nullptr, 1, level,
-                               partial)
-                  .squared_velocity,
-              -1);
+    EXPECT_EQ(fastest_particle(store, 1, level, input).squared_velocity, -1);
 }
 
 TEST(move_colliders, takes_every_part_of_a_union_along) {

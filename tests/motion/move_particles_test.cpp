@@ -51,7 +51,6 @@ struct World {
   std::vector<Collider> colliders;
   std::vector<Vec3> pin_velocities{{1, 2, 3}, {-4, 0, 0}};
   MotionInput input;
-  std::vector<MotionSums> partial;
 
   World() {
     Random random(1);
@@ -97,7 +96,10 @@ struct World {
     for (std::size_t i = 0; i < k_rows; i += 7) store.pin[i] = static_cast<std::uint16_t>(1 + i % 2);
   }
   MotionSums move(int threads = 2, InstructionLevel level = best_instruction_level()) {
-    return move_particles(input, threads, level, store, partial);
+    MovingBodies bodies;
+    bodies.inputs = {input};
+    move_particles(threads, level, store, bodies);
+    return bodies.sums[0];
   }
 
   struct Moved {

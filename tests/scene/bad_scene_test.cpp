@@ -361,17 +361,6 @@ TEST_F(bad_scene, writes_no_control_characters_to_a_terminal) {
   EXPECT_EQ(problems("\"\\u001b[31m\" = 1\n").back().substr(0, 37), "scene.toml:1:1: unknown key '?[31m'; ");
 }
 
-TEST_F(bad_scene, has_at_most_256_groups) {
-  std::string text = k_small_scene;
-  const std::string body = "[[body]]\nmaterial = \"jelly\"\nbox = { count = [2, 2, 2], spacing = 1.0 }\n";
-  for (int i = 1; i < 256; ++i) text += body;
-  EXPECT_EQ(problems(text), std::vector<std::string>{});
-  EXPECT_EQ(
-      problems(text + body),
-      std::vector<std::string>{"scene.toml:774:12: body[256].group: is one group too many: at most 256 are "
-                               "allowed, and a body without a group is a group of its own"});
-}
-
 TEST_F(bad_scene, lists_no_more_problems_than_anyone_reads) {
   std::string text = k_small_scene + "[render]\n";
   for (int i = 0; i < 1500; ++i) text += "unknown_" + std::to_string(i) + " = 1\n";

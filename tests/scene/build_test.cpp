@@ -48,14 +48,14 @@ TEST_F(build_scene, puts_bodies_into_groups_in_the_order_of_the_file) {
   EXPECT_EQ(simulation.particle_count(), 13u);
   EXPECT_EQ(simulation.config().threads, 1);
   EXPECT_EQ(simulation.colliders().size(), 1u);
-  const std::vector<std::uint8_t> expected{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1};
-  EXPECT_EQ(simulation.groups_by_id(), expected);
+  const std::vector<std::uint32_t> expected{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1};
+  EXPECT_EQ(simulation.bodies_by_id(), expected);
   EXPECT_EQ(group_materials(scene), (std::vector<std::size_t>{1, 0}));
 
   const SimulationInfo info = simulation.info();
-  ASSERT_EQ(info.groups.size(), 2u);
-  EXPECT_EQ(info.groups[0].name, "body[0]");
-  EXPECT_EQ(info.groups[1].name, "pair");
+  ASSERT_EQ(info.bodies.size(), 2u);
+  EXPECT_EQ(info.bodies[0].name, "body[0]");
+  EXPECT_EQ(info.bodies[1].name, "pair");
 
   const std::vector<Vec3> positions = simulation.positions_by_id();
   EXPECT_EQ(positions[0], Vec3(0.5f, 0.5f, 1.5f));
@@ -141,14 +141,14 @@ TEST_F(build_scene, refuses_points_that_are_given_twice) {
       "[[body]]\nmaterial = \"jelly\"\ngroup = \"g\"\n"
       "box = { count = [2, 2, 2], spacing = 1.0, corner = [5, 0, 0], jitter = 0.0 }\n";
   const std::string twice = build_error(read(k_small_scene + box + box));
-  EXPECT_NE(twice.find("scene.toml:12: body[2].box: body: group 'g' overlaps itself at (5.5 0.5 0.5): "
+  EXPECT_NE(twice.find("scene.toml:12: body[2].box: body: body 'g' overlaps itself at (5.5 0.5 0.5): "
                        "particles 8 and 16 are 0 m apart"),
             std::string::npos)
       << twice;
   write("points.csv", "x,y,z\n5,0,0\n6,0,0\n7,0,0\n6,0,0\n");
   const std::string points = build_error(read(
       k_small_scene + "[[body]]\nmaterial = \"jelly\"\npoints = { file = \"points.csv\", spacing = 1.0 }\n"));
-  EXPECT_NE(points.find("body[1].points: body: group 'body[1]' overlaps itself at (6 0 0): particles 9 and "
+  EXPECT_NE(points.find("body[1].points: body: body 'body[1]' overlaps itself at (6 0 0): particles 9 and "
                         "11 are 0 m apart"),
             std::string::npos)
       << points;
@@ -180,7 +180,7 @@ TEST_F(build_scene, reports_all_overlapping_bodies_at_their_places_and_then_all_
   const std::vector<std::string> bodies = found(k_small_scene + body + body + pin);
   ASSERT_EQ(bodies.size(), 2u);
   EXPECT_TRUE(
-      bodies[0].starts_with("scene.toml:8: body[1].box: body: groups 'body[1]' and 'body[0]' overlap"))
+      bodies[0].starts_with("scene.toml:8: body[1].box: body: bodies 'body[1]' and 'body[0]' overlap"))
       << bodies[0];
   EXPECT_TRUE(bodies[1].starts_with("scene.toml:11: body[2].box: ")) << bodies[1];
   const std::vector<std::string> pins = found(k_small_scene + pin + pin);

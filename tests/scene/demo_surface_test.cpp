@@ -13,7 +13,7 @@ TEST(demo, surface_is_closed_and_turned_outwards_on_every_frame) {
   const Scene scene = read_scene(std::filesystem::path(MALLOW_DATA_DIR) / "scenes/demo.toml");
   Simulation simulation = build(scene, 2);
   std::vector<float> spacings;
-  for (const GroupInfo& group : simulation.info().groups) spacings.push_back(group.spacing);
+  for (const BodyInfo& body : simulation.info().bodies) spacings.push_back(body.spacing);
   Surfacer surfacer(scene.surface, 2);
   for (int frame = 0; frame <= scene.run.frames; ++frame) {
     const ParticleFrame now = snapshot(simulation);

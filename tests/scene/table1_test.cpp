@@ -25,9 +25,9 @@ TEST_P(Table1, has_the_particles_and_average_neighbors_of_the_paper) {
   const Scene scene = read_scene(std::filesystem::path(MALLOW_DATA_DIR) / "scenes/table1" /
                                  (std::string(row.scene) + ".toml"));
   const SimulationInfo info = build(scene).info();
-  ASSERT_EQ(info.groups.size(), 1u);
+  ASSERT_EQ(info.bodies.size(), 1u);
   EXPECT_NEAR(static_cast<double>(info.particles), row.particles, row.exact ? 0 : 0.01 * row.particles);
-  EXPECT_NEAR(info.groups[0].average_neighbors, row.neighbors, row.exact ? 0.1 : 0.02 * row.neighbors);
+  EXPECT_NEAR(info.bodies[0].average_neighbors, row.neighbors, row.exact ? 0.1 : 0.02 * row.neighbors);
   const Material& material = scene.materials[0].material;
   EXPECT_EQ(material.alpha.lowest(), row.alpha);
   EXPECT_EQ(material.update_threshold, row.update_threshold);

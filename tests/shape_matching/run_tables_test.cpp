@@ -172,15 +172,17 @@ struct Matched {
     shape.region_radius = points.radius;
     shape.spacing = points.spacing;
     shape.region_stride = stride;
-    update_reference(points.x, 0, points.x.size(), threads, shape);
+    update_reference(points.x, 0, points.x.size(), threads, scratch, shape);
     sort_reference(threads, scratch.columns, shape);
     x.resize(points.x.size());
     for (std::size_t i = 0; i < x.size(); ++i)
       x.set(i, deform(points.x.get(scratch.columns.order[i]).cast<double>()).template cast<float>());
     build_regions(threads, level, scratch, shape);
-    sum_regions(x, 0, threads, level, shape);
-    solve_rotations(x, 0, k_enough_iterations, threads, level, shape);
-    compute_goals(x, 0, threads, level, shape);
+    MatchedBodies bodies;
+    bodies.add(shape, 0);
+    sum_regions(x, threads, level, bodies);
+    solve_rotations(k_enough_iterations, threads, level, bodies);
+    compute_goals(threads, level, bodies);
   }
 };
 

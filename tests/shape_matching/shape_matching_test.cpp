@@ -34,14 +34,16 @@ struct World {
   }
   void build(float radius) {
     shape.region_radius = radius;
-    update_reference(x, 0, x.size(), 2, shape);
+    update_reference(x, 0, x.size(), 2, scratch, shape);
     build_regions(2, best_instruction_level(), scratch, shape);
   }
   void match(int threads = 2, InstructionLevel level = best_instruction_level(),
              int iterations = k_enough_iterations) {
-    sum_regions(x, 0, threads, level, shape);
-    solve_rotations(x, 0, iterations, threads, level, shape);
-    compute_goals(x, 0, threads, level, shape);
+    MatchedBodies bodies;
+    bodies.add(shape, 0);
+    sum_regions(x, threads, level, bodies);
+    solve_rotations(iterations, threads, level, bodies);
+    compute_goals(threads, level, bodies);
   }
   template <class F>
   void transform(const F& f) {
@@ -419,7 +421,10 @@ struct MatrixRegions {
   }
   void solve(InstructionLevel level) {
     const VectorColumn x(shape.reference.size());
-    solve_rotations(x, 0, k_enough_iterations, 1, level, shape);
+    MatchedBodies bodies;
+    bodies.add(shape, 0);
+    bodies.bodies[0].input = shape_input(x, 0, shape);
+    solve_rotations(k_enough_iterations, 1, level, bodies);
   }
   std::vector<float> row(std::size_t j) const {
     std::vector<float> values(shape.sums.data() + j * k_row, shape.sums.data() + (j + 1) * k_row);

@@ -83,12 +83,12 @@ Simulation fluid(float neighbor_slack) {
 /// Groups, a body that comes later to one of them, obstacles of every kind that move, pins.
 Simulation everything(float neighbor_slack) {
   Simulation s(config(neighbor_slack));
-  const GroupId jelly =
+  const BodyId jelly =
       s.add_body(cube(6, {0, 0, 1}), Material{.alpha = 0.5f, .update_threshold = 0.1f}, "jelly");
   s.add_body(cube(5, {2, 2, 8}), Material{.alpha = {{0, 1}, {3, 0.2f}}, .region_stride = 3}, "thickening");
   s.add_body(cube(5, {-7, 0, 1}), Material{.alpha = 0, .particle_mass = 2.0f}, "solid");
   s.add_body(cube(4, {9, 0, 1}), Material{.alpha = 1}, "liquid");
-  s.add_body(cube(4, {20, 0, 1}), jelly);
+  s.extend_body(jelly, cube(4, {20, 0, 1}));
   s.add_collider({.shape = Plane{{0.1f, 0, 1}, 0}, .friction = 0.3f});
   s.add_collider(
       {.shape = Union{{Sphere{{4, 4, 0}, 2}, Box{{-3, -3, 0}, {-1, -1, 3}}}}, .velocity = {0, 0.1f, 0}});
@@ -240,7 +240,7 @@ INSTANTIATE_TEST_SUITE_P(scenes, checkpoint, testing::Range<std::size_t>(0, 8),
 TEST(checkpoint, of_a_simulation_that_gets_a_body_later_continues) {
   Simulation s = everything(0);
   for (int step = 0; step < 15; ++step) s.step();
-  s.add_body(cube(3, {30, 0, 1}), GroupId{0});
+  s.extend_body(BodyId{0}, cube(3, {30, 0, 1}));
   Simulation again = Simulation::restore(s.save(), 3);
   for (int step = 0; step < 30; ++step) {
     s.step();
@@ -252,7 +252,7 @@ TEST(checkpoint, of_a_simulation_that_gets_a_body_later_continues) {
 TEST(checkpoint, keeps_what_was_set_between_steps) {
   Simulation s = everything(0);
   for (int step = 0; step < 5; ++step) s.step();
-  s.set_alpha(GroupId{0}, AlphaSchedule{{0, 0.5f}, {3, 1}});
+  s.set_alpha(MaterialId{0}, AlphaSchedule{{0, 0.5f}, {3, 1}});
   s.set_velocity(ColliderId{1}, {0.2f, 0, 0});
   Simulation again = Simulation::restore(s.save(), 1);
   for (int step = 0; step < 30; ++step) {
@@ -287,7 +287,7 @@ TEST(checkpoint, of_another_version_is_refused) {
     Simulation::restore(saved);
     ADD_FAILURE();
   } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find("version 3; this build of mallow reads 2"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("version 4; this build of mallow reads 3"), std::string::npos)
         << error.what();
   }
 }

@@ -58,17 +58,17 @@ Target by_row(std::string name, Phase phase, std::function<float*(Simulation::St
           [](Simulation::State&, std::size_t i) { return i; }};
 }
 ShapeMatching& jelly(Simulation::State& s) {
-  return s.groups[1].shape;
+  return s.bodies[1].shape;
 }
 Target of_particles(std::string name, Phase phase, std::function<float*(Simulation::State&)> values) {
   return {std::move(name), phase, std::move(values),
           [](Simulation::State& s) { return jelly(s).reference.size(); },
-          [](Simulation::State& s, std::size_t i) { return s.groups[1].begin + i; }};
+          [](Simulation::State& s, std::size_t i) { return s.bodies[1].begin + i; }};
 }
 Target of_regions(std::string name, Phase phase, std::function<float*(Simulation::State&)> values) {
   return {std::move(name), phase, std::move(values),
           [](Simulation::State& s) { return jelly(s).region_weight.size(); },
-          [](Simulation::State& s, std::size_t j) { return s.groups[1].begin + jelly(s).first_row(j); }};
+          [](Simulation::State& s, std::size_t j) { return s.bodies[1].begin + jelly(s).first_row(j); }};
 }
 
 /// Every column of floats that some later phase reads.
@@ -83,7 +83,7 @@ std::vector<Target> targets() {
         sorted("sorted position" + axis, Phase::neighbors, [=](S& s) { return s.sph.grid.sorted.axis(a); }));
     all.push_back(by_row("acceleration by SPH" + axis, Phase::accelerations,
                          [=](S& s) { return s.sph.acceleration.axis(a); }));
-    all.push_back(by_row("acceleration by other groups" + axis, Phase::accelerations,
+    all.push_back(by_row("acceleration by other bodies" + axis, Phase::accelerations,
                          [=](S& s) { return s.sph.cross_group.axis(a); }));
     all.push_back(by_row("acceleration by the force callback" + axis, Phase::time_step,
                          [=](S& s) { return s.user_acceleration.axis(a); }));
@@ -165,7 +165,7 @@ TEST_P(damage, in_any_column_is_found_in_that_step_and_named_by_particle_and_pha
     for (const std::size_t i : {std::size_t{0}, n / 2 + 3, n - 1})
       for (const float value : {std::nanf(""), k_infinity, -k_infinity}) {
         SCOPED_TRACE(target.name + " " + std::to_string(i) + " " + std::to_string(value));
-        const std::uint32_t id = state.store.id[target.row_of(state, i)];
+        const ParticleId id = state.store.id[target.row_of(state, i)];
         const Outcome outcome = step_with(s, target, i, value);
         ASSERT_TRUE(outcome.id.has_value()) << "the step was taken";
         EXPECT_EQ(*outcome.id, id) << outcome.message;
@@ -195,8 +195,8 @@ TEST(damage, never_gets_into_a_reference_shape) {
   for (int k = 0; k < 6; ++k) s.step();
   Simulation::State& state = StateAccess::of(s);
   ASSERT_EQ(state.step % *state.config.update_interval, 0);
-  ASSERT_GT(state.groups[1].mean_external(), 0.1) << "the next step updates the reference";
-  const std::size_t row = state.groups[1].begin + 7;
+  ASSERT_GT(state.bodies[1].mean_external(), 0.1) << "the next step updates the reference";
+  const std::size_t row = state.bodies[1].begin + 7;
   const float kept = std::exchange(state.store.position.y()[row], k_infinity);
   EXPECT_THROW(s.step(), StepError);
   state.store.position.y()[row] = kept;

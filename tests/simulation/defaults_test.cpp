@@ -35,8 +35,8 @@ TEST(defaults, are_the_papers_numbers_at_its_spacing_and_gravity) {
   const SimulationInfo info = s.info();
   EXPECT_EQ(info.time_step, 0.15f);
   EXPECT_EQ(info.time_step_source, TimeStepSource::gravity);
-  EXPECT_EQ(info.groups[0].update_threshold, 12.0f);
-  EXPECT_EQ(info.groups[0].viscosity, 0.5f);
+  EXPECT_EQ(info.bodies[0].update_threshold, 12.0f);
+  EXPECT_EQ(info.bodies[0].viscosity, 0.5f);
   EXPECT_EQ(info.update_period, 60 * static_cast<double>(0.15f));
   EXPECT_EQ(s.config().time_step, 0.15f);
   // 60 steps, as the paper has it.
@@ -75,7 +75,7 @@ TEST(defaults, without_gravity_follow_the_fastest_body_and_are_refused_where_not
   flies.add_body(body, {.alpha = 0.5f});
   EXPECT_FLOAT_EQ(flies.info().time_step, 0.3f * 0.1f / 5);
   EXPECT_EQ(flies.info().time_step_source, TimeStepSource::speed);
-  EXPECT_FLOAT_EQ(flies.info().groups[0].update_threshold, 0.27f * 0.1f / (0.006f * 0.006f));
+  EXPECT_FLOAT_EQ(flies.info().bodies[0].update_threshold, 0.27f * 0.1f / (0.006f * 0.006f));
 
   Simulation still(config);
   still.add_body(cube(3, 0.1f), {.alpha = 0.5f});
@@ -86,17 +86,17 @@ TEST(defaults, without_gravity_follow_the_fastest_body_and_are_refused_where_not
 
 TEST(defaults, are_settled_once) {
   Simulation s(in_metres(0.1f));
-  const GroupId group = s.add_body(cube(3, 0.1f), {.alpha = 0.5f});
+  const BodyId group = s.add_body(cube(3, 0.1f), {.alpha = 0.5f});
   const float before = s.info().time_step;
   for (int k = 0; k < 5; ++k) s.step();
   s.add_body(cube(3, 0.02f, {3, 0, 0}), {.alpha = 0.5f});
   EXPECT_EQ(s.info().time_step, before);
-  s.set_alpha(group, 0.25f);
+  s.set_alpha(s.material(group), 0.25f);
   s.step();
   const SimulationInfo info = s.info();
   const float expected = 0.21f / before * (0.21f / before);
-  EXPECT_NEAR(info.groups[0].pressure_coefficient / (expected / 0.25f), 0.925, 1e-6) << "k follows alpha";
-  EXPECT_FLOAT_EQ(info.groups[1].pressure_coefficient, expected / 0.5f);
+  EXPECT_NEAR(info.bodies[0].pressure_coefficient / (expected / 0.25f), 0.925, 1e-6) << "k follows alpha";
+  EXPECT_FLOAT_EQ(info.bodies[1].pressure_coefficient, expected / 0.5f);
   const Simulation again = Simulation::restore(s.save());
   EXPECT_EQ(again.config().time_step, before);
 }
@@ -137,8 +137,8 @@ TEST(defaults, given_numbers_stay) {
   EXPECT_EQ(info.time_step, 0.01f);
   EXPECT_EQ(info.time_step_source, TimeStepSource::given);
   EXPECT_EQ(info.update_period, 0.5);
-  EXPECT_EQ(info.groups[0].update_threshold, 7.0f);
-  EXPECT_EQ(info.groups[0].pressure_coefficient, 0.0f);
+  EXPECT_EQ(info.bodies[0].update_threshold, 7.0f);
+  EXPECT_EQ(info.bodies[0].pressure_coefficient, 0.0f);
 }
 
 TEST(update_period, checks_at_the_first_step_at_or_after_its_multiples_at_any_step) {
@@ -246,7 +246,7 @@ TEST(warnings, are_none_for_settings_that_are_left_out) {
   }
 }
 
-TEST(warnings, name_groups_that_start_within_each_other) {
+TEST(warnings, name_bodies_that_start_within_each_other) {
   SolverConfig config = in_metres(0.1f);
   config.support_radius = 0.21f;
   Simulation s(config);
@@ -255,9 +255,9 @@ TEST(warnings, name_groups_that_start_within_each_other) {
   s.add_body(cube(4, 0.1f, {0, 0, 0.45f}), {.rest_density = 1000.0f}, "three, which touches");
   const std::vector<std::string> all = s.info().warnings;
   ASSERT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[0].find("group 'one': "), 0u);
-  EXPECT_NE(all[0].find("of 64 particles start within another group"), std::string::npos) << all[0];
-  EXPECT_EQ(all[1].find("group 'two': "), 0u);
+  EXPECT_EQ(all[0].find("body 'one': "), 0u);
+  EXPECT_NE(all[0].find("of 64 particles start within another body"), std::string::npos) << all[0];
+  EXPECT_EQ(all[1].find("body 'two': "), 0u);
   s.step();
   EXPECT_TRUE(s.info().warnings.empty()) << "they are on their way";
 }

@@ -213,8 +213,8 @@ TEST(elastic_time_step, is_allowed_at_its_least_and_refused_below) {
   for (const float alpha : {0.0f, 0.1f, 0.3f, 0.7f}) {
     const float least = (1 - alpha) * 0.15f / 2.5f;
     Simulation s(solver());
-    EXPECT_NO_THROW(s.add_group({.alpha = alpha, .elastic_time_step = least})) << alpha;
-    EXPECT_THROW(s.add_group({.alpha = alpha, .elastic_time_step = 0.999f * least}), ConfigError) << alpha;
+    EXPECT_NO_THROW(s.add_material({.alpha = alpha, .elastic_time_step = least})) << alpha;
+    EXPECT_THROW(s.add_material({.alpha = alpha, .elastic_time_step = 0.999f * least}), ConfigError) << alpha;
   }
 }
 

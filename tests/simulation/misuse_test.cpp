@@ -35,9 +35,9 @@ std::string refusal(const std::function<void()>& act) {
 TEST(misuse, an_empty_simulation_cannot_be_stepped_and_can_be_filled_later) {
   Simulation s({.support_radius = 2.0f});
   EXPECT_NE(refusal([&] { s.step(); }).find("no particles"), std::string::npos);
-  const GroupId group = s.add_group({});
-  EXPECT_NE(refusal([&] { s.step(); }).find("has no particles"), std::string::npos);
-  s.add_body(sample(Lattice{.count = {2, 2, 2}, .jitter = 0}), group);
+  const MaterialId material = s.add_material({});
+  EXPECT_NE(refusal([&] { s.step(); }).find("no particles"), std::string::npos);
+  s.add_body(sample(Lattice{.count = {2, 2, 2}, .jitter = 0}), material);
   s.step();
   EXPECT_EQ(s.step_count(), 1);
 }
@@ -56,18 +56,18 @@ TEST(misuse, a_body_that_overlaps_is_refused_at_once_and_nothing_changes) {
     EXPECT_NE(text.find("at least a tenth of the spacing (0.1 m)"), std::string::npos) << text;
     EXPECT_EQ(s.state_hash(), before);
     EXPECT_EQ(s.particle_count(), 216u);
-    EXPECT_EQ(s.info().groups.size(), 1u);
+    EXPECT_EQ(s.info().bodies.size(), 1u);
   };
-  expect_refused(refusal([&] { s.add_body(there, GroupId{0}); }), "group 'group 0' overlaps itself at (",
+  expect_refused(refusal([&] { s.extend_body(BodyId{0}, there); }), "body 'body 0' overlaps itself at (",
                  "particles 100 and 216 are 0 m apart");
   expect_refused(refusal([&] { s.add_body(there, Material{}, "late"); }),
-                 "groups 'late' and 'group 0' overlap at (", "particles 100 and 216 are 0 m apart");
-  expect_refused(refusal([&] { s.add_body(twice, GroupId{0}); }), "group 'group 0' overlaps itself at (",
+                 "bodies 'late' and 'body 0' overlap at (", "particles 100 and 216 are 0 m apart");
+  expect_refused(refusal([&] { s.extend_body(BodyId{0}, twice); }), "body 'body 0' overlaps itself at (",
                  "particles 219 and 224 are 0.09");
-  expect_refused(refusal([&] { s.add_body(twice, Material{}, "own"); }), "group 'own' overlaps itself at (",
+  expect_refused(refusal([&] { s.add_body(twice, Material{}, "own"); }), "body 'own' overlaps itself at (",
                  "particles 219 and 224 are 0.09");
   s.step();
-  s.add_body(touches, GroupId{0});
+  s.extend_body(BodyId{0}, touches);
   s.step();
   EXPECT_EQ(s.particle_count(), 224u);
 }
@@ -88,10 +88,13 @@ TEST(misuse, a_body_so_far_away_that_floats_cannot_tell_its_points_apart_is_refu
 TEST(misuse, names_that_do_not_exist_are_refused) {
   Simulation s = scene();
   const std::uint64_t before = s.state_hash();
-  EXPECT_NE(refusal([&] { s.set_alpha(GroupId{1}, 0.1f); }).find("no group 1"), std::string::npos);
-  EXPECT_NE(refusal([&] { s.add_body(sample(Lattice{}), GroupId{7}); }).find("no group 7"),
+  EXPECT_NE(refusal([&] { s.set_alpha(MaterialId{1}, 0.1f); }).find("no material 1"), std::string::npos);
+  EXPECT_NE(refusal([&] { s.add_body(sample(Lattice{}), MaterialId{7}); }).find("no material 7"),
             std::string::npos);
-  EXPECT_NE(refusal([&] { s.rows(GroupId{1}); }).find("no group 1"), std::string::npos);
+  EXPECT_NE(refusal([&] { s.extend_body(BodyId{7}, sample(Lattice{})); }).find("no body 7"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { s.rows(BodyId{1}); }).find("no body 1"), std::string::npos);
+  EXPECT_NE(refusal([&] { s.material(BodyId{1}); }).find("no body 1"), std::string::npos);
   EXPECT_NE(refusal([&] {
               s.set_velocity(ColliderId{1}, {0, 0, 0});
             }).find("no collider 1"),
@@ -109,12 +112,15 @@ TEST(misuse, a_force_callback_may_not_change_or_step_what_calls_it) {
     refusals = {refusal([&] { s.step(); }),
                 refusal([&] { s.prepare(); }),
                 refusal([&] {
-                  s.add_body(sample(Lattice{.corner = {50, 0, 0}, .jitter = 0}), GroupId{0});
+                  s.add_body(sample(Lattice{.corner = {50, 0, 0}, .jitter = 0}), MaterialId{0});
                 }),
-                refusal([&] { s.add_group({}); }),
+                refusal([&] {
+                  s.extend_body(BodyId{0}, sample(Lattice{.corner = {50, 0, 0}, .jitter = 0}));
+                }),
+                refusal([&] { s.add_material({}); }),
                 refusal([&] { s.add_collider({}); }),
                 refusal([&] { s.pin(std::vector<ParticleId>{0}); }),
-                refusal([&] { s.set_alpha(GroupId{0}, 1.0f); }),
+                refusal([&] { s.set_alpha(MaterialId{0}, 1.0f); }),
                 refusal([&] {
                   s.set_velocity(ColliderId{0}, {1, 0, 0});
                 }),
@@ -123,12 +129,12 @@ TEST(misuse, a_force_callback_may_not_change_or_step_what_calls_it) {
   for (int k = 0; k < 15; ++k) {
     s.step();
     undisturbed.step();
-    ASSERT_EQ(refusals.size(), 9u);
+    ASSERT_EQ(refusals.size(), 10u);
     for (const std::string& text : refusals)
       EXPECT_NE(text.find("callback may not"), std::string::npos) << text;
   }
   EXPECT_EQ(s.state_hash(), undisturbed.state_hash());
-  s.set_alpha(GroupId{0}, 1.0f);  // between steps it may
+  s.set_alpha(MaterialId{0}, 1.0f);  // between steps it may
 }
 
 TEST(misuse, what_a_force_callback_throws_comes_through_and_the_state_stays) {

@@ -20,12 +20,13 @@ constexpr double k_significant = 0.05;
 
 Simulation engine_of(const Case& scene) {
   Simulation engine(scene.solver);
-  GroupId group{};
+  BodyId last{};
   for (const Blob& blob : scene.blobs) {
-    if (!blob.joins_the_one_before) group = engine.add_group(blob.material);
-    engine.add_body(
-        {.positions = points_of(blob), .spacing = blob.spacing, .velocity = blob.velocity, .velocities = {}},
-        group);
+    const Body points{.positions = points_of(blob), .spacing = blob.spacing, .velocity = blob.velocity};
+    if (blob.joins_the_one_before)
+      engine.extend_body(last, points);
+    else
+      last = engine.add_body(points, blob.material);
   }
   for (const Collider& collider : scene.colliders) engine.add_collider(collider);
   for (const Pinned& pin : scene.pins) engine.pin(pin.box, pin.velocity);

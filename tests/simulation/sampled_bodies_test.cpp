@@ -40,7 +40,7 @@ TEST(sampled_bodies, are_nowhere_denser_than_a_lattice) {
     Simulation s({.time_step = 0.15f, .support_radius = radius, .gravity = {0, 0, 0}, .threads = 1});
     s.add_body(cube(k_default_jitter, 0), {.alpha = 1.0f, .pressure_coefficient = 0.0f});
     s.step();
-    const float rest = s.info().groups[0].rest_density;
+    const float rest = s.info().bodies[0].rest_density;
     for (const float density : s.densities()) EXPECT_LT(density / rest, 1.04f) << "radius " << radius;
   }
 }

@@ -28,11 +28,11 @@ Body cube(int side, const Vec3& corner = {0, 0, 0}) {
 /// Everything at once: three groups, an update, a pin, a force, colliders that move, alpha that changes.
 Simulation busy_scene(int threads) {
   Simulation s(config(threads));
-  const GroupId jelly =
+  const BodyId jelly =
       s.add_body(cube(9, {0, 0, 1}), Material{.alpha = 0.5f, .update_threshold = 0.1f}, "jelly");
   s.add_body(cube(6, {2, 2, 11}), Material{.alpha = {{0, 1}, {3, 0.2f}}, .region_stride = 3}, "thickening");
   s.add_body(cube(5, {-7, 0, 1}), Material{.alpha = 0}, "solid");
-  s.add_body(cube(4, {20, 0, 1}), jelly);
+  s.extend_body(jelly, cube(4, {20, 0, 1}));
   s.add_collider({.shape = Plane{{0.1f, 0, 1}, 0}, .friction = 0.3f});
   s.add_collider(
       {.shape = Union{{Sphere{{4, 4, 0}, 2}, Box{{-3, -3, 0}, {-1, -1, 3}}}}, .velocity = {0, 0.1f, 0}});
@@ -148,7 +148,7 @@ TEST(step, needs_no_sph_for_a_lone_elastic_group_and_no_regions_at_alpha_1) {
   EXPECT_FALSE(solid.info().sph);
   EXPECT_TRUE(solid.densities().empty());
   EXPECT_EQ(solid.step().seconds[static_cast<std::size_t>(Phase::neighbors)], 0);
-  EXPECT_FALSE(fluid.info().groups[0].shape_matching);
+  EXPECT_FALSE(fluid.info().bodies[0].shape_matching);
   EXPECT_FALSE(fluid.info().viscosity);
   EXPECT_EQ(fluid.densities().size(), fluid.particle_count());
   EXPECT_LT(solid.info().bytes, both.info().bytes);
@@ -162,14 +162,14 @@ TEST(region_stride, owns_fewer_regions_in_less_memory_and_counts_the_same_neighb
     return s.info();
   };
   const SimulationInfo every = info(1), fourth = info(4);
-  EXPECT_EQ(every.groups[0].regions, 1000u);
-  EXPECT_GE(fourth.groups[0].regions, 250u);
-  EXPECT_LT(fourth.groups[0].regions, 275u);
-  EXPECT_EQ(fourth.groups[0].average_neighbors, every.groups[0].average_neighbors);
+  EXPECT_EQ(every.bodies[0].regions, 1000u);
+  EXPECT_GE(fourth.bodies[0].regions, 250u);
+  EXPECT_LT(fourth.bodies[0].regions, 275u);
+  EXPECT_EQ(fourth.bodies[0].average_neighbors, every.bodies[0].average_neighbors);
   EXPECT_LT(fourth.bytes, every.bytes);
   Simulation fluid(config());
   fluid.add_body(cube(3), Material{.alpha = 1});
-  EXPECT_EQ(fluid.info().groups[0].regions, 0u);
+  EXPECT_EQ(fluid.info().bodies[0].regions, 0u);
 }
 
 TEST(fluids, are_sorted_in_memory_and_nobody_is_mixed_up) {
@@ -177,7 +177,7 @@ TEST(fluids, are_sorted_in_memory_and_nobody_is_mixed_up) {
   std::shuffle(mixed.positions.begin(), mixed.positions.end(), std::mt19937(1));
   Simulation s(config());
   s.add_body(cube(5, {20, 0, 0}), Material{.alpha = 0.5f, .pressure_coefficient = 0, .viscosity = 0});
-  const GroupId fluid =
+  const BodyId fluid =
       s.add_body(mixed, Material{.alpha = 1, .pressure_coefficient = 0, .viscosity = 0}, "fluid");
   s.pin(Aabb{{0, 0, 0}, {1, 8, 8}}, {0, 0, 1});
   const std::vector<Vec3> start = s.positions_by_id();
@@ -209,16 +209,16 @@ TEST(fluids, are_sorted_in_memory_and_nobody_is_mixed_up) {
 
 TEST(alpha, that_changes_turns_phases_on_and_off) {
   Simulation s(config());
-  const GroupId group = s.add_body(cube(6), Material{.alpha = {{0.0f, 1.0f}, {1.0f, 0.0f}}});
-  EXPECT_FALSE(s.info().groups[0].shape_matching);
+  const BodyId group = s.add_body(cube(6), Material{.alpha = {{0.0f, 1.0f}, {1.0f, 0.0f}}});
+  EXPECT_FALSE(s.info().bodies[0].shape_matching);
   while (s.time() < 0.5) s.step();
-  EXPECT_TRUE(s.info().groups[0].shape_matching);
+  EXPECT_TRUE(s.info().bodies[0].shape_matching);
   EXPECT_TRUE(s.info().sph);
   while (s.time() < 1.2) s.step();
   EXPECT_FALSE(s.info().sph);
-  s.set_alpha(group, 1.0f);
+  s.set_alpha(s.material(group), 1.0f);
   s.step();
-  EXPECT_FALSE(s.info().groups[0].shape_matching);
+  EXPECT_FALSE(s.info().bodies[0].shape_matching);
 }
 
 TEST(alpha, set_below_1_on_a_fluid_remembers_the_shape_of_that_moment) {
@@ -228,9 +228,9 @@ TEST(alpha, set_below_1_on_a_fluid_remembers_the_shape_of_that_moment) {
   Body body = cube(6);
   body.velocities.resize(body.positions.size());
   for (std::size_t i = 0; i < body.positions.size(); ++i) body.velocities[i] = 0.05f * body.positions[i];
-  const GroupId group = s.add_body(body, Material{.alpha = 1, .viscosity = 0.1f});
+  const BodyId group = s.add_body(body, Material{.alpha = 1, .viscosity = 0.1f});
   for (int k = 0; k < 20; ++k) s.step();
-  s.set_alpha(group, 0.0f);
+  s.set_alpha(s.material(group), 0.0f);
   const float width = s.positions().eigen().col(0).maxCoeff() - s.positions().eigen().col(0).minCoeff();
   for (int k = 0; k < 400; ++k) s.step();
   // It swings about the width it had, not about the lattice it was made with.
@@ -248,13 +248,13 @@ TEST(alpha, of_a_solid_that_melts_and_freezes_again_takes_its_shape_anew) {
   SolverConfig c = config();
   c.gravity = {0, 0, 0};
   Simulation s(c);
-  const GroupId group = s.add_body(cube(6), Material{.alpha = 0});
+  const BodyId group = s.add_body(cube(6), Material{.alpha = 0});
   s.step();
-  s.set_alpha(group, 1.0f);
-  EXPECT_EQ(s.info().groups[0].regions, 0u);
+  s.set_alpha(s.material(group), 1.0f);
+  EXPECT_EQ(s.info().bodies[0].regions, 0u);
   for (int k = 0; k < 70; ++k) s.step();
   const std::vector<Vec3> melted = s.positions_by_id();
-  s.set_alpha(group, 0.0f);
+  s.set_alpha(s.material(group), 0.0f);
   for (int k = 0; k < 10; ++k) s.step();
   const std::vector<Vec3> frozen = s.positions_by_id();
   for (std::size_t i = 0; i < frozen.size(); ++i) EXPECT_LT((frozen[i] - melted[i]).norm(), 0.1f) << i;
@@ -266,9 +266,9 @@ TEST(groups, that_touch_push_each_other_and_never_merge) {
   Simulation s(c);
   Body left = cube(5, {0, 0, 0}), right = cube(5, {7, 0, 0});
   left.velocity = {0.5f, 0, 0};
-  const GroupId a = s.add_body(left, Material{.alpha = 0}), b = s.add_body(right, Material{.alpha = 0});
+  const BodyId a = s.add_body(left, Material{.alpha = 0}), b = s.add_body(right, Material{.alpha = 0});
   for (int k = 0; k < 120; ++k) s.step();
-  const auto mean_velocity = [&](GroupId g) {
+  const auto mean_velocity = [&](BodyId g) {
     const auto rows = s.rows(g);
     return s.velocities()
         .eigen()
@@ -351,12 +351,83 @@ TEST(views, show_columns_without_a_copy_and_name_every_row) {
   }
 }
 
+TEST(bodies, that_merge_move_as_one) {
+  const auto run = [](bool merges, bool extends) {
+    Simulation s(config());
+    s.add_collider({.shape = Plane{}});
+    const MaterialId syrup = s.add_material({.alpha = 1});
+    Body left = cube(5, {0, 0, 1}), right = cube(5, {5, 0, 1});
+    left.merges = right.merges = merges;
+    const BodyId first = s.add_body(left, syrup);
+    if (extends)
+      s.extend_body(first, right);
+    else
+      s.add_body(right, syrup);
+    EXPECT_EQ(s.info().cross_group, !merges && !extends);
+    for (int k = 0; k < 50; ++k) s.step();
+    return s.positions_by_id();
+  };
+  const std::vector<Vec3> one = run(false, true);
+  EXPECT_EQ(run(true, false), one);
+  EXPECT_NE(run(false, false), one) << "bodies that do not merge touch";
+}
+
+TEST(bodies, merge_with_those_of_their_material_and_spacing_that_merge_too) {
+  Simulation s(config());
+  const MaterialId a = s.add_material({.alpha = 1}), b = s.add_material({.alpha = 1});
+  float x = 0;
+  const auto add = [&](MaterialId material, float spacing, bool merges) {
+    Body body = sample(Lattice{.count = {2, 2, 2}, .spacing = spacing, .corner = {x, 0, 0}, .jitter = 0});
+    body.merges = merges;
+    x += 10;
+    s.add_body(body, material);
+    return s.info().cross_group;
+  };
+  EXPECT_FALSE(add(a, 1, true));
+  EXPECT_FALSE(add(a, 1, true));
+  Simulation other = Simulation::restore(s.save());
+  EXPECT_FALSE(other.info().cross_group) << "a restart keeps it";
+  EXPECT_TRUE(add(b, 1, true)) << "another material";
+  for (int k = 0; k < 3; ++k) s.step();
+  EXPECT_EQ(s.body_count(), 3u);
+}
+
+TEST(bodies, share_a_material_that_changes_for_all_of_them) {
+  Simulation s(config());
+  const MaterialId jelly = s.add_material({.alpha = 0.5f}, "jelly");
+  const BodyId one = s.add_body(cube(3), jelly), two = s.add_body(cube(3, {20, 0, 0}), jelly);
+  EXPECT_EQ(s.material(one), jelly);
+  EXPECT_EQ(s.material(two), jelly);
+  s.set_alpha(jelly, 0.25f);
+  const SimulationInfo info = s.info();
+  for (const BodyInfo& body : info.bodies) {
+    EXPECT_EQ(body.alpha, 0.25f);
+    EXPECT_EQ(body.material, "jelly");
+  }
+}
+
+TEST(bodies, may_be_more_than_a_byte_can_count) {
+  const auto run = [](int threads) {
+    SolverConfig solver = config();
+    solver.threads = threads;
+    Simulation s(solver);
+    const MaterialId jelly = s.add_material({.alpha = 0.5f});
+    for (int i = 0; i < 400; ++i)
+      s.add_body(cube(2, {static_cast<float>(3 * (i % 20)), static_cast<float>(3 * (i / 20)), 1}), jelly);
+    s.add_collider({.shape = Plane{}});
+    for (int k = 0; k < 20; ++k) s.step();
+    EXPECT_EQ(s.bodies_by_id().back(), 399u);
+    return s.state_hash();
+  };
+  EXPECT_EQ(run(1), run(3));
+}
+
 TEST(bodies, can_be_added_between_steps) {
   Simulation s(config());
-  const GroupId first = s.add_body(cube(4), Material{.alpha = 0.5f});
-  const GroupId second = s.add_body(cube(4, {20, 0, 0}), Material{.alpha = 0.5f});
+  const BodyId first = s.add_body(cube(4), Material{.alpha = 0.5f});
+  const BodyId second = s.add_body(cube(4, {20, 0, 0}), Material{.alpha = 0.5f});
   for (int k = 0; k < 5; ++k) s.step();
-  s.add_body(cube(3, {40, 0, 0}), first);
+  s.extend_body(first, cube(3, {40, 0, 0}));
   EXPECT_EQ(s.rows(first).end, 64u + 27u);
   EXPECT_EQ(s.rows(second).begin, 64u + 27u);
   s.step();
@@ -447,10 +518,10 @@ TEST(errors, refuse_springs_that_would_blow_up_in_these_steps) {
   EXPECT_THROW(energy_after(0.0599f), ConfigError);
   // As much softer as alpha makes it; and no softer alpha than that later on.
   Simulation s(config());
-  const GroupId group = s.add_body(cube(3), Material{.alpha = 0.5f, .elastic_time_step = 0.03f});
-  EXPECT_THROW(s.set_alpha(group, 0.4f), ConfigError);
+  const BodyId group = s.add_body(cube(3), Material{.alpha = 0.5f, .elastic_time_step = 0.03f});
+  EXPECT_THROW(s.set_alpha(s.material(group), 0.4f), ConfigError);
   try {
-    s.add_group(Material{.alpha = 0, .elastic_time_step = 0.03f});
+    s.add_material(Material{.alpha = 0, .elastic_time_step = 0.03f});
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_EQ(error.problems()[0].field, "material.elastic_time_step");
@@ -474,13 +545,13 @@ TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
   Simulation s(config());
   contains(message_of([&] { s.prepare(); }), {"no particles"});
   contains(
-      message_of([&] { s.add_group(Material{.alpha = std::vector<AlphaKey>{}, .elastic_time_step = 0.1f}); }),
+      message_of([&] { s.add_material(Material{.alpha = std::vector<AlphaKey>{}, .elastic_time_step = 0.1f}); }),
       {"material.alpha", "no keys"});
-  contains(message_of([&] { s.add_group(Material{.alpha = 1.5f, .cohesion = 2}); }),
+  contains(message_of([&] { s.add_material(Material{.alpha = 1.5f, .cohesion = 2}); }),
            {"material.alpha: 1.5", "material.cohesion: 2", "[0, 1]"});
-  contains(message_of([&] { s.add_group(Material{.region_stride = 0}); }),
+  contains(message_of([&] { s.add_material(Material{.region_stride = 0}); }),
            {"material.region_stride: 0", "1 or above"});
-  contains(message_of([&] { s.add_group(Material{.alpha = {{1, 0}, {1, 1}}}); }), {"material.alpha time: 1"});
+  contains(message_of([&] { s.add_material(Material{.alpha = {{1, 0}, {1, 1}}}); }), {"material.alpha time: 1"});
   contains(message_of([&] { s.add_body(Body{}, Material{}); }), {"body.positions", "no particles"});
   contains(message_of([&] {
              s.add_body(Body{.positions = {{0, 0, std::nanf("")}}}, Material{});
@@ -491,14 +562,14 @@ TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
            }),
            {"radius: -2", "restitution: 3"});
   contains(message_of([&] { s.add_collider({.shape = Union{}}); }), {"no parts"});
-  const GroupId group = s.add_body(cube(3), Material{});
+  const BodyId group = s.add_body(cube(3), Material{});
   contains(message_of([&] {
-             s.add_body(sample(Lattice{{2, 2, 2}, 2.0f, {9, 9, 9}, 0}), group);
+             s.extend_body(group, sample(Lattice{{2, 2, 2}, 2.0f, {9, 9, 9}, 0}));
            }),
            {"body.spacing: 2", "share one spacing"});
   contains(message_of([&] { s.pin(Aabb{{50, 50, 50}, {51, 51, 51}}); }), {"pin.box", "no particle"});
   contains(message_of([&] { s.pin(std::vector<ParticleId>{99}); }), {"no particle 99"});
-  contains(message_of([&] { s.set_alpha(GroupId{7}, 0.5f); }), {"no group 7"});
+  contains(message_of([&] { s.set_alpha(MaterialId{7}, 0.5f); }), {"no material 7"});
   contains(message_of([&] {
              s.add_body(cube(3, {0.05f, 0, 0}), Material{}, "second");
            }),

@@ -35,7 +35,7 @@ Sph sph_with_slack(float slack, std::size_t n) {
   sph.factors = kernel_factors(static_cast<double>(k_radius));
   sph.neighbor_slack = slack;
   sph.groups = {{1, 1, 1, 16, 1, 0, 0}};
-  sph.group_end = {n};
+  sph.bodies = {{n, 0}};
   return sph;
 }
 

@@ -69,7 +69,7 @@ struct World {
     sph.formulation = formulation;
     sph.viscous = true;
     sph.groups = {{1.0f, 9.0f, 1.0f / 9, 16, 0.9f, 0.5f, 0.3f}, {3.0f, 40.0f, 3.0f / 40, 4, 1, 0.1f, 0}};
-    sph.group_end = {n / 2, n};
+    sph.bodies = {{n / 2, 0}, {n, 1}};
   }
   void run(int threads, InstructionLevel level) {
     find_neighbors(x, threads, level, sph);
@@ -77,7 +77,7 @@ struct World {
     compute_accelerations(v, threads, level, sph);
   }
   double mass(std::size_t row) const {
-    return static_cast<double>(sph.groups[row < sph.group_end[0] ? 0 : 1].mass);
+    return static_cast<double>(sph.groups[row < sph.bodies[0].end ? 0 : 1].mass);
   }
 };
 
@@ -90,7 +90,7 @@ TEST(density, of_a_full_lattice_is_the_rest_density) {
   sph.factors = kernel_factors(2.9);
   const double rho0 = lattice_density(2.9, 1);
   sph.groups = {{1, static_cast<float>(rho0), static_cast<float>(1 / rho0), 16, 1, 0, 0}};
-  sph.group_end = {x.size()};
+  sph.bodies = {{x.size(), 0}};
   find_neighbors(x, 2, best_instruction_level(), sph);
   compute_density(2, best_instruction_level(), sph);
   EXPECT_NEAR(static_cast<double>(sph.density_by_row[5 + 5 * 11 + 5 * 121]) / rho0, 1.0, 1e-6);
@@ -166,7 +166,7 @@ TEST(sph, without_viscosity_and_with_one_group_owns_no_columns_for_them) {
   World world;
   world.sph.viscous = false;
   world.sph.groups.resize(1);
-  world.sph.group_end = {world.x.size()};
+  world.sph.bodies = {{world.x.size(), 0}};
   world.run(1, best_instruction_level());
   EXPECT_EQ(world.sph.velocity.bytes() + world.sph.group.bytes() + world.sph.cross_group.bytes(), 0u);
 }

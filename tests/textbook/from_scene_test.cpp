@@ -33,10 +33,10 @@ TEST(from_scene, makes_the_particles_that_build_makes) {
   ASSERT_EQ(textbook.size(), engine.particle_count());
   EXPECT_EQ(largest_deviation(textbook, engine), 0);
   const SimulationInfo info = engine.info();
-  ASSERT_EQ(textbook.groups().size(), info.groups.size());
-  EXPECT_DOUBLE_EQ(textbook.average_neighbors(0), info.groups[0].average_neighbors);
-  EXPECT_FLOAT_EQ(static_cast<float>(textbook.groups()[0].rest_density), info.groups[0].rest_density);
-  EXPECT_FLOAT_EQ(static_cast<float>(textbook.groups()[0].mass), info.groups[0].particle_mass);
+  ASSERT_EQ(textbook.groups().size(), info.bodies.size());
+  EXPECT_DOUBLE_EQ(textbook.average_neighbors(0), info.bodies[0].average_neighbors);
+  EXPECT_FLOAT_EQ(static_cast<float>(textbook.groups()[0].rest_density), info.bodies[0].rest_density);
+  EXPECT_FLOAT_EQ(static_cast<float>(textbook.groups()[0].mass), info.bodies[0].particle_mass);
 }
 
 TEST(from_scene, moves_as_build_does) {
@@ -62,7 +62,7 @@ TEST(from_scene, puts_bodies_that_name_one_group_together_and_no_others) {
   scene.pins = {{.box = {{7, -9, -9}, {11, 9, 9}}, .velocity = {0, 0, 1}}};
   const Textbook textbook = from_scene(scene);
   Simulation engine = build(scene);
-  const std::vector<std::uint8_t> groups = engine.groups_by_id();
+  const std::vector<std::uint32_t> groups = engine.bodies_by_id();
   ASSERT_EQ(textbook.size(), groups.size());
   EXPECT_EQ(textbook.groups().size(), 4u);
   EXPECT_EQ(largest_deviation(textbook, engine), 0);

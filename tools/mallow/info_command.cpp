@@ -22,22 +22,20 @@ struct InfoOptions {
   bool print = false;
 };
 
-void print_groups(const Scene& scene, const SimulationInfo& info) {
-  const std::vector<std::size_t> materials = group_materials(scene);
-  std::printf("\n%-16s %-16s %10s %10s %10s %12s %12s %12s %12s %12s %10s  %s\n", "group", "material",
+void print_bodies(const SimulationInfo& info) {
+  std::printf("\n%-16s %-16s %10s %10s %10s %12s %12s %12s %12s %12s %10s  %s\n", "body", "material",
               "particles", "spacing", "mass", "rest density", "threshold", "pressure", "viscosity",
               "neighbours", "regions", "shape matching");
-  for (std::size_t i = 0; i < info.groups.size(); ++i) {
-    const GroupInfo& group = info.groups[i];
+  for (const BodyInfo& body : info.bodies) {
     char neighbors[32] = "-";
-    if (group.average_neighbors > 0)
-      std::snprintf(neighbors, sizeof neighbors, "%.2f", group.average_neighbors);
+    if (body.average_neighbors > 0)
+      std::snprintf(neighbors, sizeof neighbors, "%.2f", body.average_neighbors);
     std::printf("%-16s %-16s %10zu %10.5g %10.5g %12.5g %12.5g %12.5g %12.5g %12s %10zu  %s\n",
-                group.name.c_str(), scene.materials[materials[i]].name.c_str(), group.particles,
-                static_cast<double>(group.spacing), static_cast<double>(group.particle_mass),
-                static_cast<double>(group.rest_density), static_cast<double>(group.update_threshold),
-                static_cast<double>(group.pressure_coefficient), static_cast<double>(group.viscosity),
-                neighbors, group.regions, group.shape_matching ? "on" : "off");
+                body.name.c_str(), body.material.c_str(), body.particles,
+                static_cast<double>(body.spacing), static_cast<double>(body.particle_mass),
+                static_cast<double>(body.rest_density), static_cast<double>(body.update_threshold),
+                static_cast<double>(body.pressure_coefficient), static_cast<double>(body.viscosity),
+                neighbors, body.regions, body.shape_matching ? "on" : "off");
   }
 }
 
@@ -71,16 +69,16 @@ void info(const InfoOptions& options) {
   Simulation simulation = build(scene, resolve_threads(options.threads), &notes);
   print_warnings(notes);
   const SimulationInfo info = simulation.info();
-  const bool shape_matching = std::any_of(info.groups.begin(), info.groups.end(),
-                                          [](const GroupInfo& group) { return group.shape_matching; });
+  const bool shape_matching = std::any_of(info.bodies.begin(), info.bodies.end(),
+                                          [](const BodyInfo& body) { return body.shape_matching; });
   const auto on_off = [](bool on) { return on ? "on" : "off"; };
   std::printf("scene            %s\n", options.scene.file.c_str());
-  std::printf("particles        %zu in %zu group%s\n", info.particles, info.groups.size(),
-              info.groups.size() == 1 ? "" : "s");
+  std::printf("particles        %zu in %zu bod%s\n", info.particles, info.bodies.size(),
+              info.bodies.size() == 1 ? "y" : "ies");
   std::printf("shape matching   %s\n", on_off(shape_matching));
   std::printf("SPH              %s\n", on_off(info.sph));
   std::printf("viscosity        %s\n", on_off(info.viscosity));
-  std::printf("group contact    %s\n", on_off(info.cross_group));
+  std::printf("body contact     %s\n", on_off(info.cross_group));
   const Vec3& gravity = scene.solver.gravity;
   std::printf("gravity          %g %g %g m/s2\n", static_cast<double>(gravity.x()),
               static_cast<double>(gravity.y()), static_cast<double>(gravity.z()));
@@ -89,7 +87,7 @@ void info(const InfoOptions& options) {
   std::printf("instructions     %s\n", name(info.instruction_level));
   std::printf("memory           %.1f MiB\n", static_cast<double>(info.bytes) / (1024.0 * 1024.0));
   print_times(scene, info);
-  print_groups(scene, info);
+  print_bodies(info);
   print_warnings(scene, info);
 }
 

@@ -115,8 +115,6 @@ void describe(const Scene& scene, int threads, Simulation& simulation, RunReport
   report.threads = threads;
   report.info = simulation.info();
   report.frame_time = frame_time(scene, report.info);
-  for (const std::size_t material : group_materials(scene))
-    report.group_materials.push_back(scene.materials[material].name);
 }
 
 Run begin(const RunOptions& options, int threads) {

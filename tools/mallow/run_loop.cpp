@@ -26,7 +26,7 @@ class FrameWriter {
   FrameWriter(const Scene& scene, const RunPlan& plan, const Cache& cache, const ParticleFrame& first,
               RunReport& report)
       : cache_(cache), report_(report), checkpoints_(scene, plan, cache), whole_frames_(report.frames) {
-    for (const GroupInfo& group : report.info.groups) spacings_.push_back(group.spacing);
+    for (const BodyInfo& body : report.info.bodies) spacings_.push_back(body.spacing);
     if (plan.surface) {
       std::filesystem::create_directories(cache.surface_file(0).parent_path());
       surfacer_.emplace(scene.surface, plan.threads);

@@ -16,22 +16,20 @@ namespace {
 
 nlohmann::ordered_json groups_json(const RunReport& report) {
   nlohmann::ordered_json groups = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < report.info.groups.size(); ++i) {
-    const GroupInfo& group = report.info.groups[i];
-    groups.push_back({{"name", group.name},
-                      {"material", report.group_materials[i]},
-                      {"particles", group.particles},
-                      {"spacing", group.spacing},
-                      {"particle_mass", group.particle_mass},
-                      {"rest_density", group.rest_density},
-                      {"region_radius", group.region_radius},
-                      {"update_threshold", group.update_threshold},
-                      {"pressure_coefficient", group.pressure_coefficient},
-                      {"viscosity", group.viscosity},
-                      {"average_neighbors", group.average_neighbors},
-                      {"regions", group.regions},
-                      {"shape_matching", group.shape_matching}});
-  }
+  for (const BodyInfo& body : report.info.bodies)
+    groups.push_back({{"name", body.name},
+                      {"material", body.material},
+                      {"particles", body.particles},
+                      {"spacing", body.spacing},
+                      {"particle_mass", body.particle_mass},
+                      {"rest_density", body.rest_density},
+                      {"region_radius", body.region_radius},
+                      {"update_threshold", body.update_threshold},
+                      {"pressure_coefficient", body.pressure_coefficient},
+                      {"viscosity", body.viscosity},
+                      {"average_neighbors", body.average_neighbors},
+                      {"regions", body.regions},
+                      {"shape_matching", body.shape_matching}});
   return groups;
 }
 

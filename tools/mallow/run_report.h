@@ -41,7 +41,6 @@ struct RunReport {
   std::string quality;  ///< empty: as the scene says
   int threads = 0;
   SimulationInfo info;
-  std::vector<std::string> group_materials;  ///< name of each group's material
 
   bool complete = false;
   std::string error;      ///< why the run ended early; empty where it did not

@@ -37,7 +37,7 @@ double average_neighbors(const Body& body, float radius, int threads) {
   config.threads = threads;
   Simulation simulation(config);
   simulation.add_body(body, Material{});
-  return simulation.info().groups.at(0).average_neighbors;
+  return simulation.info().bodies.at(0).average_neighbors;
 }
 
 void write_points(const Body& body, const std::filesystem::path& file) {
@@ -68,7 +68,7 @@ void sample_mesh(const SampleOptions& options) {
   source.placement.size = options.size;
   if (!options.center.empty())
     source.placement.center = Vec3(options.center[0], options.center[1], options.center[2]);
-  const Body body = sample(SceneBody{"", "", source}, "", threads);
+  const Body body = sample(SceneBody{.source = source}, "", threads);
   print_warnings(body.notes);
   std::printf("points %zu\nspacing %.9g\n", body.positions.size(), static_cast<double>(body.spacing));
   if (options.radius) {

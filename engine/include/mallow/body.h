@@ -17,6 +17,9 @@ struct Body {
   float spacing = 1.0f;               ///< distance of neighbouring points, h [m], > 0
   Vec3 velocity{0, 0, 0};             ///< of every point [m/s]
   std::vector<Vec3> velocities = {};  ///< of each point, added to `velocity`; empty or as long as `positions`
+  /// Acts on other bodies of its material that merge, and of its spacing, as on itself: two puddles become one.
+  /// Bodies that do not merge touch.
+  bool merges = false;
   /// What whoever made the body should know, in words: a mesh that was turned inside out, volume that the
   /// spacing loses. Nothing reads it but people.
   std::vector<std::string> notes = {};

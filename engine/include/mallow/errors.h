@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "mallow/ids.h"
 #include "mallow/report.h"
 
 namespace mallow {
@@ -53,15 +53,15 @@ class IoError : public Error {
 /// were before that step.
 class StepError : public Error {
  public:
-  StepError(const std::string& message, std::uint32_t particle_id, Phase phase);
+  StepError(const std::string& message, ParticleId particle_id, Phase phase);
   /// The particle that asked for it, or whose row is the first that holds a number that is not finite.
-  std::uint32_t particle_id() const { return particle_id_; }
+  ParticleId particle_id() const { return particle_id_; }
   /// Phase::time_step where Δt would be too short; else the phase that writes the first column, in the order
   /// of phases, with a number that is not finite.
   Phase phase() const { return phase_; }
 
  private:
-  std::uint32_t particle_id_;
+  ParticleId particle_id_;
   Phase phase_;
 };
 

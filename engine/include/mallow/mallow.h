@@ -6,6 +6,7 @@
 #include "mallow/defaults.h"           // IWYU pragma: export
 #include "mallow/errors.h"             // IWYU pragma: export
 #include "mallow/executor.h"           // IWYU pragma: export
+#include "mallow/ids.h"                // IWYU pragma: export
 #include "mallow/instruction_level.h"  // IWYU pragma: export
 #include "mallow/material.h"           // IWYU pragma: export
 #include "mallow/quality.h"            // IWYU pragma: export

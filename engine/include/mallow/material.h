@@ -32,7 +32,7 @@ class AlphaSchedule {
   std::vector<AlphaKey> keys_ = {};
 };
 
-/// What a group is made of. Symbols are those of Takamatsu & Kanai [TK].
+/// What bodies are made of. Symbols are those of Takamatsu & Kanai [TK].
 struct Material {
   /// Elastic solid (0) to fluid (1). [TK eq. 10]
   AlphaSchedule alpha = 0.0f;
@@ -41,7 +41,7 @@ struct Material {
   /// time_step before the check. Left out: 40 times gravity, see default_update_threshold(). [TK eq. 14]
   std::optional<float> update_threshold = {};
   /// k [m²/s²], >= 0: pressure is k (ρ − ρ0). Left out: as stiff as a step can carry, see
-  /// default_pressure_coefficient(); it then follows alpha, and between groups, where pressure acts whatever
+  /// default_pressure_coefficient(); it then follows alpha, and between bodies, where pressure acts whatever
   /// alpha is, it is that of alpha 1. [TK eq. 1]
   std::optional<float> pressure_coefficient = {};
   /// μ [Pa s], >= 0. Left out: as thick as looks the same at any size, see default_kinematic_viscosity().

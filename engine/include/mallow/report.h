@@ -36,7 +36,7 @@ struct StepReport {
   double max_velocity = 0;       ///< V of eq. 12 [m/s]; 0 where no SPH acts
   bool limited = false;          ///< a limit kept Δt below Δt0; not where only a time to land on did
   bool neighbors_found = false;  ///< neighbour lists were found anew, not kept (SolverConfig::neighbor_slack)
-  int updated_references = 0;    ///< groups whose reference shape was updated at the start of this step
+  int updated_references = 0;    ///< bodies whose reference shape was updated at the start of this step
   PhaseTimes seconds{};
 };
 
@@ -58,15 +58,16 @@ struct AdvanceReport {
   double largest_step = 0;              ///< Δt [s]
   double max_velocity = 0;              ///< largest V of eq. 12 [m/s]
   std::int64_t limited_steps = 0;       ///< StepReport::limited
-  std::int64_t updated_references = 0;  ///< updates of reference shapes, summed over groups
+  std::int64_t updated_references = 0;  ///< updates of reference shapes, summed over bodies
   PhaseTimes seconds{};
 
   void add(const StepReport& step);
 };
 
 /// What a simulation runs and holds; see Simulation::info().
-struct GroupInfo {
+struct BodyInfo {
   std::string name;
+  std::string material;
   std::size_t particles = 0;
   float spacing = 0;
   float particle_mass = 0;
@@ -82,10 +83,10 @@ struct GroupInfo {
 };
 struct SimulationInfo {
   std::size_t particles = 0;
-  std::vector<GroupInfo> groups;
+  std::vector<BodyInfo> bodies;
   bool sph = false;                                                 ///< SPH sums run
   bool viscosity = false;                                           ///< viscous terms run
-  bool cross_group = false;                                         ///< contact between groups runs
+  bool cross_group = false;                                         ///< contact between bodies runs
   InstructionLevel instruction_level = InstructionLevel::baseline;  ///< that kernels use
   std::size_t bytes = 0;                                            ///< memory of columns, lists and scratch
   float time_step = 0;                                              ///< Δt0 [s]
@@ -94,7 +95,7 @@ struct SimulationInfo {
   double update_period = 0;  ///< between checks of the reference shapes, where no step is shortened [s]
   /// The longest step that no limit would shorten, as fast as things are now [s]; infinite where no SPH acts.
   double unlimited_step = 0;
-  /// What can be run, but is hardly meant: a sentence each that names group, setting and value.
+  /// What can be run, but is hardly meant: a sentence each that names body, setting and value.
   std::vector<std::string> warnings;
 };
 

@@ -49,7 +49,8 @@ using BodySource = std::variant<Lattice, SphereSource, MeshSource, PointsSource,
 
 struct SceneBody {
   std::string material = {};
-  std::string group = {};  ///< empty: a group of its own
+  std::string group = {};  ///< bodies with one name here are one piece; empty: a piece of its own
+  bool merges = false;     ///< Body::merges
   BodySource source;
   Vec3 velocity{0, 0, 0};
   int line = 0;  ///< of the scene file; 0 where it did not come from one
@@ -131,7 +132,7 @@ double frame_time(const Scene& scene, const SimulationInfo& info);
 /// What can be run, but is hardly meant, a sentence each: that of the simulation, and where the frames cover
 /// almost no time.
 std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info);
-/// The material of each group that build() makes, in order of GroupId.
+/// The material of each body that build() makes, in order of BodyId.
 std::vector<std::size_t> group_materials(const Scene& scene);
 
 }  // namespace mallow

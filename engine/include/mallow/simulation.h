@@ -11,6 +11,7 @@
 #include "mallow/body.h"
 #include "mallow/collider.h"
 #include "mallow/errors.h"
+#include "mallow/ids.h"
 #include "mallow/material.h"
 #include "mallow/report.h"
 #include "mallow/saved_state.h"
@@ -18,13 +19,6 @@
 #include "mallow/vec3.h"
 
 namespace mallow {
-
-/// A particle's name for life: 0, 1, 2, ... in the order in which bodies were added.
-using ParticleId = std::uint32_t;
-/// Groups, colliders and pins are counted from 0 in the order in which they were added.
-enum class GroupId : std::uint32_t {};
-enum class ColliderId : std::uint32_t {};
-enum class PinId : std::uint32_t {};
 
 /// Three columns, one per component, seen without a copy. Row i of every view of a simulation is the same
 /// particle; its id is ids()[i]. A view is valid until the next step or change of the simulation.
@@ -83,15 +77,17 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// A group without particles yet. Throws ConfigError with every value that is out of range.
-  GroupId add_group(const Material& material, std::string name = {});
-  /// Adds a body to a group; its particles get the next ids. Bodies of one group share one spacing; a group
-  /// that already moved takes the present positions as its reference shape. Throws ConfigError, and changes
-  /// nothing, also where a point is nearer than a tenth of the spacing to another one of the body or to a
-  /// particle that is there, or where floats cannot tell points apart so far from 0.
-  void add_body(const Body& body, GroupId group);
-  /// Adds a body as a group of its own.
-  GroupId add_body(const Body& body, const Material& material, std::string name = {});
+  /// A material that bodies share. Throws ConfigError with every value that is out of range.
+  MaterialId add_material(const Material& material, std::string name = {});
+  /// Adds a body; its particles get the next ids. Throws ConfigError, and changes nothing, also where a point
+  /// is nearer than a tenth of the spacing to another one of the body or to a particle that is there, or
+  /// where floats cannot tell points apart so far from 0.
+  BodyId add_body(const Body& body, MaterialId material, std::string name = {});
+  /// Adds a body of a material of its own.
+  BodyId add_body(const Body& body, const Material& material, std::string name = {});
+  /// Adds particles to a body, with its spacing: all of it is one piece, with one reference shape. One that
+  /// already moved takes the present positions for that. Throws what add_body() throws.
+  void extend_body(BodyId body, const Body& more);
   ColliderId add_collider(const Collider& collider);
   /// Particles that are in `region` now move with `velocity` from now on and answer to nothing else. The
   /// region may hold none: that is a ConfigError, as nobody means it.
@@ -100,15 +96,15 @@ class Simulation {
   /// An empty function takes the callback away.
   void set_force(ForceCallback callback);
 
-  void set_alpha(GroupId group, const AlphaSchedule& alpha);
+  /// Of all bodies of the material.
+  void set_alpha(MaterialId material, const AlphaSchedule& alpha);
   void set_velocity(ColliderId collider, const Vec3& velocity);
   void set_velocity(PinId pin, const Vec3& velocity);
 
   /// Allocates, sorts and builds what the first step needs; step() does it where it was not done. The first
   /// call settles what a config leaves out, from the bodies that are there; later ones do not change it.
-  /// Throws ConfigError where there are no particles, particles of different groups are closer than h/10,
-  /// nothing says how long a step is, steps are too long for a material's springs, or neighbour lists would
-  /// take more than memory_limit.
+  /// Throws ConfigError where there are no particles, nothing says how long a step is, steps are too long for
+  /// a material's springs, or neighbour lists would take more than memory_limit.
   void prepare();
   /// One step of algorithm 3.3 of the paper. Throws StepError and keeps the state where Δt would fall below
   /// Δt0/1000 or a number is not finite: it names the particle and the phase.
@@ -124,7 +120,7 @@ class Simulation {
   AdvanceReport advance(double seconds);
 
   std::size_t particle_count() const;
-  std::size_t group_count() const;
+  std::size_t body_count() const;
   double time() const;  ///< simulated time [s]
   std::int64_t step_count() const;
   /// As given; from the first prepare() on with the time_step that is in force. What else was left out,
@@ -139,16 +135,17 @@ class Simulation {
   VectorView velocities() const;  ///< [m/s]
   /// ρ [kg/m³] of the last step; empty where no SPH ran.
   std::span<const float> densities() const;
-  /// The rows of a group in every view.
+  /// The rows of a body in every view.
   struct Rows {
     std::size_t begin, end;
   };
-  Rows rows(GroupId group) const;
+  Rows rows(BodyId body) const;
+  MaterialId material(BodyId body) const;
 
-  /// Copies in id order, whatever the order of rows is.
+  /// Copies in the order of slots, whatever that of rows is: entry i is particle i where none was removed.
   std::vector<Vec3> positions_by_id() const;
   std::vector<Vec3> velocities_by_id() const;
-  std::vector<std::uint8_t> groups_by_id() const;
+  std::vector<std::uint32_t> bodies_by_id() const;  ///< BodyId of each particle
 
   /// Energies as they are now, summed in double; slow, as every region is solved exactly. SPH pressure keeps
   /// no energy that could be summed, so a fluid's is what it moves and falls with. Calls prepare().
