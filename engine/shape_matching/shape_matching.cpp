@@ -18,10 +18,11 @@ RegionLists raw(const TableLists& lists) {
           lists.rows * lists.lengths.levels * k_row * sizeof(float) > k_near_caches};
 }
 
+using Block = RangeBlocks::Block;
 using FrameSums = std::array<double, 12>;
 
-FrameSums sum_frame(const VectorColumn& positions, const MatchedBodies::Body& body,
-                    const RangeBlocks::Block& block, InstructionLevel level) {
+FrameSums sum_frame(const VectorColumn& positions, const MatchedBodies::Body& body, const Block& block,
+                    InstructionLevel level) {
   const Eigen::Vector3d near_origin = positions.get(body.begin).cast<double>();
   FrameSums sums;
   MALLOW_SELECT(level, moment_kernels)
@@ -83,7 +84,7 @@ void solve_undecided(const ShapeInput& in, std::size_t begin, std::size_t end, S
 
 /// The rows of a block of particles and the sums of their runs: a block computes the rows behind it that its
 /// runs reach once more, rather than wait for them.
-void write_particle_table(const ShapeInput& in, const RangeBlocks::Block& block, const ShapeKernels& kernels,
+void write_particle_table(const ShapeInput& in, const Block& block, const ShapeKernels& kernels,
                           ShapeMatching& shape) {
   const std::size_t n = shape.reference.size(), first = block.begin, last = block.end;
   const RunLengths& lengths = shape.regions.lengths;
@@ -99,8 +100,34 @@ void write_particle_table(const ShapeInput& in, const RangeBlocks::Block& block,
   kernels.sum_runs(rows, last - first, lengths, n, table);
 }
 
-/// Bodies that one thread handles at a time where each takes a microsecond.
-constexpr std::size_t k_body_block = 16;
+void solve_block(int iterations, const Block& block, InstructionLevel level, const MatchedBodies::Body& body) {
+  ShapeMatching& shape = *body.shape;
+  float* const rotation[4] = {shape.rotation[0].data(), shape.rotation[1].data(), shape.rotation[2].data(),
+                              shape.rotation[3].data()};
+  MALLOW_SELECT(level, rotation_kernels)
+      .solve(body.input, block.begin, block.end, iterations, shape.sums.data(), rotation,
+             shape.undecided.data());
+  solve_undecided(body.input, block.begin, block.end, shape);
+}
+
+bool has_region_table(const ShapeMatching& shape) {
+  return shape.by_particle().lengths.levels > 1;
+}
+
+void write_region_table(const Block& block, const ShapeKernels& kernels, ShapeMatching& shape) {
+  if (!has_region_table(shape)) return;
+  kernels.sum_runs(shape.sums.data() + block.begin * k_row, block.end - block.begin,
+                   shape.by_particle().lengths, shape.region_weight.size(),
+                   shape.table.data() + block.begin * k_row);
+}
+
+void write_goals(const ShapeInput& in, const Block& block, const ShapeKernels& kernels, ShapeMatching& shape) {
+  const float* const table = has_region_table(shape) ? shape.table.data() : shape.sums.data();
+  kernels.goals(in, block.begin, block.end, table, raw(shape.pull));
+}
+
+/// Bodies that one thread handles at a time where each takes some microseconds.
+constexpr std::size_t k_body_block = 8;
 
 }  // namespace
 
@@ -127,29 +154,59 @@ ShapeInput shape_input(const VectorColumn& positions, std::size_t begin, const S
 }
 
 void MatchedBodies::clear() {
-  bodies.clear();
+  small.clear();
+  large.clear();
   particles.clear();
   regions.clear();
 }
 
 void MatchedBodies::add(ShapeMatching& shape, std::size_t begin) {
-  bodies.push_back({&shape, begin, {}});
-  particles.add(shape.reference.size());
-  regions.add(shape.region_weight.size());
+  const std::size_t rows = shape.reference.size(), owned = shape.region_weight.size();
+  if (rows <= k_block) {
+    small.push_back({&shape, begin, {}});
+    return;
+  }
+  large.push_back({&shape, begin, {}});
+  particles.add(rows);
+  regions.add(owned);
+}
+
+void match_small_bodies(const VectorColumn& positions, int iterations, const Threads& threads,
+                        InstructionLevel level, MatchedBodies& matched) {
+  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
+  const auto match = [&](MatchedBodies::Body& body) {
+    ShapeMatching& shape = *body.shape;
+    const Block particles{0, 0, static_cast<std::uint32_t>(shape.reference.size())};
+    const Block regions{0, 0, static_cast<std::uint32_t>(shape.region_weight.size())};
+    const FrameSums sums = sum_frame(positions, body, particles, level);
+    update_frame(positions, body.begin, {&sums, 1}, shape);
+    body.input = shape_input(positions, body.begin, shape);
+    write_particle_table(body.input, particles, kernels, shape);
+    kernels.sum_regions(body.input, regions.begin, regions.end, shape.table.data(), shape.sums.data());
+    solve_block(iterations, regions, level, body);
+    write_region_table(regions, kernels, shape);
+    write_goals(body.input, particles, kernels, shape);
+  };
+  parallel_for(
+      threads, matched.small.size(),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) match(matched.small[b]);
+      },
+      k_body_block);
 }
 
 void sum_regions(const VectorColumn& positions, const Threads& threads, InstructionLevel level,
                  MatchedBodies& matched) {
   const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
   matched.partial.resize(matched.particles.blocks.size());
-  parallel_for(threads, matched.particles, [&](const RangeBlocks::Block& block, std::size_t number) {
-    matched.partial[number] = sum_frame(positions, matched.bodies[block.range], block, level);
+  parallel_for(threads, matched.particles, [&](const Block& block, std::size_t number) {
+    matched.partial[number] = sum_frame(positions, matched.large[block.range], block, level);
   });
   parallel_for(
-      threads, matched.bodies.size(),
+      threads, matched.large.size(),
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
-          MatchedBodies::Body& body = matched.bodies[b];
+          MatchedBodies::Body& body = matched.large[b];
           const std::uint32_t first = matched.particles.first[b], last = matched.particles.first[b + 1];
           update_frame(positions, body.begin, std::span(matched.partial).subspan(first, last - first),
                        *body.shape);
@@ -157,46 +214,40 @@ void sum_regions(const VectorColumn& positions, const Threads& threads, Instruct
         }
       },
       k_body_block);
-  parallel_for(threads, matched.particles, [&](const RangeBlocks::Block& block, std::size_t) {
-    const MatchedBodies::Body& body = matched.bodies[block.range];
+  parallel_for(threads, matched.particles, [&](const Block& block, std::size_t) {
+    const MatchedBodies::Body& body = matched.large[block.range];
     write_particle_table(body.input, block, kernels, *body.shape);
   });
-  parallel_for(threads, matched.regions, [&](const RangeBlocks::Block& block, std::size_t) {
-    const MatchedBodies::Body& body = matched.bodies[block.range];
+  parallel_for(threads, matched.regions, [&](const Block& block, std::size_t) {
+    const MatchedBodies::Body& body = matched.large[block.range];
     kernels.sum_regions(body.input, block.begin, block.end, body.shape->table.data(),
                         body.shape->sums.data());
   });
 }
 
 void solve_rotations(int iterations, const Threads& threads, InstructionLevel level, MatchedBodies& matched) {
-  const RotationKernels& kernels = MALLOW_SELECT(level, rotation_kernels);
-  parallel_for(threads, matched.regions, [&](const RangeBlocks::Block& block, std::size_t) {
-    const MatchedBodies::Body& body = matched.bodies[block.range];
-    ShapeMatching& shape = *body.shape;
-    float* const rotation[4] = {shape.rotation[0].data(), shape.rotation[1].data(), shape.rotation[2].data(),
-                                shape.rotation[3].data()};
-    kernels.solve(body.input, block.begin, block.end, iterations, shape.sums.data(), rotation,
-                  shape.undecided.data());
-    solve_undecided(body.input, block.begin, block.end, shape);
+  parallel_for(threads, matched.regions, [&](const Block& block, std::size_t) {
+    solve_block(iterations, block, level, matched.large[block.range]);
   });
 }
 
 void compute_goals(const Threads& threads, InstructionLevel level, MatchedBodies& matched) {
   const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
-  const auto has_table = [](const ShapeMatching& shape) { return shape.by_particle().lengths.levels > 1; };
-  parallel_for(threads, matched.regions, [&](const RangeBlocks::Block& block, std::size_t) {
-    ShapeMatching& shape = *matched.bodies[block.range].shape;
-    if (!has_table(shape)) return;
-    kernels.sum_runs(shape.sums.data() + block.begin * k_row, block.end - block.begin,
-                     shape.by_particle().lengths, shape.region_weight.size(),
-                     shape.table.data() + block.begin * k_row);
+  parallel_for(threads, matched.regions, [&](const Block& block, std::size_t) {
+    write_region_table(block, kernels, *matched.large[block.range].shape);
   });
-  parallel_for(threads, matched.particles, [&](const RangeBlocks::Block& block, std::size_t) {
-    const MatchedBodies::Body& body = matched.bodies[block.range];
-    ShapeMatching& shape = *body.shape;
-    kernels.goals(body.input, block.begin, block.end,
-                  has_table(shape) ? shape.table.data() : shape.sums.data(), raw(shape.pull));
+  parallel_for(threads, matched.particles, [&](const Block& block, std::size_t) {
+    const MatchedBodies::Body& body = matched.large[block.range];
+    write_goals(body.input, block, kernels, *body.shape);
   });
+}
+
+void match_shapes(const VectorColumn& positions, int iterations, const Threads& threads,
+                  InstructionLevel level, MatchedBodies& matched) {
+  match_small_bodies(positions, iterations, threads, level, matched);
+  sum_regions(positions, threads, level, matched);
+  solve_rotations(iterations, threads, level, matched);
+  compute_goals(threads, level, matched);
 }
 
 }  // namespace mallow

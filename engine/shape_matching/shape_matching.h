@@ -62,7 +62,10 @@ struct ShapeMatching {
 /// What kernels see of a shape whose particles are in the rows from `begin` on.
 ShapeInput shape_input(const VectorColumn& positions, std::size_t begin, const ShapeMatching& shape);
 
-/// Bodies whose shapes are matched together: each phase runs once over the blocks of all of them.
+/// Bodies whose shapes are matched together. Large ones take one phase after the other, each once over the
+/// blocks of all of them. Small ones, of one block, take all phases one after the other while they are in the
+/// caches: from phase to phase a thousand of them would be fetched anew, in pieces too small to be foreseen,
+/// and cost twice what one body of as many particles does.
 class MatchedBodies {
  public:
   void clear();
@@ -75,11 +78,14 @@ class MatchedBodies {
     std::size_t begin;
     ShapeInput input;  ///< since the last sum_regions()
   };
-  std::vector<Body> bodies;
-  RangeBlocks particles, regions;
+  std::vector<Body> small, large;
+  RangeBlocks particles, regions;  ///< of the large ones
   std::vector<std::array<double, 12>> partial;
 };
 
+/// Sums, rotations and goals of the small bodies; the phases below are those of the large ones.
+void match_small_bodies(const VectorColumn& positions, int iterations, const Threads& threads,
+                        InstructionLevel level, MatchedBodies& matched);
 /// First sums over the regions. [model 2]
 void sum_regions(const VectorColumn& positions, const Threads& threads, InstructionLevel level,
                  MatchedBodies& matched);
@@ -88,5 +94,8 @@ void sum_regions(const VectorColumn& positions, const Threads& threads, Instruct
 void solve_rotations(int iterations, const Threads& threads, InstructionLevel level, MatchedBodies& matched);
 /// g − x of every particle. [TK eq. 7]
 void compute_goals(const Threads& threads, InstructionLevel level, MatchedBodies& matched);
+/// All of these.
+void match_shapes(const VectorColumn& positions, int iterations, const Threads& threads,
+                  InstructionLevel level, MatchedBodies& matched);
 
 }  // namespace mallow

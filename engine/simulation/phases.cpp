@@ -137,9 +137,7 @@ namespace {
 void catch_up_with_pull(Simulation::State& state, BodyState& body) {
   MatchedBodies matched;
   matched.add(body.shape, body.begin);
-  sum_regions(state.store.position, state.threads, state.level, matched);
-  solve_rotations(state.config.rotation_iterations, state.threads, state.level, matched);
-  compute_goals(state.threads, state.level, matched);
+  match_shapes(state.store.position, state.config.rotation_iterations, state.threads, state.level, matched);
   const float kick = 0.5f * static_cast<float>(state.last_time_step) * state.stiffness(*body.material);
   ParticleStore& store = state.store;
   parallel_for(state.threads, body.size(), [&](std::size_t begin, std::size_t end) {

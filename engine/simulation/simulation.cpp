@@ -35,9 +35,11 @@ StepReport Simulation::step_towards(double end) {
   const ChosenStep step = choose_time_step(s, end, report);  // v, a, time left -> Δt        [TK eq. 12]
   timer.lap(Phase::time_step);
 
-  sum_regions(x, s.threads, s.level, s.matched);  // x, x̄ -> sums over N_j
+  const int iterations = s.config.rotation_iterations;
+  match_small_bodies(x, iterations, s.threads, s.level, s.matched);  // x, x̄ -> R_j, g − x     [TK eq. 7]
+  sum_regions(x, s.threads, s.level, s.matched);                     // x, x̄ -> sums over N_j
   timer.lap(Phase::region_sums);
-  solve_rotations(s.config.rotation_iterations, s.threads, s.level, s.matched);  // sums -> R_j
+  solve_rotations(iterations, s.threads, s.level, s.matched);  // sums -> R_j
   timer.lap(Phase::rotations);
   compute_goals(s.threads, s.level, s.matched);  // R_j -> g − x       [TK eq. 7]
   timer.lap(Phase::goals);

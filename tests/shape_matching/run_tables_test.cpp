@@ -180,9 +180,7 @@ struct Matched {
     build_regions(threads, level, scratch, shape);
     MatchedBodies bodies;
     bodies.add(shape, 0);
-    sum_regions(x, threads, level, bodies);
-    solve_rotations(k_enough_iterations, threads, level, bodies);
-    compute_goals(threads, level, bodies);
+    match_shapes(x, k_enough_iterations, threads, level, bodies);
   }
 };
 

@@ -41,9 +41,7 @@ struct World {
              int iterations = k_enough_iterations) {
     MatchedBodies bodies;
     bodies.add(shape, 0);
-    sum_regions(x, threads, level, bodies);
-    solve_rotations(iterations, threads, level, bodies);
-    compute_goals(threads, level, bodies);
+    match_shapes(x, iterations, threads, level, bodies);
   }
   template <class F>
   void transform(const F& f) {
@@ -422,8 +420,8 @@ struct MatrixRegions {
   void solve(InstructionLevel level) {
     const VectorColumn x(shape.reference.size());
     MatchedBodies bodies;
-    bodies.add(shape, 0);
-    bodies.bodies[0].input = shape_input(x, 0, shape);
+    bodies.large.push_back({&shape, 0, shape_input(x, 0, shape)});
+    bodies.regions.add(shape.region_weight.size());
     solve_rotations(k_enough_iterations, 1, level, bodies);
   }
   std::vector<float> row(std::size_t j) const {

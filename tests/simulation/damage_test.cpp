@@ -29,7 +29,7 @@ Simulation make(int stride = 1, float slack = 0) {
                 .neighbor_slack = slack,
                 .threads = 2});
   const auto cube = [](float height) {
-    return sample(Lattice{.count = {7, 6, 5}, .spacing = 1.0f, .corner = {0, 0, height}, .jitter = 0});
+    return sample(Lattice{.count = {7, 8, 5}, .spacing = 1.0f, .corner = {0, 0, height}, .jitter = 0});
   };
   const Material jelly{.alpha = 0.6f, .update_threshold = 0.1f, .viscosity = 0.5f, .region_stride = stride};
   s.add_body(cube(0.5f), {.alpha = 0, .region_stride = stride});

@@ -18,7 +18,8 @@ enum class Phase {
   density,           ///< density and pressure [TK eq. 3]
   accelerations,     ///< pressure and viscosity [TK eq. 1, 2, 4]
   time_step,         ///< [TK eq. 12]
-  region_sums,       ///< sums over the regions, first of two
+  region_sums,       ///< sums over the regions, first of two; all of shape matching for bodies of up to 256
+                     ///< particles
   rotations,         ///< polar decompositions
   goals,             ///< goal positions, second of the sums over regions [TK eq. 7]
   motion,            ///< blend, contact, positions [TK eq. 10, 11]
