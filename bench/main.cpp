@@ -4,6 +4,7 @@
 #include "figures/figures_command.h"
 #include "kernels/kernels_command.h"
 #include "mallow/program.h"
+#include "mallow/version.h"
 #include "scaling/scaling_command.h"
 #include "stability/stability_command.h"
 #include "table1/table1_command.h"
@@ -13,7 +14,7 @@
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 throws where two options clash
   using namespace mallow::bench;
   CLI::App app("mallow-bench: what mallow costs and how right it is", "mallow-bench");
-  app.set_version_flag("--version", MALLOW_VERSION);
+  app.set_version_flag("--version", mallow::version());
   app.footer("Exit codes: 0 done, 1 a run failed or a claim does not hold, 2 the input cannot be used.");
   add_table1_command(app);
   add_tradeoff_command(app);

@@ -7,6 +7,7 @@
 #include "mallow/files.h"
 #include "mallow/instruction_level.h"
 #include "mallow/machine.h"
+#include "mallow/version.h"
 
 namespace mallow::bench {
 namespace {
@@ -88,8 +89,8 @@ Results::Results(std::string command, const Output& output, int threads, Json se
   if (json_.empty()) json_ = file(".json");
   cli::check_writable(json_);
   cli::check_writable(file(".csv"));
-  document_ = {{"command", command_},  {"version", MALLOW_VERSION}, {"date", now()},
-               {"machine", machine()}, {"threads", threads},        {"settings", std::move(settings)},
+  document_ = {{"command", command_},  {"version", version()}, {"date", now()},
+               {"machine", machine()}, {"threads", threads},   {"settings", std::move(settings)},
                {"complete", false},    {"rows", Json::array()}};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mallow/export.h"
 #include "mallow/instruction_level.h"
 
 /// Kernel files are compiled once per level, each into a namespace of its own that this macro names (see
@@ -17,18 +18,18 @@
                                                : level_baseline::table)
 #define MALLOW_DECLARE_LEVELS(type, table) \
   namespace level_baseline {               \
-  extern const type table;                 \
+  extern MALLOW_EXPORT const type table;   \
   }                                        \
   namespace level_v3 {                     \
-  extern const type table;                 \
+  extern MALLOW_EXPORT const type table;   \
   }                                        \
   namespace level_v4 {                     \
-  extern const type table;                 \
+  extern MALLOW_EXPORT const type table;   \
   }
 #else
 #define MALLOW_SELECT(level, table) ((void)(level), level_baseline::table)
 #define MALLOW_DECLARE_LEVELS(type, table) \
   namespace level_baseline {               \
-  extern const type table;                 \
+  extern MALLOW_EXPORT const type table;   \
   }
 #endif

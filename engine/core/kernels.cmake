@@ -26,9 +26,11 @@ function(mallow_add_kernels source)
     # Vectors wider than a register never leave a kernel file, so it matters to none how they are passed (-Wno-psabi).
     # Without -fno-math-errno and -fno-trapping-math a square root or a comparison keeps a loop scalar; neither
     # changes a result.
-    target_compile_options(${object} PRIVATE ${flags_${level}} -fno-math-errno -fno-trapping-math -Wno-psabi $<$<NOT:$<CONFIG:Debug>>:-O3>)
+    target_compile_options(${object} PRIVATE ${flags_${level}} -fno-math-errno -fno-trapping-math -Wno-psabi
+      $<$<NOT:$<OR:$<CONFIG:Debug>,$<BOOL:${MALLOW_FUZZ}>>>:-O3>)
     target_link_libraries(${object} PRIVATE mallow_build_options Eigen3::Eigen)
-    set_target_properties(${object} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    set_target_properties(${object} PROPERTIES
+      POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON UNITY_BUILD OFF)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${object}>)
   endforeach()
 endfunction()

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/threads.h"
+#include "mallow/export.h"
 
 namespace mallow {
 
@@ -60,7 +61,7 @@ class SharedBlocks {
 };
 
 /// Runs a loop on the threads of an executor, and on this one what they leave.
-void run_loop(const Threads& threads, LoopTask task);
+MALLOW_EXPORT void run_loop(const Threads& threads, LoopTask task);
 
 /// Calls body(begin, end) for every block of `block` indices of [0, n), blocks spread over threads. The
 /// blocks are the same for any number of threads. body must not throw.

@@ -5,12 +5,13 @@
 #include <memory>
 
 #include "mallow/executor.h"
+#include "mallow/export.h"
 
 namespace mallow {
 
 /// Who runs the blocks of loops: an executor, and how many of its threads at most. The executor has to
 /// outlive this.
-class Threads {
+class MALLOW_EXPORT Threads {
  public:
   /// `requested` of the engine's own threads; 0 takes all that the machine has.
   Threads(int requested);  // NOLINT(google-explicit-constructor): a count alone is the usual case

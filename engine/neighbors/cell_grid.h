@@ -8,6 +8,7 @@
 #include "core/column.h"
 #include "core/isa.h"
 #include "core/threads.h"
+#include "mallow/export.h"
 
 namespace mallow {
 
@@ -48,7 +49,8 @@ struct CellGrid {
 
 /// Count, scan, scatter: a stable sort, the same for any number of threads. positions: finite. radius: > 0,
 /// the largest that will be searched for.
-void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size_t end, float radius,
-                     const Threads& threads, InstructionLevel level, CellGrid& grid);
+MALLOW_EXPORT void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size_t end,
+                                   float radius, const Threads& threads, InstructionLevel level,
+                                   CellGrid& grid);
 
 }  // namespace mallow

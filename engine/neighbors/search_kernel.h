@@ -2,6 +2,7 @@
 
 #include "core/isa.h"
 #include "core/raw_columns.h"
+#include "mallow/export.h"
 
 namespace mallow {
 
@@ -32,7 +33,7 @@ struct SearchInput {
 
 struct CellGrid;
 /// What searches of a grid within a radius read. radius: at most the one that the grid was built for.
-SearchInput search_input(const CellGrid& grid, float radius);
+MALLOW_EXPORT SearchInput search_input(const CellGrid& grid, float radius);
 
 struct Bounds {
   float low[3], high[3];

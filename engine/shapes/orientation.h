@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mallow/export.h"
 #include "mallow/mesh.h"
 
 namespace mallow {
@@ -21,6 +22,6 @@ struct Orientation {
 /// Finds which way the triangles of a closed, welded mesh face. Neighbours are made to agree, as most of them
 /// do. A shell is what edges connect: one that is inside out is turned, together with all shells within it,
 /// unless it lies within another one: then it bounds a cavity.
-Orientation orient(const Mesh& mesh);
+MALLOW_EXPORT Orientation orient(const Mesh& mesh);
 
 }  // namespace mallow

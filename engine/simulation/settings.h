@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "mallow/export.h"
 #include "mallow/simulation.h"
 
 /// What configs leave out, and what they ask for: settled in prepare(), before anything is allocated.
@@ -53,7 +54,7 @@ struct MaterialLimits {
 };
 MaterialLimits material_limits(const Simulation::State& state, const BodyState& body);
 /// Whether gravity is that of a planet or moon in metres and seconds, by its size.
-bool is_in_metres(const Vec3& gravity);
+MALLOW_EXPORT bool is_in_metres(const Vec3& gravity);
 /// What can be run, but is hardly meant. alpha and defaults are settled.
 std::vector<std::string> warnings(const Simulation::State& state);
 /// The longest step that no limit shortens, as fast as things are now [s].

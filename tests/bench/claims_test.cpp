@@ -9,7 +9,7 @@
 #include "figures/figure.h"
 
 namespace mallow::bench {
-namespace {
+namespace claims_test {
 
 /// From `first` to `last` in equal steps.
 Curve ramp(double first, double last, std::size_t count = 101) {
@@ -189,5 +189,5 @@ TEST(claims, a_number_that_is_none_holds_nothing) {
       {.name = "", .sentence = "", .measure = "", .measured = none, .bound = Bound::at_most, .limit = 0}));
 }
 
-}  // namespace
+}  // namespace claims_test
 }  // namespace mallow::bench

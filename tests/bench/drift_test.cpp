@@ -3,7 +3,7 @@
 #include "bench_fixture.h"
 
 namespace mallow::test {
-namespace {
+namespace drift_test {
 
 using bench_drift = BenchTest;
 
@@ -26,5 +26,5 @@ TEST_F(bench_drift, of_300_steps_stays_below_what_single_precision_explains) {
   }
 }
 
-}  // namespace
+}  // namespace drift_test
 }  // namespace mallow::test

@@ -3,7 +3,7 @@
 #include "bench_fixture.h"
 
 namespace mallow::test {
-namespace {
+namespace figures_test {
 
 using bench_figures = BenchTest;
 
@@ -46,5 +46,5 @@ TEST_F(bench_figures, what_is_not_known_is_refused) {
   expect_refused("figures", {"--only", "fig4"}, {"fig4", "fig2, fig3, fig5a, fig5b, fig5c, fig5d"});
 }
 
-}  // namespace
+}  // namespace figures_test
 }  // namespace mallow::test

@@ -1,7 +1,7 @@
 #include "bench_fixture.h"
 
 namespace mallow::test {
-namespace {
+namespace kernels_test {
 
 using bench_kernels = BenchTest;
 
@@ -14,9 +14,9 @@ const nlohmann::json* find_row(const nlohmann::json& document, const std::string
 
 TEST_F(bench_kernels, rows_follow_the_schema) {
   // One of every subject, on small scenes.
-  const nlohmann::json document =
-      run_command("kernels", {"--threads", "1", "--min-time", "0.001", "--repeats", "2", "--filter",
-                              "cube_15/|rotations/small|svd_float/small|points_10k_in|surface_field/cube_15"});
+  const nlohmann::json document = run_command(
+      "kernels", {"--threads", "1", "--min-time", "0.001", "--repeats", "2", "--filter",
+                  "cube_15/|rotations/small|svd_float/small|points_10k_in|surface_field/cube_15"});
   expect_valid("kernels");
   for (const char* kernel : {"row_additions", "write_rows", "region_sums", "region_sums_phase", "goals",
                              "density", "density_two_groups", "accelerations", "surface", "surface_field"})
@@ -56,5 +56,5 @@ TEST_F(bench_kernels, what_makes_no_sense_is_refused) {
   expect_refused("kernels", {"--min-time", "0"}, {"--min-time"});
 }
 
-}  // namespace
+}  // namespace kernels_test
 }  // namespace mallow::test

@@ -9,7 +9,7 @@
 #include "mallow/body.h"
 
 namespace mallow::bench {
-namespace {
+namespace measures_test {
 
 std::vector<Vec3> box(std::array<int, 3> count, const Vec3& corner = {0, 0, 0}, float jitter = 0) {
   return sample(Lattice{.count = count, .spacing = 1, .corner = corner, .jitter = jitter}).positions;
@@ -81,5 +81,5 @@ TEST(measures, of_curves) {
   EXPECT_EQ(mean_of_last(curve, 0.01), 3) << "never of none";
 }
 
-}  // namespace
+}  // namespace measures_test
 }  // namespace mallow::bench

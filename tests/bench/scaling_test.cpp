@@ -3,7 +3,7 @@
 #include "bench_fixture.h"
 
 namespace mallow::test {
-namespace {
+namespace scaling_test {
 
 using bench_scaling = BenchTest;
 
@@ -48,5 +48,5 @@ TEST_F(bench_scaling, what_makes_no_sense_is_refused) {
   expect_refused("scaling", {"--repeats", "-1"}, {"--repeats"});
 }
 
-}  // namespace
+}  // namespace scaling_test
 }  // namespace mallow::test

@@ -5,7 +5,7 @@
 #include "bench_fixture.h"
 
 namespace mallow::test {
-namespace {
+namespace stability_test {
 
 using bench_stability = BenchTest;
 
@@ -41,5 +41,5 @@ TEST_F(bench_stability, nothing_is_unstable_and_what_is_refused_says_why) {
   EXPECT_TRUE(std::filesystem::exists(at("out/stability.svg")));
 }
 
-}  // namespace
+}  // namespace stability_test
 }  // namespace mallow::test

@@ -1,7 +1,7 @@
 #include "bench_fixture.h"
 
 namespace mallow::test {
-namespace {
+namespace table1_test {
 
 using bench_table1 = BenchTest;
 
@@ -51,5 +51,5 @@ TEST_F(bench_table1, what_makes_no_sense_is_refused) {
   expect_refused("table1", {"--textbook-seconds", "-1"}, {"--textbook-seconds"});
 }
 
-}  // namespace
+}  // namespace table1_test
 }  // namespace mallow::test

@@ -3,7 +3,7 @@
 #include "bench_fixture.h"
 
 namespace mallow::test {
-namespace {
+namespace tradeoff_test {
 
 using bench_tradeoff = BenchTest;
 
@@ -62,5 +62,5 @@ TEST_F(bench_tradeoff, unknown_scenes_and_knobs_list_the_known_ones) {
   expect_refused("tradeoff", {"--knobs", "colour"}, {"--knobs", "\"colour\"", "time_step", "region_stride"});
 }
 
-}  // namespace
+}  // namespace tradeoff_test
 }  // namespace mallow::test

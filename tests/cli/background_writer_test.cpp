@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace mallow::cli {
-namespace {
+namespace background_writer_test {
 
 TEST(background_writer, does_all_jobs_in_order) {
   std::vector<int> done;
@@ -75,5 +75,5 @@ TEST(background_writer, what_a_job_throws_reaches_finish_and_add_and_ends_the_wo
   EXPECT_EQ(done, 0);
 }
 
-}  // namespace
+}  // namespace background_writer_test
 }  // namespace mallow::cli

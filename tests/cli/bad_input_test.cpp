@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 namespace mallow::test {
-namespace {
+namespace bad_input_test {
 
 using cli_bad_input = CliTest;
 
@@ -98,5 +98,5 @@ TEST_F(cli_bad_input, a_step_that_cannot_be_taken_fails_the_run_and_is_reported)
   EXPECT_NE(report.at("error"), "");
 }
 
-}  // namespace
+}  // namespace bad_input_test
 }  // namespace mallow::test

@@ -7,7 +7,7 @@
 #include "mallow/files.h"
 
 namespace mallow::test {
-namespace {
+namespace cache_test {
 
 namespace fs = std::filesystem;
 using cli_cache = CliTest;
@@ -180,5 +180,5 @@ TEST_F(cli_cache, a_full_disk_leaves_only_whole_files) {
   }
 }
 
-}  // namespace
+}  // namespace cache_test
 }  // namespace mallow::test

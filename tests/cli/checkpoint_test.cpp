@@ -10,7 +10,7 @@
 #include "mallow/files.h"
 
 namespace mallow::test {
-namespace {
+namespace checkpoint_test {
 
 namespace fs = std::filesystem;
 
@@ -219,5 +219,5 @@ TEST_F(cli_checkpoint, goes_on_after_a_full_disk_was_given_room) {
   ::umount(at("disk").c_str());
 }
 
-}  // namespace
+}  // namespace checkpoint_test
 }  // namespace mallow::test

@@ -11,7 +11,7 @@
 #include "mallow/files.h"
 
 namespace mallow::test {
-namespace {
+namespace export_test {
 
 namespace fs = std::filesystem;
 using cli_export = CliTest;
@@ -260,5 +260,5 @@ TEST_F(cli_export, overwrite_removes_the_exports_of_the_earlier_run) {
   EXPECT_EQ(names_in(at("out/export/particles")), std::vector<std::string>{"notes.txt"});
 }
 
-}  // namespace
+}  // namespace export_test
 }  // namespace mallow::test

@@ -5,7 +5,7 @@
 #include "mallow/external_program.h"
 
 namespace mallow::test {
-namespace {
+namespace film_test {
 
 namespace fs = std::filesystem;
 using cli_film = CliTest;
@@ -112,5 +112,5 @@ TEST_F(cli_film, wrong_use_is_refused_before_anything_runs) {
   expect_refused(run_mallow({"render", at("out"), "--film", at("no/such/a.mp4")}), "No such file");
 }
 
-}  // namespace
+}  // namespace film_test
 }  // namespace mallow::test

@@ -11,7 +11,7 @@
 #include "mallow/quality.h"
 
 namespace mallow::test {
-namespace {
+namespace frames_test {
 
 /// A scene in metres under 9.81 m/s², whose steps the speed of sound holds far below time_step.
 constexpr const char* k_limited = R"(
@@ -172,5 +172,5 @@ TEST_F(cli_frames, of_a_run_that_is_resumed_between_two_are_those_of_one_that_wa
             read_json(at("whole/report.json")).at("state_hash"));
 }
 
-}  // namespace
+}  // namespace frames_test
 }  // namespace mallow::test

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 namespace mallow::test {
-namespace {
+namespace inputs_test {
 
 namespace fs = std::filesystem;
 using cli_inputs = CliTest;
@@ -142,5 +142,5 @@ TEST_F(cli_inputs, standard_output_that_is_a_file_is_not_replaced) {
   EXPECT_TRUE(fs::is_symlink("/dev/stdout"));
 }
 
-}  // namespace
+}  // namespace inputs_test
 }  // namespace mallow::test

@@ -11,7 +11,7 @@
 #include "mallow/simulation.h"
 
 namespace mallow::test {
-namespace {
+namespace kill_test {
 
 namespace fs = std::filesystem;
 using cli_kill = CliTest;
@@ -115,5 +115,5 @@ TEST_F(cli_kill, at_random_moments_leaves_a_run_that_goes_on_to_the_same_bytes) 
       tally.runs_ended, tally.damaged_files);
 }
 
-}  // namespace
+}  // namespace kill_test
 }  // namespace mallow::test

@@ -8,7 +8,7 @@
 #include "mallow/files.h"
 
 namespace mallow::test {
-namespace {
+namespace names_test {
 
 namespace fs = std::filesystem;
 
@@ -133,5 +133,5 @@ TEST_F(cli_names, are_pasted_into_a_shell_as_they_are_printed) {
   EXPECT_EQ(word, "'" + at("it") + "'\\''s \"100%\" $HOME'");
 }
 
-}  // namespace
+}  // namespace names_test
 }  // namespace mallow::test

@@ -10,7 +10,7 @@
 #include "mallow/files.h"
 
 namespace mallow::test {
-namespace {
+namespace run_folder_test {
 
 namespace fs = std::filesystem;
 using cli_run_folder = CliTest;
@@ -154,5 +154,5 @@ TEST_F(cli_run_folder, that_lacks_the_last_surface_gets_no_picture_of_that_frame
   EXPECT_EQ(names_in(at("out/images")).size(), 2u);
 }
 
-}  // namespace
+}  // namespace run_folder_test
 }  // namespace mallow::test

@@ -7,7 +7,7 @@
 #include "mallow/scene.h"
 
 namespace mallow::test {
-namespace {
+namespace run_test {
 
 using cli_run = CliTest;
 
@@ -212,5 +212,5 @@ TEST_F(cli_run, help_names_the_qualities) {
   EXPECT_EQ(run({"--quality", "1"}).exit_code, 2);
 }
 
-}  // namespace
+}  // namespace run_test
 }  // namespace mallow::test

@@ -13,7 +13,7 @@
 #include "core/polar_rotation.h"
 
 namespace mallow {
-namespace {
+namespace core_test {
 
 TEST(column, keeps_values_when_it_grows_and_pads_with_zeros) {
   Column<float> column(5);
@@ -190,5 +190,5 @@ TEST(checks, say_every_problem_at_once) {
   }
 }
 
-}  // namespace
+}  // namespace core_test
 }  // namespace mallow

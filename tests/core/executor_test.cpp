@@ -27,7 +27,7 @@
 #endif
 
 namespace mallow {
-namespace {
+namespace executor_test {
 
 using namespace std::chrono_literals;
 
@@ -231,5 +231,5 @@ TEST(governor, tolerates_short_waits_and_those_of_uneven_blocks) {
   EXPECT_FALSE(governor.allows(now));
 }
 
-}  // namespace
+}  // namespace executor_test
 }  // namespace mallow

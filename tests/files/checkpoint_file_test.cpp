@@ -11,7 +11,7 @@
 #include "mallow/mallow.h"
 
 namespace mallow {
-namespace {
+namespace checkpoint_file_test {
 
 namespace fs = std::filesystem;
 
@@ -204,5 +204,5 @@ TEST(checkpoint_file, on_a_full_disk_leaves_both_earlier_ones) {
   ::umount(folder.path().c_str());
 }
 
-}  // namespace
+}  // namespace checkpoint_file_test
 }  // namespace mallow

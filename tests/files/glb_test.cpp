@@ -5,7 +5,7 @@
 #include "files/tiny_gltf.h"
 
 namespace mallow {
-namespace {
+namespace glb_test {
 
 namespace gltf = mallow_tinygltf;
 
@@ -197,5 +197,5 @@ TEST(glb, what_gltf_cannot_say_is_refused_by_name) {
   EXPECT_EQ(folder.entries(), 0u);
 }
 
-}  // namespace
+}  // namespace glb_test
 }  // namespace mallow

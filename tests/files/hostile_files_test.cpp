@@ -9,7 +9,7 @@
 #include "files/text_reader.h"
 
 namespace mallow {
-namespace {
+namespace hostile_files_test {
 
 struct Hostile {
   const char* name;
@@ -267,5 +267,5 @@ TEST(hostile_file, every_truncation_of_an_ascii_ply_mesh_is_refused) {
   }
 }
 
-}  // namespace
+}  // namespace hostile_files_test
 }  // namespace mallow

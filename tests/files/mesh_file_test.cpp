@@ -7,7 +7,7 @@
 #include "files/file_fixture.h"
 
 namespace mallow {
-namespace {
+namespace mesh_file_test {
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
@@ -315,5 +315,5 @@ TEST(mesh_file, numbers_do_not_depend_on_the_locale) {
   EXPECT_EQ(content_of(folder / "a.obj"), content_of(folder / "plain.obj"));
 }
 
-}  // namespace
+}  // namespace mesh_file_test
 }  // namespace mallow

@@ -6,7 +6,7 @@
 #include "files/file_fixture.h"
 
 namespace mallow {
-namespace {
+namespace mesh_test {
 
 TEST(mesh, bounds_hold_every_vertex_and_touch_the_outermost) {
   const Aabb box = bounds(tetrahedron());
@@ -37,5 +37,5 @@ TEST(mesh, without_triangles_is_not_closed) {
   EXPECT_EQ(why_not_closed(flat), "no triangles that enclose anything");
 }
 
-}  // namespace
+}  // namespace mesh_test
 }  // namespace mallow

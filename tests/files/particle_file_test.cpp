@@ -4,7 +4,7 @@
 #include "files/file_fixture.h"
 
 namespace mallow {
-namespace {
+namespace particle_file_test {
 
 bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0);
@@ -87,5 +87,5 @@ TEST(particle_file, a_frame_that_is_none_is_refused) {
   EXPECT_EQ(io_problem([&] { read_particles(folder / "c.ply"); }).field, "vertex 1, vz");
 }
 
-}  // namespace
+}  // namespace particle_file_test
 }  // namespace mallow

@@ -1,7 +1,7 @@
 #include "files/file_fixture.h"
 
 namespace mallow {
-namespace {
+namespace points_file_test {
 
 TEST(points_file, csv_columns_are_found_by_name_in_any_order) {
   const TemporaryFolder folder;
@@ -115,5 +115,5 @@ TEST(points_file, a_bad_value_is_named_with_line_column_and_text) {
   EXPECT_NE(problem("# nothing\n").message.find("names the columns"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace points_file_test
 }  // namespace mallow

@@ -5,7 +5,7 @@
 /// Files with random damage either are read or throw IoError; under the address and undefined-behaviour
 /// sanitizers this also shows that nothing is read or written outside.
 namespace mallow {
-namespace {
+namespace random_damage_test {
 
 constexpr int k_variants_per_file = 2000;
 
@@ -149,5 +149,5 @@ TEST(random_damage, particle_frame) {
                   [](const auto& file) { read_particles(file); });
 }
 
-}  // namespace
+}  // namespace random_damage_test
 }  // namespace mallow

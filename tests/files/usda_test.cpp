@@ -7,7 +7,7 @@
 #include "files/other_reader.h"
 
 namespace mallow {
-namespace {
+namespace usda_test {
 
 const std::vector<Vec3> k_colors = {{0.8f, 0.24f, 0.09f}, {0, 1, 0.5f}, {0.1f, 0.2f, 0.3f}};
 const std::vector<MeshGroup> k_groups = {{{k_colors[0]}, "cube", "jelly"},
@@ -467,5 +467,5 @@ TEST(usda, what_usd_cannot_say_is_refused_by_name) {
   EXPECT_EQ(folder.entries(), 0u);
 }
 
-}  // namespace
+}  // namespace usda_test
 }  // namespace mallow

@@ -4,7 +4,7 @@
 #include "files/other_reader.h"
 
 namespace mallow {
-namespace {
+namespace vtk_file_test {
 
 using Rows = std::vector<std::vector<double>>;
 
@@ -146,5 +146,5 @@ TEST(vtk_file, pvd_names_every_file_with_its_time) {
             "</Collection>\n</VTKFile>\n");
 }
 
-}  // namespace
+}  // namespace vtk_file_test
 }  // namespace mallow

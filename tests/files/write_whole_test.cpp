@@ -7,7 +7,7 @@
 #include "files/file_fixture.h"
 
 namespace mallow {
-namespace {
+namespace write_whole_test {
 
 TEST(write_whole, replaces_the_old_content_and_leaves_nothing_beside) {
   const TemporaryFolder folder;
@@ -111,5 +111,5 @@ TEST(write_whole, a_full_disk_keeps_the_old_file_and_leaves_no_partial_one) {
   EXPECT_EQ(::umount(folder.path().c_str()), 0);
 }
 
-}  // namespace
+}  // namespace write_whole_test
 }  // namespace mallow

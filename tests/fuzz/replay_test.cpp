@@ -15,7 +15,7 @@ void PrintTo(const Format& format, std::ostream* out) {
   *out << format.name;
 }
 
-namespace {
+namespace replay_test {
 
 namespace fs = std::filesystem;
 
@@ -86,5 +86,5 @@ TEST(replay_assimp, reads_or_refuses_by_name_every_test_model) {
   EXPECT_GT(read, refused);
 }
 
-}  // namespace
+}  // namespace replay_test
 }  // namespace mallow::fuzz

@@ -12,7 +12,7 @@
 #include "mallow/level_set.h"
 
 namespace mallow {
-namespace {
+namespace anisotropic_kernels_test {
 
 constexpr SurfaceConfig k_anisotropic{.voxel_size = 0.15f, .kind = SurfaceKind::anisotropic};
 
@@ -156,5 +156,5 @@ TEST(anisotropic_surface, refuses_kernels_too_small_to_tell_a_shape) {
                {"surface.kernel_radius", "1.5", "2 to 4 spacings for anisotropic kernels"});
 }
 
-}  // namespace
+}  // namespace anisotropic_kernels_test
 }  // namespace mallow

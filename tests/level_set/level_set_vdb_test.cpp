@@ -10,7 +10,7 @@
 #include "mallow/level_set.h"
 
 namespace mallow {
-namespace {
+namespace level_set_vdb_test {
 
 TEST(level_set_vdb, opens_in_the_python_module_of_openvdb_with_the_distances_it_was_drawn_with) {
   const Vec3 center(1, 2, 3);
@@ -49,5 +49,5 @@ TEST(level_set_vdb, opens_in_the_python_module_of_openvdb_with_the_distances_it_
   }
 }
 
-}  // namespace
+}  // namespace level_set_vdb_test
 }  // namespace mallow

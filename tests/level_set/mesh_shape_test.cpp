@@ -4,7 +4,7 @@
 #include "mallow/level_set.h"
 
 namespace mallow {
-namespace {
+namespace mesh_shape_test {
 
 constexpr int k_voxels = 64;
 
@@ -228,5 +228,5 @@ TEST(mesh_shape, refuses_vertices_that_are_not_finite_and_voxels_out_of_range) {
   expect_words(config_error([&] { mesh_shape(mesh); }), {"mesh.vertices[7]", "nan", "finite"});
 }
 
-}  // namespace
+}  // namespace mesh_shape_test
 }  // namespace mallow

@@ -16,7 +16,7 @@
 #include "mallow/level_set.h"
 
 namespace mallow {
-namespace {
+namespace points_vdb_test {
 
 struct Points {
   std::vector<Vec3> positions;
@@ -138,5 +138,5 @@ TEST(points_vdb, what_cannot_be_written_is_refused_by_name) {
   EXPECT_EQ(field(points, 1), "groups");
 }
 
-}  // namespace
+}  // namespace points_vdb_test
 }  // namespace mallow

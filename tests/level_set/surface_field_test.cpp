@@ -9,7 +9,7 @@
 #include "mallow/body.h"
 
 namespace mallow {
-namespace {
+namespace surface_field_test {
 
 /// Calls visit(distance [m], point [m]) for every voxel of every surface block.
 template <class Visit>
@@ -136,5 +136,5 @@ TEST(surface_field, memory_follows_the_surface_and_not_the_box_around_it) {
   EXPECT_LT(far.bytes(), near.bytes() + (1u << 19));  // the cells of the search, which are bounded
 }
 
-}  // namespace
+}  // namespace surface_field_test
 }  // namespace mallow

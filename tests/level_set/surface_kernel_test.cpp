@@ -10,7 +10,7 @@
 #include "levels.h"
 
 namespace mallow {
-namespace {
+namespace surface_kernel_test {
 
 constexpr SurfaceShape k_shape{.voxel_size = 0.1f,
                                .offset = 0.275f,
@@ -125,5 +125,5 @@ TEST(surface_kernel, no_particles_and_far_particles_are_outside) {
   }
 }
 
-}  // namespace
+}  // namespace surface_kernel_test
 }  // namespace mallow

@@ -7,7 +7,7 @@
 #include "mallow/level_set.h"
 
 namespace mallow {
-namespace {
+namespace surface_test {
 
 constexpr SurfaceConfig k_coarse{.voxels = 64};
 
@@ -233,5 +233,5 @@ TEST(surface, refuses_bad_values_and_says_which) {
                  {"surface.voxels_per_spacing: ", "is not allowed: 0.5 to 16"});
 }
 
-}  // namespace
+}  // namespace surface_test
 }  // namespace mallow

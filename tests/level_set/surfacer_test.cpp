@@ -8,7 +8,7 @@
 #include "mallow/level_set.h"
 
 namespace mallow {
-namespace {
+namespace surfacer_test {
 
 /// What keeps a mesh from being a closed, oriented 2-manifold of triangles with an area; empty if nothing
 /// does.
@@ -339,5 +339,5 @@ TEST(surfacer, smoothing_evens_out_bumps_and_keeps_the_volume) {
   EXPECT_NEAR(signed_volume(even) / signed_volume(rough), 1, 0.005);
 }
 
-}  // namespace
+}  // namespace surfacer_test
 }  // namespace mallow

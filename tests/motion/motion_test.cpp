@@ -9,7 +9,7 @@
 #include "motion/time_step.h"
 
 namespace mallow {
-namespace {
+namespace motion_test {
 
 constexpr ContactStep k_step{
     .time_step = 0.1f, .max_push = 2.0f, .contact_offset = 0.5f, .gravity = {0, 0, -1}, .least_bounce = 0.2f};
@@ -200,5 +200,5 @@ TEST(move_colliders, takes_every_part_of_a_union_along) {
   EXPECT_EQ(std::get<Plane>(parts[2]).offset, 1);
 }
 
-}  // namespace
+}  // namespace motion_test
 }  // namespace mallow

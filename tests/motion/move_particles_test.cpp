@@ -8,7 +8,7 @@
 #include "motion/motion.h"
 
 namespace mallow {
-namespace {
+namespace move_particles_test {
 
 /// Rows that no block and no lane divides, between others that belong to someone else.
 constexpr std::size_t k_begin = 21, k_end = 824, k_rows = 900;
@@ -292,5 +292,5 @@ TEST(move_particles, names_the_first_row_that_is_not_finite) {
   }
 }
 
-}  // namespace
+}  // namespace move_particles_test
 }  // namespace mallow

@@ -12,7 +12,7 @@
 #include "neighbors/neighbor_lists.h"
 
 namespace mallow {
-namespace {
+namespace neighbors_test {
 
 using Points = std::vector<Vec3>;
 
@@ -225,5 +225,5 @@ TEST(neighbors, lattice_averages_are_those_of_table_1) {
   }
 }
 
-}  // namespace
+}  // namespace neighbors_test
 }  // namespace mallow

@@ -12,7 +12,7 @@
 #include "paper_settings.h"
 
 namespace mallow::oracle {
-namespace {
+namespace oracle_test {
 
 std::vector<Vec> widened(const std::vector<Vec3>& points) {
   std::vector<Vec> wide;
@@ -373,5 +373,5 @@ TEST(oracle, alpha_is_linear_between_keys) {
   EXPECT_DOUBLE_EQ(alpha_at(schedule, 9), 0);
 }
 
-}  // namespace
+}  // namespace oracle_test
 }  // namespace mallow::oracle

@@ -9,7 +9,7 @@
 #include "particles/particle_store.h"
 
 namespace mallow {
-namespace {
+namespace particle_store_test {
 
 std::vector<Vec3> points(std::size_t count, float from) {
   std::vector<Vec3> result(count);
@@ -122,5 +122,5 @@ TEST(particle_store, stays_as_large_as_it_is_through_ten_thousand_births_and_dea
   EXPECT_EQ(store.slots.size(), 1000u);
 }
 
-}  // namespace
+}  // namespace particle_store_test
 }  // namespace mallow

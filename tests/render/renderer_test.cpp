@@ -16,7 +16,7 @@
 #include "mallow/files.h"
 
 namespace mallow::render {
-namespace {
+namespace renderer_test {
 
 // A ball of 2 n² quads.
 Mesh ball(const Vec3& center, float radius, std::uint32_t n, std::uint8_t group) {
@@ -314,5 +314,5 @@ TEST(png, a_folder_that_is_not_there_is_an_io_error) {
   EXPECT_THROW(write_png("/nowhere/at/all/frame.png", {1, 1, {1, 2, 3}}), IoError);
 }
 
-}  // namespace
+}  // namespace renderer_test
 }  // namespace mallow::render

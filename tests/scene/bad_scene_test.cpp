@@ -4,7 +4,7 @@
 #include "scene/scene_fixture.h"
 
 namespace mallow {
-namespace {
+namespace bad_scene_test {
 
 using bad_scene = SceneFixture;
 
@@ -385,5 +385,5 @@ TEST_F(bad_scene, cannot_be_a_folder_or_a_missing_file) {
   }
 }
 
-}  // namespace
+}  // namespace bad_scene_test
 }  // namespace mallow

@@ -1,7 +1,7 @@
 #include "scene/scene_fixture.h"
 
 namespace mallow {
-namespace {
+namespace build_test {
 
 using build_scene = SceneFixture;
 
@@ -209,5 +209,5 @@ TEST_F(build_scene, runs_and_comes_to_the_same_state_from_the_printed_scene) {
   EXPECT_NE(first.positions_by_id()[0], build(scene, 1).positions_by_id()[0]);
 }
 
-}  // namespace
+}  // namespace build_test
 }  // namespace mallow

@@ -7,7 +7,7 @@
 #include "mallow/simulation.h"
 
 namespace mallow {
-namespace {
+namespace demo_surface_test {
 
 TEST(demo, surface_is_closed_and_turned_outwards_on_every_frame) {
   const Scene scene = read_scene(std::filesystem::path(MALLOW_DATA_DIR) / "scenes/demo.toml");
@@ -24,5 +24,5 @@ TEST(demo, surface_is_closed_and_turned_outwards_on_every_frame) {
   }
 }
 
-}  // namespace
+}  // namespace demo_surface_test
 }  // namespace mallow

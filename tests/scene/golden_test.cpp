@@ -7,7 +7,7 @@
 #include "mallow/simulation.h"
 
 namespace mallow {
-namespace {
+namespace golden_test {
 
 /// State hashes after 60 steps. They hold for any thread count, instruction level and build type, and change
 /// where arithmetic does: then the new ones are set in a commit of their own that says why.
@@ -45,5 +45,5 @@ TEST_P(golden, state_is_that_of_every_thread_count_and_instruction_level) {
 
 INSTANTIATE_TEST_SUITE_P(scenes, golden, testing::ValuesIn(k_golden));
 
-}  // namespace
+}  // namespace golden_test
 }  // namespace mallow

@@ -1,7 +1,7 @@
 #include "scene/scene_fixture.h"
 
 namespace mallow {
-namespace {
+namespace scene_paths_test {
 
 /// What a scene may name: a file in its folder or below, or below a folder that is marked.
 class scene_paths : public SceneFixture {
@@ -81,5 +81,5 @@ TEST_F(scene_paths, are_found_from_a_scene_without_a_folder) {
   std::filesystem::current_path(before);
 }
 
-}  // namespace
+}  // namespace scene_paths_test
 }  // namespace mallow

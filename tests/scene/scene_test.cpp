@@ -6,7 +6,7 @@
 #include "scene/scene_fixture.h"
 
 namespace mallow {
-namespace {
+namespace scene_test {
 
 using scene = SceneFixture;
 
@@ -379,5 +379,5 @@ TEST(scene_files, cube_shows_every_key) {
     EXPECT_NE(text.find(key.substr(key.rfind('.') + 1) + " = "), std::string::npos) << key;
 }
 
-}  // namespace
+}  // namespace scene_test
 }  // namespace mallow

@@ -6,7 +6,7 @@
 #include "mallow/scene.h"
 
 namespace mallow {
-namespace {
+namespace table1_test {
 
 /// A row of [TK] Table 1: what the paper prints.
 struct Row {
@@ -51,5 +51,5 @@ INSTANTIATE_TEST_SUITE_P(rows, Table1,
                                          Row{"balls_8264", 8264, 28.3, 0.9f, 10, 224, false}),
                          [](const auto& row) { return std::string(row.param.scene); });
 
-}  // namespace
+}  // namespace table1_test
 }  // namespace mallow

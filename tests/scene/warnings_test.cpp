@@ -3,7 +3,7 @@
 #include "scene/scene_fixture.h"
 
 namespace mallow {
-namespace {
+namespace warnings_test {
 
 using scene_warnings = SceneFixture;
 
@@ -44,5 +44,5 @@ TEST_F(scene_warnings, name_frames_in_which_nothing_moves_a_spacing_far) {
       "than the spacing of 1 m; give more frames, or a longer frame_time");
 }
 
-}  // namespace
+}  // namespace warnings_test
 }  // namespace mallow

@@ -10,7 +10,7 @@
 #include "shape_matching/shape_matching.h"
 
 namespace mallow {
-namespace {
+namespace run_tables_test {
 
 struct Points {
   VectorColumn x;
@@ -225,5 +225,5 @@ TEST(run_tables, keep_momentum_and_leave_a_rigid_body_alone) {
     }
 }
 
-}  // namespace
+}  // namespace run_tables_test
 }  // namespace mallow

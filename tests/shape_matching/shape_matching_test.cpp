@@ -9,7 +9,7 @@
 #include "shape_matching/shape_matching.h"
 
 namespace mallow {
-namespace {
+namespace shape_matching_test {
 
 constexpr int k_strides[] = {1, 2, 4, 8};
 
@@ -523,5 +523,5 @@ TEST(shape_matching, has_the_same_bits_at_every_level_and_thread_count) {
   }
 }
 
-}  // namespace
+}  // namespace shape_matching_test
 }  // namespace mallow

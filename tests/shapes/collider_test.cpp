@@ -8,7 +8,7 @@
 #include "shapes/random_points.h"
 
 namespace mallow {
-namespace {
+namespace collider_test {
 
 const Plane k_plane{{1.0f, -2.0f, 3.0f}, 2.0f};
 const Sphere k_sphere{{0.3f, -0.2f, 0.5f}, 1.1f, false};
@@ -140,5 +140,5 @@ TEST(collider, points_without_a_gradient_have_a_unit_normal) {
   EXPECT_EQ(nearest(cube, Vec3::Constant(1.0f)).normal.norm(), 1.0f);
 }
 
-}  // namespace
+}  // namespace collider_test
 }  // namespace mallow

@@ -8,7 +8,7 @@
 #include "shapes/random_points.h"
 
 namespace mallow {
-namespace {
+namespace implicit_shape_test {
 
 TEST(implicit_shape, names_are_known_and_others_refused) {
   for (const char* name : implicit_shape_names()) EXPECT_TRUE(implicit_shape(name).distance) << name;
@@ -135,5 +135,5 @@ TEST(moai, is_one_piece_when_sampled) {
   EXPECT_TRUE(left.empty()) << left.size() << " points are not joined to the rest";
 }
 
-}  // namespace
+}  // namespace implicit_shape_test
 }  // namespace mallow

@@ -9,7 +9,7 @@
 #include "shapes/random_points.h"
 
 namespace mallow {
-namespace {
+namespace primitives_test {
 
 /// Points on the unit sphere, none farther than 1.5 π / rings from its neighbours.
 std::vector<Vec3> unit_sphere(int rings) {
@@ -97,5 +97,5 @@ TEST(primitives, slope_is_one_at_most) {
   }
 }
 
-}  // namespace
+}  // namespace primitives_test
 }  // namespace mallow

@@ -7,7 +7,7 @@
 #include "shapes/random_points.h"
 
 namespace mallow {
-namespace {
+namespace sampling_test {
 
 constexpr float k_nan = std::numeric_limits<float>::quiet_NaN();
 
@@ -230,5 +230,5 @@ TEST(sampling, an_empty_shape_is_refused) {
             "spacing: no lattice point lies inside the shape at 0.1: a smaller spacing");
 }
 
-}  // namespace
+}  // namespace sampling_test
 }  // namespace mallow

@@ -9,7 +9,7 @@
 #include "mallow/mallow.h"
 
 namespace mallow {
-namespace {
+namespace advance_test {
 
 Body cube(int side, const Vec3& corner = {0, 0, 0}, const Vec3& velocity = {0, 0, 0}) {
   Body body = sample(Lattice{{side, side, side}, 1.0f, corner});
@@ -161,5 +161,5 @@ TEST(advance, times_that_make_no_sense_are_refused) {
   EXPECT_EQ(s.time(), now);
 }
 
-}  // namespace
+}  // namespace advance_test
 }  // namespace mallow

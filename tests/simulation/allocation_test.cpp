@@ -9,7 +9,7 @@
 #include "mallow/mallow.h"
 
 namespace mallow {
-namespace {
+namespace allocation_test {
 
 using test::Allocations;
 
@@ -114,5 +114,5 @@ INSTANTIATE_TEST_SUITE_P(, steady_step,
                                   (s.neighbor_slack > 0 ? "_with_slack" : "");
                          });
 
-}  // namespace
+}  // namespace allocation_test
 }  // namespace mallow

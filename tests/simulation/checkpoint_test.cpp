@@ -11,7 +11,7 @@
 #include "mallow/mallow.h"
 
 namespace mallow {
-namespace {
+namespace checkpoint_test {
 
 SolverConfig config(float neighbor_slack = 0) {
   SolverConfig c;
@@ -292,5 +292,5 @@ TEST(checkpoint, of_another_version_is_refused) {
   }
 }
 
-}  // namespace
+}  // namespace checkpoint_test
 }  // namespace mallow

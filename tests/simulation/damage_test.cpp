@@ -16,7 +16,7 @@ struct StateAccess {
   static Simulation::State& of(Simulation& s) { return *s.state_; }
 };
 
-namespace {
+namespace damage_test {
 
 constexpr float k_infinity = std::numeric_limits<float>::infinity();
 
@@ -217,5 +217,5 @@ TEST(damage, by_denormals_and_signed_zeros_is_none) {
     }
 }
 
-}  // namespace
+}  // namespace damage_test
 }  // namespace mallow

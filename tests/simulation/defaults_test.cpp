@@ -9,7 +9,7 @@
 #include "mallow/mallow.h"
 
 namespace mallow {
-namespace {
+namespace defaults_test {
 
 Body cube(int side, float spacing, const Vec3& corner = {0, 0, 0}) {
   return sample(Lattice{.count = {side, side, side}, .spacing = spacing, .corner = corner});
@@ -283,5 +283,5 @@ TEST(warnings, name_what_is_hardly_meant) {
       warns(info_of({.alpha = 0.5f, .viscosity = 1e4f, .rest_density = 1000.0f}, 0.05f), "viscosity"));
 }
 
-}  // namespace
+}  // namespace defaults_test
 }  // namespace mallow

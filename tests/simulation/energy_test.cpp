@@ -8,7 +8,7 @@
 #include "mallow/simulation.h"
 
 namespace mallow {
-namespace {
+namespace energy_test {
 
 SolverConfig solver() {
   return {.time_step = 0.15f, .support_radius = 2.1f, .threads = 1};
@@ -218,5 +218,5 @@ TEST(elastic_time_step, is_allowed_at_its_least_and_refused_below) {
   }
 }
 
-}  // namespace
+}  // namespace energy_test
 }  // namespace mallow

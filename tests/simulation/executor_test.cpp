@@ -10,7 +10,7 @@
 #include "mallow/mallow.h"
 
 namespace mallow {
-namespace {
+namespace executor_test {
 
 /// Two groups of which one is elastic, on a floor; reference shapes are updated.
 Simulation scene(int threads, std::shared_ptr<Executor> executor, int side = 9) {
@@ -125,5 +125,5 @@ TEST(step, simulations_step_on_several_threads_at_once) {
   for (std::thread& caller : callers) caller.join();
 }
 
-}  // namespace
+}  // namespace executor_test
 }  // namespace mallow

@@ -5,7 +5,7 @@
 #include "simulation/validation.h"
 
 namespace mallow {
-namespace {
+namespace instruction_level_test {
 
 /// Two groups that touch, half elastic, viscous, on a floor: every kernel of a step runs.
 Simulation scene(Formulation formulation, int threads, std::optional<InstructionLevel> level) {
@@ -72,5 +72,5 @@ TEST(instruction_level, that_the_machine_lacks_is_refused_with_those_it_has) {
     }
 }
 
-}  // namespace
+}  // namespace instruction_level_test
 }  // namespace mallow

@@ -8,7 +8,7 @@
 #include "mallow/mallow.h"
 
 namespace mallow {
-namespace {
+namespace misuse_test {
 
 Simulation scene(int threads = 2) {
   SolverConfig config;
@@ -180,5 +180,5 @@ TEST(misuse, a_simulation_that_was_moved_from_can_be_assigned_to) {
   EXPECT_EQ(b.state_hash(), undisturbed.state_hash());
 }
 
-}  // namespace
+}  // namespace misuse_test
 }  // namespace mallow

@@ -9,7 +9,7 @@
 #include "simulation/oracle_cases.h"
 
 namespace mallow {
-namespace {
+namespace oracle_test {
 
 using oracle::Oracle;
 using oracle::Vec;
@@ -86,5 +86,5 @@ TEST_P(oracle_case, everything_in_it_matters) {
 INSTANTIATE_TEST_SUITE_P(scenes, oracle_case, testing::ValuesIn(oracle_cases()),
                          [](const auto& scene) { return scene.param.name; });
 
-}  // namespace
+}  // namespace oracle_test
 }  // namespace mallow

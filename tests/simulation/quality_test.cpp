@@ -7,7 +7,7 @@
 #include "mallow/simulation.h"
 
 namespace mallow {
-namespace {
+namespace quality_test {
 
 TEST(time_step, at_another_one_everything_but_its_factor_stays) {
   const SolverConfig config{
@@ -145,5 +145,5 @@ TEST(quality, of_a_surface_keeps_voxels_within_what_is_allowed) {
   EXPECT_GT(coarse, 0.3f);
 }
 
-}  // namespace
+}  // namespace quality_test
 }  // namespace mallow

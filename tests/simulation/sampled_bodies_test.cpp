@@ -6,7 +6,7 @@
 #include "mallow/mallow.h"
 
 namespace mallow {
-namespace {
+namespace sampled_bodies_test {
 
 constexpr int k_side = 10;
 
@@ -59,5 +59,5 @@ TEST(sampled_bodies, start_at_rest) {
   }
 }
 
-}  // namespace
+}  // namespace sampled_bodies_test
 }  // namespace mallow

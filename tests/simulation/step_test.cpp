@@ -9,7 +9,7 @@
 #include "mallow/mallow.h"
 
 namespace mallow {
-namespace {
+namespace step_test {
 
 SolverConfig config(int threads = 2) {
   SolverConfig c;
@@ -576,5 +576,5 @@ TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
            {"overlap", "second", "0.05"});
 }
 
-}  // namespace
+}  // namespace step_test
 }  // namespace mallow

@@ -8,7 +8,7 @@
 #include "sph/sph.h"
 
 namespace mallow {
-namespace {
+namespace neighbor_slack_test {
 
 constexpr float k_radius = 1;
 
@@ -151,5 +151,5 @@ TEST(neighbor_slack, a_body_that_is_added_is_found) {
   EXPECT_TRUE(simulation.step().neighbors_found);
 }
 
-}  // namespace
+}  // namespace neighbor_slack_test
 }  // namespace mallow

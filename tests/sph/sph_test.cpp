@@ -10,7 +10,7 @@
 #include "sph/sph.h"
 
 namespace mallow {
-namespace {
+namespace sph_test {
 
 constexpr double k_pi = std::numbers::pi;
 
@@ -171,5 +171,5 @@ TEST(sph, without_viscosity_and_with_one_group_owns_no_columns_for_them) {
   EXPECT_EQ(world.sph.velocity.bytes() + world.sph.group.bytes() + world.sph.cross_group.bytes(), 0u);
 }
 
-}  // namespace
+}  // namespace sph_test
 }  // namespace mallow

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace mallow::textbook {
-namespace {
+namespace from_scene_test {
 
 Scene cube_3375() {
   return read_scene(std::filesystem::path(MALLOW_DATA_DIR) / "scenes/table1/cube_3375.toml");
@@ -73,5 +73,5 @@ TEST(from_scene, puts_bodies_that_name_one_group_together_and_no_others) {
   }
 }
 
-}  // namespace
+}  // namespace from_scene_test
 }  // namespace mallow::textbook

@@ -14,7 +14,7 @@
 #include "textbook/textbook.h"
 
 namespace mallow {
-namespace {
+namespace speed_test {
 
 constexpr int k_repeats = 10;
 /// Steps of a turn: about as long for the one as for the other.
@@ -96,5 +96,5 @@ TEST(speed, of_a_cube_of_paste_is_more_than_a_third_of_what_was_measured) {
        {.baseline = 2.7, .v3 = 11.8});
 }
 
-}  // namespace
+}  // namespace speed_test
 }  // namespace mallow

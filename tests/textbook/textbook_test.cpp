@@ -14,7 +14,7 @@
 #include "simulation/oracle_cases.h"
 
 namespace mallow::textbook {
-namespace {
+namespace textbook_test {
 
 constexpr int k_steps = 40;
 /// Only the order of the sums tells the textbook from the oracle: 2.5e-13 was the largest difference seen.
@@ -190,5 +190,5 @@ TEST(textbook, refuses_a_step_below_a_thousandth_and_names_the_particle) {
   }
 }
 
-}  // namespace
+}  // namespace textbook_test
 }  // namespace mallow::textbook

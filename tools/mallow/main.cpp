@@ -9,11 +9,12 @@
 #include "mallow/sample_command.h"
 #include "mallow/scene.h"
 #include "mallow/surface_command.h"
+#include "mallow/version.h"
 
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 throws where two options clash
   using namespace mallow::cli;
   CLI::App app("mallow: fast animation of viscoelastic materials", "mallow");
-  app.set_version_flag("--version", MALLOW_VERSION);
+  app.set_version_flag("--version", mallow::version());
   app.footer("Exit codes: 0 done, 1 the run failed, 2 the input is wrong.");
   add_run_command(app);
   add_info_command(app);

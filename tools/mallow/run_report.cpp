@@ -10,6 +10,7 @@
 #include "mallow/errors.h"
 #include "mallow/files.h"
 #include "mallow/machine.h"
+#include "mallow/version.h"
 
 namespace mallow::cli {
 namespace {
@@ -113,7 +114,7 @@ void RunReport::set_progress(const nlohmann::ordered_json& progress) {
 
 nlohmann::ordered_json to_json(const RunReport& report) {
   const double mean_step = report.steps > 0 ? report.simulated_time / static_cast<double>(report.steps) : 0;
-  return {{"version", MALLOW_VERSION},
+  return {{"version", version()},
           {"scene", report.scene},
           {"overrides", report.overrides},
           {"quality", report.quality},

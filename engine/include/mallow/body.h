@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mallow/export.h"
 #include "mallow/vec3.h"
 
 namespace mallow {
@@ -17,8 +18,8 @@ struct Body {
   float spacing = 1.0f;               ///< distance of neighbouring points, h [m], > 0
   Vec3 velocity{0, 0, 0};             ///< of every point [m/s]
   std::vector<Vec3> velocities = {};  ///< of each point, added to `velocity`; empty or as long as `positions`
-  /// Acts on other bodies of its material that merge, and of its spacing, as on itself: two puddles become one.
-  /// Bodies that do not merge touch.
+  /// Acts on other bodies of its material that merge, and of its spacing, as on itself: two puddles become
+  /// one. Bodies that do not merge touch.
   bool merges = false;
   /// What whoever made the body should know, in words: a mesh that was turned inside out, volume that the
   /// spacing loses. Nothing reads it but people.
@@ -43,8 +44,8 @@ struct Sampling {
   std::optional<float> spacing = {};  ///< h [m], > 0
   std::optional<int> count = {};  ///< wanted number of points, >= 1; met within 1% where the shape allows it
   /// Random displacement of every lattice point, at most jitter · h per axis and half of that as a rule, in
-  /// [0, 0.45], so that points stay a tenth of h apart. It is free of divergence, so that bodies start as dense
-  /// as a lattice, and at rest. The same for every run and machine.
+  /// [0, 0.45], so that points stay a tenth of h apart. It is free of divergence, so that bodies start as
+  /// dense as a lattice, and at rest. The same for every run and machine.
   float jitter = k_default_jitter;
 };
 
@@ -59,15 +60,16 @@ struct ImplicitShape {
   std::vector<std::string> notes = {};  ///< become those of bodies that are sampled from it
 };
 
-ImplicitShape sphere_shape(const Vec3& center, float radius);
+/// A ball. Throws ConfigError where the radius is not above 0.
+MALLOW_EXPORT ImplicitShape sphere_shape(const Vec3& center, float radius);
 /// The head of [TK] Fig. 5(a) in our own making: smoothly joined implicit shapes, 40 high, standing on z = 0,
 /// looking along +x.
-ImplicitShape moai_shape();
+MALLOW_EXPORT ImplicitShape moai_shape();
 /// An implicit shape by the name it has in scene files ("moai"). Throws ConfigError that lists the known
 /// names.
-ImplicitShape implicit_shape(const std::string& name);
+MALLOW_EXPORT ImplicitShape implicit_shape(const std::string& name);
 /// Every name implicit_shape() knows.
-std::span<const char* const> implicit_shape_names();
+MALLOW_EXPORT std::span<const char* const> implicit_shape_names();
 
 /// Where a shape is put: turned about x, then y, then z [degrees], scaled so that the longest side of its
 /// bounds is `size` [m], and moved so that the middle of its bounds is at `center`. What is left out stays as
@@ -77,14 +79,15 @@ struct Placement {
   std::optional<float> size = {};  ///< > 0
   std::optional<Vec3> center = {};
 };
-ImplicitShape place(const ImplicitShape& shape, const Placement& placement);
+/// The shape, placed. Throws ConfigError where a value is out of range.
+MALLOW_EXPORT ImplicitShape place(const ImplicitShape& shape, const Placement& placement);
 
 /// The points of a lattice box. Throws ConfigError.
-Body sample(const Lattice& lattice);
+MALLOW_EXPORT Body sample(const Lattice& lattice);
 /// The points of a cubic lattice inside a shape. This is the one sampler of volumes: library, scene files and
 /// command line report the same count. Where the points stand for over 10% more or less than the shape's
 /// volume, the body's notes name both, and a spacing that does better. Throws ConfigError where a value is
 /// out of range, no point lies inside, or floats cannot tell neighbouring points apart.
-Body sample(const ImplicitShape& shape, const Sampling& sampling);
+MALLOW_EXPORT Body sample(const ImplicitShape& shape, const Sampling& sampling);
 
 }  // namespace mallow

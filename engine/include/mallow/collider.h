@@ -3,6 +3,7 @@
 #include <variant>
 #include <vector>
 
+#include "mallow/export.h"
 #include "mallow/vec3.h"
 
 namespace mallow {
@@ -27,6 +28,7 @@ struct Box {
   bool inside = false;  ///< true: particles are kept in
 };
 
+/// A part of a Union.
 using Primitive = std::variant<Plane, Sphere, Box>;
 
 /// Several primitives that act as one obstacle: the nearest one counts. Not empty.
@@ -48,9 +50,13 @@ struct SurfacePoint {
   float distance;
   Vec3 normal;
 };
-SurfacePoint nearest(const Plane& plane, const Vec3& x);
-SurfacePoint nearest(const Sphere& sphere, const Vec3& x);
-SurfacePoint nearest(const Box& box, const Vec3& x);
-SurfacePoint nearest(const Union& shapes, const Vec3& x);
+/// Where a shape is seen from x.
+MALLOW_EXPORT SurfacePoint nearest(const Plane& plane, const Vec3& x);
+/// @copydoc nearest(const Plane&, const Vec3&)
+MALLOW_EXPORT SurfacePoint nearest(const Sphere& sphere, const Vec3& x);
+/// @copydoc nearest(const Plane&, const Vec3&)
+MALLOW_EXPORT SurfacePoint nearest(const Box& box, const Vec3& x);
+/// @copydoc nearest(const Plane&, const Vec3&)
+MALLOW_EXPORT SurfacePoint nearest(const Union& shapes, const Vec3& x);
 
 }  // namespace mallow

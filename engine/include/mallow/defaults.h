@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "mallow/export.h"
 #include "mallow/vec3.h"
 
 /// What holds where a config leaves a setting out. The settings follow from the spacing of the particles and
@@ -26,26 +27,27 @@ enum class TimeStepSource {
 /// Δt0 [s]: 0.082 √(h/|g|), that is 0.15 at the paper's numbers, in which a fall of ten spacings ends at 0.37
 /// spacings a step. Without gravity 0.3 h/speed, so that the fastest moves about as far a step as in such a
 /// fall. Nothing where neither says how long a second is.
-std::optional<float> default_time_step(const SceneScale& scale);
+MALLOW_EXPORT std::optional<float> default_time_step(const SceneScale& scale);
 
 /// γ_u [m/s²]: 40 |g|, above what weight and rest do to a body at any alpha below 0.95. Without gravity
 /// 0.27 h/Δt0², the same number where Δt0 follows from gravity.
-float default_update_threshold(const SceneScale& scale, float time_step);
+MALLOW_EXPORT float default_update_threshold(const SceneScale& scale, float time_step);
 
 /// m_u as a time [s]: 60 Δt0.
-double default_update_period(float time_step);
+MALLOW_EXPORT double default_update_period(float time_step);
 
 /// k [m²/s²]: x σ²/(max(alpha, 0.2) Δt²), Δt the longest step, and Δt0 where steps are shorter; x is 1 or,
 /// beside an elasticity of `pull` = (1 − alpha) Δt²/(Δt0 Δt_SM), what 2 x + pull = 2.6 leaves. So it is as
 /// stiff as a step carries: runs were stable up to x 1.4, and near 2 x + pull 3 some that bounce without loss
 /// gained energy.
-float default_pressure_coefficient(float support_radius, float alpha, float pull, float time_step);
+MALLOW_EXPORT float default_pressure_coefficient(float support_radius, float alpha, float pull,
+                                                 float time_step);
 
 /// ν [m²/s], viscosity by density, m/h³: 0.91 h √(|g| h), without gravity 0.075 h²/Δt0. Thick enough that a
 /// step carries the pressure above: stiff pressure without viscosity gains energy.
-float default_kinematic_viscosity(const SceneScale& scale, float time_step);
+MALLOW_EXPORT float default_kinematic_viscosity(const SceneScale& scale, float time_step);
 
 /// Neighbours of a particle within a body that fills all of the radius, itself not counted: 4/3 π (r/h)³.
-double full_neighbors(float radius, float spacing);
+MALLOW_EXPORT double full_neighbors(float radius, float spacing);
 
 }  // namespace mallow

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mallow/export.h"
 #include "mallow/ids.h"
 #include "mallow/report.h"
 
@@ -19,20 +20,22 @@ struct Problem {
 };
 
 /// "file:line:column: field: message", leaving out what is empty.
-std::string to_string(const Problem& problem);
+MALLOW_EXPORT std::string to_string(const Problem& problem);
 
 /// Everything the library throws on purpose.
-class Error : public std::runtime_error {
+class MALLOW_EXPORT Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 /// A configuration, scene or argument that cannot be run; holds all of its problems at once.
-class ConfigError : public Error {
+class MALLOW_EXPORT ConfigError : public Error {
  public:
+  /// problems: at least one.
   explicit ConfigError(std::vector<Problem> problems);
   /// One problem of a value that came through the API.
   ConfigError(std::string field, std::string message);
+  /// All that is wrong, in the order in which it was found.
   const std::vector<Problem>& problems() const { return problems_; }
 
  private:
@@ -40,9 +43,11 @@ class ConfigError : public Error {
 };
 
 /// A file that cannot be read or written, or whose content is not what it claims to be.
-class IoError : public Error {
+class MALLOW_EXPORT IoError : public Error {
  public:
+  /// problem: names the file.
   explicit IoError(Problem problem);
+  /// What is wrong, with the file.
   const Problem& problem() const { return problem_; }
 
  private:
@@ -51,8 +56,9 @@ class IoError : public Error {
 
 /// A step that cannot be taken. The simulation keeps positions, velocities, time and reference shapes as they
 /// were before that step.
-class StepError : public Error {
+class MALLOW_EXPORT StepError : public Error {
  public:
+  /// message: what went wrong, and which setting to change.
   StepError(const std::string& message, ParticleId particle_id, Phase phase);
   /// The particle that asked for it, or whose row is the first that holds a number that is not finite.
   ParticleId particle_id() const { return particle_id_; }

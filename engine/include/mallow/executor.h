@@ -3,12 +3,16 @@
 #include <cstddef>
 #include <memory>
 
+#include "mallow/export.h"
+
 namespace mallow {
 
 /// One loop of the engine, as an executor sees it: blocks of particles that any number of threads share.
 class LoopTask {
  public:
+  /// A loop as a function; it takes the place of the call, see operator().
   using Function = void (*)(void* loop, std::size_t place) noexcept;
+  /// Made by the engine alone.
   LoopTask(Function function, void* loop) : function_(function), loop_(loop) {}
 
   /// Runs blocks until none is left. place: where this call begins to look for them; 0 for the thread that
@@ -33,7 +37,7 @@ class LoopTask {
 ///       task(0);
 ///       for (Handle& other : others) other.cancel_or_wait();
 ///     }
-class Executor {
+class MALLOW_EXPORT Executor {
  public:
   virtual ~Executor() = default;
 
@@ -53,11 +57,11 @@ class Executor {
 /// Simulations on several threads at once share the processors: together they use no more threads than there
 /// are. Threads are kept for later loops and end with the program; a process that was forked off starts new
 /// ones.
-std::shared_ptr<Executor> team_executor();
+MALLOW_EXPORT std::shared_ptr<Executor> team_executor();
 
 /// OpenMP's threads, for programs that use OpenMP anyway. A loop of OpenMP ends when all its threads have
 /// been there; where something else runs too, that can take time slices of the system. So after a long wait
 /// loops run on one thread for 8 to 64 times as long as it lasted.
-std::shared_ptr<Executor> openmp_executor();
+MALLOW_EXPORT std::shared_ptr<Executor> openmp_executor();
 
 }  // namespace mallow

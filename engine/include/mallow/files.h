@@ -11,6 +11,7 @@
 
 #include "mallow/appearance.h"
 #include "mallow/body.h"
+#include "mallow/export.h"
 #include "mallow/mesh.h"
 #include "mallow/saved_state.h"
 
@@ -42,18 +43,18 @@ namespace mallow {
 class Simulation;
 
 /// Triangles of an OBJ, PLY, STL or OFF file, by its ending; polygons are split into triangles.
-Mesh read_mesh(const std::filesystem::path& file);
+MALLOW_EXPORT Mesh read_mesh(const std::filesystem::path& file);
 
 /// The same, with vertices relative to `origin`, whose components are whole numbers: 0 unless the first
 /// vertex is over 1,000 from 0 along that axis. Numbers are then read in double, so that a mesh in the
 /// coordinates of a map (y = 4,500,000 m) keeps its shape.
-Mesh read_mesh(const std::filesystem::path& file, Eigen::Vector3d& origin);
+MALLOW_EXPORT Mesh read_mesh(const std::filesystem::path& file, Eigen::Vector3d& origin);
 
 /// Points of a PLY or CSV file, by its ending: columns or properties x, y, z and, if there, vx, vy, vz;
 /// others are passed over. Columns of a CSV stand between commas, semicolons or tabs, in quotes or not, in
 /// capitals or not, and may be called as ParaView does: Points:0, Velocity:0. spacing goes into the body as
 /// it is.
-Body read_points(const std::filesystem::path& file, float spacing);
+MALLOW_EXPORT Body read_points(const std::filesystem::path& file, float spacing);
 
 /// What a frame of particles holds on disk, in id order.
 struct ParticleFrame {
@@ -65,17 +66,18 @@ struct ParticleFrame {
 };
 
 /// The particles of a simulation as they are now.
-ParticleFrame snapshot(const Simulation& simulation);
+MALLOW_EXPORT ParticleFrame snapshot(const Simulation& simulation);
 
 /// Binary PLY with x y z vx vy vz group, time and step as comments.
-void write_particles(const std::filesystem::path& file, const ParticleFrame& frame);
-ParticleFrame read_particles(const std::filesystem::path& file);
+MALLOW_EXPORT void write_particles(const std::filesystem::path& file, const ParticleFrame& frame);
+/// What write_particles() wrote. Throws IoError.
+MALLOW_EXPORT ParticleFrame read_particles(const std::filesystem::path& file);
 
 /// `id,x,y,z,vx,vy,vz` with nine significant digits, which give back the same floats.
-void write_state_csv(const std::filesystem::path& file, const ParticleFrame& frame);
+MALLOW_EXPORT void write_state_csv(const std::filesystem::path& file, const ParticleFrame& frame);
 
 /// Binary PLY with normals, velocities and material ids where the mesh has them.
-void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh);
+MALLOW_EXPORT void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh);
 
 /// What files say of a group, to which Mesh::material_ids assign vertices.
 struct MeshGroup {
@@ -92,6 +94,7 @@ inline Vec3 with_y_up(const Vec3& v) {
   return {v.x(), v.z(), 0 - v.y()};  // no -0
 }
 
+/// What an OBJ file is to hold beside vertices and triangles.
 struct ObjOptions {
   UpAxis up = UpAxis::z;                        ///< a comment in the file says which one it is
   std::span<const MeshGroup> groups = {};       ///< `g` and `usemtl` for each; empty: neither
@@ -101,10 +104,11 @@ struct ObjOptions {
 /// are of, of the smallest id of three that differ; triangles of a group stand together, in their order. What
 /// a name may not hold there (blanks, #, \) becomes _. Throws ConfigError as write_mesh_glb() where there are
 /// groups.
-void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh, const ObjOptions& options = {});
+MALLOW_EXPORT void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh,
+                                  const ObjOptions& options = {});
 /// The materials of groups for OBJ files. Colours are sRGB, as most programs take them (three.js, MeshLab,
 /// VTK); Blender takes them as linear. Throws ConfigError where a colour is out of range.
-void write_mtl(const std::filesystem::path& file, std::span<const MeshGroup> groups);
+MALLOW_EXPORT void write_mtl(const std::filesystem::path& file, std::span<const MeshGroup> groups);
 
 /// glTF 2.0 binary: for each group that has triangles a node and a mesh with its name, and a material with
 /// that of the scene; velocities as attribute _VELOCITY. A triangle is of a group as in write_mesh_obj(). The
@@ -112,7 +116,8 @@ void write_mtl(const std::filesystem::path& file, std::span<const MeshGroup> gro
 /// without a mesh, as glTF knows no empty one. groups: one for each material id; throws ConfigError where one
 /// is missing, a colour is out of range or a name is not UTF-8, or a number is not finite, as JSON could not
 /// say it.
-void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshGroup> groups);
+MALLOW_EXPORT void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh,
+                                  std::span<const MeshGroup> groups);
 
 /// How meshes stand in the space and time of USD, where a time code is a frame.
 struct UsdOptions {
@@ -130,19 +135,20 @@ struct UsdOptions {
 /// _, and displayName keeps the name as it was. frame: its time code, at which all that changes between
 /// frames has time samples; left out: values that always hold. Takes groups and throws as write_mesh_glb()
 /// does.
-void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshGroup> groups,
-                     const UsdOptions& options = {}, std::optional<int> frame = {});
+MALLOW_EXPORT void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh,
+                                   std::span<const MeshGroup> groups, const UsdOptions& options = {},
+                                   std::optional<int> frame = {});
 
 /// VTK's XML PolyData, triangles with the point arrays Normals, Velocity and Material where the mesh has
 /// them.
-void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh);
+MALLOW_EXPORT void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh);
 
 /// VTK's XML PolyData, vertices with the point arrays Velocity, Group and Id.
-void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame& frame);
+MALLOW_EXPORT void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame& frame);
 /// OpenVDB points, see points_vdb() in mallow/level_set.h for the attributes and for what is thrown.
 /// voxel_size: [m], > 0; twice the spacing gives about 8 points a voxel.
-void write_particles_vdb(const std::filesystem::path& file, const ParticleFrame& frame, float voxel_size,
-                         int threads = 0);
+MALLOW_EXPORT void write_particles_vdb(const std::filesystem::path& file, const ParticleFrame& frame,
+                                       float voxel_size, int threads = 0);
 
 /// A file of a series and the time that it shows [s].
 struct TimedFile {
@@ -150,7 +156,7 @@ struct TimedFile {
   double time = 0;
 };
 /// ParaView's collection (PVD): what plays VTP files at their times.
-void write_pvd(const std::filesystem::path& file, std::span<const TimedFile> frames);
+MALLOW_EXPORT void write_pvd(const std::filesystem::path& file, std::span<const TimedFile> frames);
 
 /// A file that write_mesh_usda() wrote for a frame.
 struct UsdFrame {
@@ -158,32 +164,32 @@ struct UsdFrame {
   int number = 0;              ///< its time code, >= 0
 };
 /// "surface.manifest.usda" for "surface.usda".
-std::filesystem::path usda_manifest(const std::filesystem::path& series);
+MALLOW_EXPORT std::filesystem::path usda_manifest(const std::filesystem::path& series);
 /// USD's text that plays the files of frames as one Mesh whose values change. The files are value clips of
 /// the prim /surface: a program opens only those of the frames that it shows, and one that knows no value
 /// clips shows the first frame. The manifest, which names the attributes that change, is written too. frames:
 /// ascending; throws ConfigError where not. groups and options: those of the frames.
-void write_usda_series(const std::filesystem::path& file, std::span<const UsdFrame> frames,
-                       std::span<const MeshGroup> groups, const UsdOptions& options = {});
+MALLOW_EXPORT void write_usda_series(const std::filesystem::path& file, std::span<const UsdFrame> frames,
+                                     std::span<const MeshGroup> groups, const UsdOptions& options = {});
 
 /// A saved state as a file, compressed, every bit of it under a checksum. Whole or not at all; the checkpoint
 /// that was there is kept as previous_checkpoint(), so that whenever a writer is killed, one of the two is
 /// whole. Throws IoError.
-void write_checkpoint(const std::filesystem::path& file, const SavedState& state);
+MALLOW_EXPORT void write_checkpoint(const std::filesystem::path& file, const SavedState& state);
 /// Throws IoError for a file that is not, bit by bit, what was written, and for one of another version of the
 /// format or from a machine of the other byte order: a damaged checkpoint is never read.
-SavedState read_checkpoint(const std::filesystem::path& file);
+MALLOW_EXPORT SavedState read_checkpoint(const std::filesystem::path& file);
 /// "checkpoint.previous" for "checkpoint".
-std::filesystem::path previous_checkpoint(const std::filesystem::path& file);
+MALLOW_EXPORT std::filesystem::path previous_checkpoint(const std::filesystem::path& file);
 
 /// Whether a file takes what is written as it comes, and must stay what it is: a device or pipe. Throws
 /// IoError for /dev/stdout and the like where they lead to a file, as nothing can be put in their place.
-bool is_written_in_place(const std::filesystem::path& file);
+MALLOW_EXPORT bool is_written_in_place(const std::filesystem::path& file);
 /// Writes a file whole or not at all: `write` gets a name beside it, which is synced and renamed when it
 /// returns and removed when it throws. What is_written_in_place() is given to `write` itself.
-void write_whole(const std::filesystem::path& file,
-                 const std::function<void(const std::filesystem::path& beside)>& write);
+MALLOW_EXPORT void write_whole(const std::filesystem::path& file,
+                               const std::function<void(const std::filesystem::path& beside)>& write);
 /// The same for content that is already there.
-void write_whole(const std::filesystem::path& file, std::string_view content);
+MALLOW_EXPORT void write_whole(const std::filesystem::path& file, std::string_view content);
 
 }  // namespace mallow

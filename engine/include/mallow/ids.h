@@ -9,17 +9,19 @@ namespace mallow {
 /// which particles are added, and that of a particle that was removed is used again, in the next generation:
 /// as long as nothing is removed ids are 0, 1, 2, ...
 using ParticleId = std::uint64_t;
+/// The slot of a particle.
 constexpr std::uint32_t slot_of(ParticleId id) {
   return static_cast<std::uint32_t>(id);
 }
+/// How many particles had its slot before.
 constexpr std::uint32_t generation_of(ParticleId id) {
   return static_cast<std::uint32_t>(id >> 32);
 }
 
-/// These are counted from 0 in the order in which they were added.
+/// Materials, bodies, colliders and pins are counted from 0 in the order in which they were added.
 enum class MaterialId : std::uint32_t {};
-enum class BodyId : std::uint32_t {};
-enum class ColliderId : std::uint32_t {};
-enum class PinId : std::uint32_t {};
+enum class BodyId : std::uint32_t {};      ///< as MaterialId
+enum class ColliderId : std::uint32_t {};  ///< as MaterialId
+enum class PinId : std::uint32_t {};       ///< as MaterialId
 
 }  // namespace mallow

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "mallow/export.h"
+
 namespace mallow {
 
 /// Instruction levels that the kernels of a step are compiled for. All give the same bits; higher ones are
@@ -14,9 +16,9 @@ inline constexpr InstructionLevel k_instruction_levels[] = {InstructionLevel::ba
                                                             InstructionLevel::v4};
 
 /// "x86-64-v2", "x86-64-v3", "x86-64-v4"; the lowest is "baseline" on other machines.
-const char* name(InstructionLevel level);
+MALLOW_EXPORT const char* name(InstructionLevel level);
 
 /// The highest level this machine has; it has those below, too.
-InstructionLevel best_instruction_level();
+MALLOW_EXPORT InstructionLevel best_instruction_level();
 
 }  // namespace mallow

@@ -8,6 +8,7 @@
 
 #include "mallow/body.h"
 #include "mallow/executor.h"
+#include "mallow/export.h"
 #include "mallow/mesh.h"
 #include "mallow/surface_config.h"
 #include "mallow/vec3.h"
@@ -25,7 +26,7 @@ inline constexpr int k_mesh_voxels = 192;
 /// shape's notes say so. Where the triangles cannot agree on which side is outside, lines that cross the mesh
 /// count: inside is behind an odd number of them. The shape's volume is the mesh's. Throws ConfigError where
 /// the mesh is empty, open (why_not_closed) or has a vertex that is not finite.
-ImplicitShape mesh_shape(const Mesh& mesh, int voxels = k_mesh_voxels, int threads = 0);
+MALLOW_EXPORT ImplicitShape mesh_shape(const Mesh& mesh, int voxels = k_mesh_voxels, int threads = 0);
 
 /// Particles that surfaces are drawn around.
 struct SurfaceParticles {
@@ -38,13 +39,15 @@ struct SurfaceParticles {
 /// Draws the surfaces of one frame after another, and keeps its memory from frame to frame. A mesh is closed,
 /// manifold and oriented; its vertices have normals and, where particles have them, velocities and material
 /// ids, which are groups. Same particles, same bits, for any number of threads.
-class Surfacer {
+class MALLOW_EXPORT Surfacer {
  public:
   /// threads, executor: as in SolverConfig. Throws ConfigError where a value is out of range.
   explicit Surfacer(const SurfaceConfig& config, int threads = 0,
                     std::shared_ptr<Executor> executor = nullptr);
   ~Surfacer();
+  /// Moves, with its memory.
   Surfacer(Surfacer&&) noexcept;
+  /// @copydoc Surfacer(Surfacer&&)
   Surfacer& operator=(Surfacer&&) noexcept;
 
   /// The surfaces of all groups as one mesh, which holds until the next call; no particles, no mesh. Throws
@@ -63,13 +66,14 @@ class Surfacer {
 };
 
 /// The surface around the particles of one body, h = spacing [m]: a Surfacer that draws once.
-Mesh surface(std::span<const Vec3> positions, float spacing, const SurfaceConfig& config, int threads = 0);
+MALLOW_EXPORT Mesh surface(std::span<const Vec3> positions, float spacing, const SurfaceConfig& config,
+                           int threads = 0);
 
 /// Points as the content of a VDB file: a PointDataGrid "particles" with the attributes v [m/s] (the name
 /// that Houdini knows velocity by), group and id. positions: [m]; ids are their indices. voxel_size: [m], >
 /// 0. Throws ConfigError where columns differ in length, or a position is not finite or further than 2^30
 /// voxels from the origin.
-std::string points_vdb(std::span<const Vec3> positions, std::span<const Vec3> velocities,
-                       std::span<const std::uint8_t> groups, float voxel_size, int threads = 0);
+MALLOW_EXPORT std::string points_vdb(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                                     std::span<const std::uint8_t> groups, float voxel_size, int threads = 0);
 
 }  // namespace mallow

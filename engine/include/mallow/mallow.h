@@ -15,3 +15,4 @@
 #include "mallow/simulation.h"         // IWYU pragma: export
 #include "mallow/solver_config.h"      // IWYU pragma: export
 #include "mallow/vec3.h"               // IWYU pragma: export
+#include "mallow/version.h"            // IWYU pragma: export

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "mallow/export.h"
+
 namespace mallow {
 
 /// One key of an alpha schedule: alpha is `alpha` at `time` [s].
@@ -16,16 +18,23 @@ struct AlphaKey {
 /// The blend parameter alpha over time: piecewise linear between keys, constant before the first and after
 /// the last. One number is a schedule of one key. Valid: every alpha in [0, 1], times finite and strictly
 /// increasing.
-class AlphaSchedule {
+class MALLOW_EXPORT AlphaSchedule {
  public:
-  AlphaSchedule(float alpha = 0.0f) : keys_{{0.0f, alpha}} {}            // NOLINT: a number is a schedule
+  /// The same alpha at all times.
+  AlphaSchedule(float alpha = 0.0f)
+      : keys_{{0.0f, alpha}} {}                                          // NOLINT: a number is a schedule
+                                                                         /// Keys in order of time.
   AlphaSchedule(std::vector<AlphaKey> keys) : keys_(std::move(keys)) {}  // NOLINT
+  /// @copydoc AlphaSchedule(std::vector<AlphaKey>)
   AlphaSchedule(std::initializer_list<AlphaKey> keys) : keys_(keys) {}
 
+  /// Alpha at a time [s].
   float at(double time) const;
   /// The smallest and the largest alpha it ever takes.
   float lowest() const;
+  /// @copydoc lowest()
   float highest() const;
+  /// As given.
   const std::vector<AlphaKey>& keys() const { return keys_; }
 
  private:
@@ -54,8 +63,8 @@ struct Material {
   std::optional<float> particle_mass = {};
   /// ρ0 [kg/m³], > 0. Left out: follows from particle_mass, so that a full lattice is at rest pressure.
   std::optional<float> rest_density = {};
-  /// Share of a negative pressure that acts, in [0, 1]. Where pressure_coefficient is left out it is that of a k
-  /// of 0.08 σ²/Δt² at most, as soft as the paper's: the pull of a stiffer one tears bodies apart.
+  /// Share of a negative pressure that acts, in [0, 1]. Where pressure_coefficient is left out it is that of
+  /// a k of 0.08 σ²/Δt² at most, as soft as the paper's: the pull of a stiffer one tears bodies apart.
   float cohesion = 0.0f;
   /// Radius of the shape matching regions [m], > 0; left out: the solver's support_radius. [TK eq. 7]
   std::optional<float> region_radius = {};

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mallow/export.h"
 #include "mallow/vec3.h"
 
 namespace mallow {
@@ -18,16 +19,16 @@ struct Mesh {
 };
 
 /// The smallest box that holds all vertices; {0, 0} for an empty mesh.
-Aabb bounds(const Mesh& mesh);
+MALLOW_EXPORT Aabb bounds(const Mesh& mesh);
 
 /// The same surface with one vertex for all corners at the same place, where files give each face corners of
 /// its own; vertices stand in the order in which they first appear. Triangles that have one place twice are
 /// dropped. Of the columns only vertices and triangles are kept.
-Mesh welded(const Mesh& mesh);
+MALLOW_EXPORT Mesh welded(const Mesh& mesh);
 
 /// What keeps a mesh from enclosing a volume, in words ("12 open edges, the first from (0 0 1) to (0 2 1)"),
 /// with corners of open edges that nearly coincide, or an empty string. Closed means: every edge belongs to
 /// an even number of triangles, and there is at least one triangle.
-std::string why_not_closed(const Mesh& mesh);
+MALLOW_EXPORT std::string why_not_closed(const Mesh& mesh);
 
 }  // namespace mallow

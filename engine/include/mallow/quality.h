@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "mallow/export.h"
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 #include "mallow/surface_config.h"
@@ -10,7 +11,7 @@ namespace mallow {
 
 /// The same scene in steps of `factor` (> 0) times its own: time_step_factor times that, which leaves the
 /// material as it is. Throws ConfigError where the factor is not a finite number above 0.
-SolverConfig at_time_step(const SolverConfig& config, float factor);
+MALLOW_EXPORT SolverConfig at_time_step(const SolverConfig& config, float factor);
 
 /// How a scene's settings are turned between speed and accuracy. Each lies on or beside the fronts that
 /// bench/RESULTS.md shows, with what it costs and how far off it is there.
@@ -20,15 +21,17 @@ enum class Quality {
   accurate,  ///< for films: shorter steps, finer surface
 };
 /// "realtime", "balanced", "accurate".
-const char* name(Quality quality);
-std::span<const Quality> qualities();
+MALLOW_EXPORT const char* name(Quality quality);
+/// All there are, from fast to accurate.
+MALLOW_EXPORT std::span<const Quality> qualities();
 
 /// Longer steps are at most 1.5 times time_step, or as long as the config has them.
-SolverConfig with_quality(const SolverConfig& config, Quality quality);
+MALLOW_EXPORT SolverConfig with_quality(const SolverConfig& config, Quality quality);
 /// config: that of the material, as it was before. A material so stiff that longer steps would make it
 /// unstable is softened to where they do not, if both its elastic_time_step and the time_step are given;
 /// where the time_step is left out, prepare() refuses it.
-Material with_quality(const Material& material, const SolverConfig& config, Quality quality);
-SurfaceConfig with_quality(const SurfaceConfig& config, Quality quality);
+MALLOW_EXPORT Material with_quality(const Material& material, const SolverConfig& config, Quality quality);
+/// Voxels coarser or finer than the config has them.
+MALLOW_EXPORT SurfaceConfig with_quality(const SurfaceConfig& config, Quality quality);
 
 }  // namespace mallow

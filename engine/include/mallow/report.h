@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mallow/defaults.h"
+#include "mallow/export.h"
 #include "mallow/instruction_level.h"
 
 namespace mallow {
@@ -24,9 +25,9 @@ enum class Phase {
   goals,             ///< goal positions, second of the sums over regions [TK eq. 7]
   motion,            ///< blend, contact, positions [TK eq. 10, 11]
 };
-inline constexpr std::size_t k_phase_count = 9;
+inline constexpr std::size_t k_phase_count = 9;  ///< values of Phase
 /// "region_sums" and the like.
-const char* name(Phase phase);
+MALLOW_EXPORT const char* name(Phase phase);
 
 /// Wall time per phase [s].
 using PhaseTimes = std::array<double, k_phase_count>;
@@ -62,10 +63,11 @@ struct AdvanceReport {
   std::int64_t updated_references = 0;  ///< updates of reference shapes, summed over bodies
   PhaseTimes seconds{};
 
-  void add(const StepReport& step);
+  /// Counts one more step.
+  MALLOW_EXPORT void add(const StepReport& step);
 };
 
-/// What a simulation runs and holds; see Simulation::info().
+/// A body in SimulationInfo.
 struct BodyInfo {
   std::string name;
   std::string material;
@@ -82,6 +84,7 @@ struct BodyInfo {
   std::size_t regions = 0;         ///< of shape matching, as many as are owned; 0 where none are built
   bool shape_matching = false;     ///< runs now
 };
+/// What a simulation runs and holds; see Simulation::info().
 struct SimulationInfo {
   std::size_t particles = 0;
   std::vector<BodyInfo> bodies;

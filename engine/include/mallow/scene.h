@@ -10,6 +10,7 @@
 #include "mallow/appearance.h"
 #include "mallow/body.h"
 #include "mallow/collider.h"
+#include "mallow/export.h"
 #include "mallow/material.h"
 #include "mallow/quality.h"
 #include "mallow/simulation.h"
@@ -19,6 +20,7 @@
 /// Scene files (TOML): target mallow::scene.
 namespace mallow {
 
+/// A material of a scene: what moves, and how it looks.
 struct SceneMaterial {
   std::string name = {};
   Material material;
@@ -26,27 +28,33 @@ struct SceneMaterial {
   Finish finish = Finish::jelly;
 };
 
+/// A ball, filled with points.
 struct SphereSource {
   Vec3 center{0, 0, 0};
   float radius = 1.0f;
   Sampling sampling;
 };
+/// A closed mesh of a file, placed and filled with points.
 struct MeshSource {
   std::filesystem::path file = {};  ///< relative to the scene
   Sampling sampling;
   Placement placement;
 };
+/// The points of a file.
 struct PointsSource {
   std::filesystem::path file = {};  ///< relative to the scene
   float spacing = 1.0f;
 };
+/// One of the shapes that implicit_shape() knows, placed and filled with points.
 struct ImplicitSource {
   std::string shape = {};  ///< a name of implicit_shape_names()
   Sampling sampling;
   Placement placement;
 };
+/// Where the points of a body come from.
 using BodySource = std::variant<Lattice, SphereSource, MeshSource, PointsSource, ImplicitSource>;
 
+/// A body of a scene. `material` is the name of one of its materials.
 struct SceneBody {
   std::string material = {};
   std::string group = {};  ///< bodies with one name here are one piece; empty: a piece of its own
@@ -56,10 +64,12 @@ struct SceneBody {
   int line = 0;  ///< of the scene file; 0 where it did not come from one
 };
 
+/// A collider of a scene.
 struct SceneCollider : Collider {
   bool visible = true;  ///< in pictures; it acts on particles in any case
 };
 
+/// A pin of a scene: what is in the box when the scene begins moves with `velocity` [m/s].
 struct ScenePin {
   Aabb box;
   Vec3 velocity{0, 0, 0};
@@ -85,6 +95,7 @@ struct RenderConfig {
   int frames_per_second = 30;   ///< of the film, in [1, 120]
 };
 
+/// All that a scene file says.
 struct Scene {
   std::filesystem::path file = {};
   SolverConfig solver;
@@ -107,32 +118,34 @@ struct SceneReadOptions {
 
 /// Reads a scene. Each override is "section.key=value" ("solver.time_step=0.1", "material[0].alpha=0.5") with
 /// the value in TOML. Throws ConfigError with all problems at once, each with file, line and column.
-Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {},
-                 const SceneReadOptions& options = {});
+MALLOW_EXPORT Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {},
+                               const SceneReadOptions& options = {});
 /// The same of a text that is there already; `file` is what messages name and what paths are relative to.
-Scene parse_scene(const std::string& text, const std::filesystem::path& file,
-                  std::span<const std::string> overrides = {}, const SceneReadOptions& options = {});
+MALLOW_EXPORT Scene parse_scene(const std::string& text, const std::filesystem::path& file,
+                                std::span<const std::string> overrides = {},
+                                const SceneReadOptions& options = {});
 /// The scene as a TOML document with every value in it, defaults too; read_scene() gives the same scene back.
-std::string print_scene(const Scene& scene);
+MALLOW_EXPORT std::string print_scene(const Scene& scene);
 /// Every key a scene file may hold: one line each with default, range, unit and meaning.
-std::string describe_scene_keys();
+MALLOW_EXPORT std::string describe_scene_keys();
 
 /// The same scene in steps of `factor` times its own, see mallow/quality.h; frames stay as long as they are.
-Scene at_time_step(const Scene& scene, float factor);
+MALLOW_EXPORT Scene at_time_step(const Scene& scene, float factor);
 /// The same scene turned between speed and accuracy, see mallow/quality.h; frames stay as long as they are.
-Scene with_quality(const Scene& scene, Quality quality);
+MALLOW_EXPORT Scene with_quality(const Scene& scene, Quality quality);
 
 /// The points of a body as the scene would add them. Throws ConfigError or IoError.
-Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int threads = 0);
+MALLOW_EXPORT Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int threads = 0);
 /// The simulation of a scene, ready to step. `threads` as in SolverConfig. notes: where given, gets those of
 /// all bodies, each with the body's path in front. Throws ConfigError with all problems found.
-Simulation build(const Scene& scene, int threads = 0, std::vector<std::string>* notes = nullptr);
+MALLOW_EXPORT Simulation build(const Scene& scene, int threads = 0,
+                               std::vector<std::string>* notes = nullptr);
 /// Simulated time of a frame [s]: what the scene says, or Δt0. info: of its simulation.
-double frame_time(const Scene& scene, const SimulationInfo& info);
+MALLOW_EXPORT double frame_time(const Scene& scene, const SimulationInfo& info);
 /// What can be run, but is hardly meant, a sentence each: that of the simulation, and where the frames cover
 /// almost no time.
-std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info);
+MALLOW_EXPORT std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info);
 /// The material of each body that build() makes, in order of BodyId.
-std::vector<std::size_t> group_materials(const Scene& scene);
+MALLOW_EXPORT std::vector<std::size_t> group_materials(const Scene& scene);
 
 }  // namespace mallow

@@ -11,6 +11,7 @@
 #include "mallow/body.h"
 #include "mallow/collider.h"
 #include "mallow/errors.h"
+#include "mallow/export.h"
 #include "mallow/ids.h"
 #include "mallow/material.h"
 #include "mallow/report.h"
@@ -25,18 +26,25 @@ namespace mallow {
 template <class Scalar>
 class VectorColumns {
  public:
+  /// As Eigen sees it: n × 3.
   using Map =
       Eigen::Map<std::conditional_t<std::is_const_v<Scalar>, const Eigen::Matrix<float, Eigen::Dynamic, 3>,
                                     Eigen::Matrix<float, Eigen::Dynamic, 3>>,
                  Eigen::Unaligned, Eigen::OuterStride<>>;
 
+  /// data: x of row 0; y and z of it are `stride` and twice that further on.
   VectorColumns(Scalar* data, std::size_t size, std::size_t stride)
       : data_(data), size_(size), stride_(stride) {}
 
+  /// Rows.
   std::size_t size() const { return size_; }
+  /// One component of all rows.
   std::span<Scalar> x() const { return {data_, size_}; }
+  /// @copydoc x()
   std::span<Scalar> y() const { return {data_ + stride_, size_}; }
+  /// @copydoc x()
   std::span<Scalar> z() const { return {data_ + 2 * stride_, size_}; }
+  /// The vector of a row, a copy.
   Vec3 operator[](std::size_t row) const {
     return {data_[row], data_[stride_ + row], data_[2 * stride_ + row]};
   }
@@ -51,8 +59,8 @@ class VectorColumns {
   std::size_t size_;
   std::size_t stride_;
 };
-using VectorView = VectorColumns<const float>;
-using VectorSpan = VectorColumns<float>;
+using VectorView = VectorColumns<const float>;  ///< to read
+using VectorSpan = VectorColumns<float>;        ///< to write
 
 /// What a force callback sees.
 struct ForceInput {
@@ -69,12 +77,14 @@ using ForceCallback = std::function<void(const ForceInput&, VectorSpan accelerat
 /// A scene in motion: SPH and shape matching blended by alpha [TK]. Results depend on the binary and on what
 /// was added, never on the number of threads. One thread may use an object at a time; different objects are
 /// independent. One that was moved from may only be assigned to or destroyed.
-class Simulation {
+class MALLOW_EXPORT Simulation {
  public:
   /// Throws ConfigError with every value that is out of range.
   explicit Simulation(const SolverConfig& config);
   ~Simulation();
+  /// Moves, without a copy of particles.
   Simulation(Simulation&&) noexcept;
+  /// @copydoc Simulation(Simulation&&)
   Simulation& operator=(Simulation&&) noexcept;
 
   /// A material that bodies share. Throws ConfigError with every value that is out of range.
@@ -88,17 +98,21 @@ class Simulation {
   /// Adds particles to a body, with its spacing: all of it is one piece, with one reference shape. One that
   /// already moved takes the present positions for that. Throws what add_body() throws.
   void extend_body(BodyId body, const Body& more);
+  /// An obstacle from the next step on. Throws ConfigError with every value that is out of range.
   ColliderId add_collider(const Collider& collider);
   /// Particles that are in `region` now move with `velocity` from now on and answer to nothing else. The
   /// region may hold none: that is a ConfigError, as nobody means it.
   PinId pin(const Aabb& region, const Vec3& velocity = {0, 0, 0});
+  /// The same for particles by id. Throws ConfigError where an id is not one.
   PinId pin(std::span<const ParticleId> ids, const Vec3& velocity = {0, 0, 0});
   /// An empty function takes the callback away.
   void set_force(ForceCallback callback);
 
   /// Of all bodies of the material.
   void set_alpha(MaterialId material, const AlphaSchedule& alpha);
+  /// The velocity of a collider from now on [m/s], finite.
   void set_velocity(ColliderId collider, const Vec3& velocity);
+  /// The velocity of the particles of a pin from now on [m/s], finite.
   void set_velocity(PinId pin, const Vec3& velocity);
 
   /// Allocates, sorts and builds what the first step needs; step() does it where it was not done. The first
@@ -119,15 +133,18 @@ class Simulation {
   /// were taken, as time() tells.
   AdvanceReport advance(double seconds);
 
+  /// Of all bodies.
   std::size_t particle_count() const;
+  /// Bodies are numbered from 0 to one less than this.
   std::size_t body_count() const;
-  double time() const;  ///< simulated time [s]
-  std::int64_t step_count() const;
+  double time() const;              ///< simulated time [s]
+  std::int64_t step_count() const;  ///< steps taken
   /// As given; from the first prepare() on with the time_step that is in force. What else was left out,
   /// info() tells.
   const SolverConfig& config() const;
   const std::vector<Collider>& colliders() const;  ///< as they stand now
 
+  /// The particle of each row; sorting moves rows, never ids.
   std::span<const ParticleId> ids() const;
   /// [m]. A scene whose first body is more than a thousand spacings from 0 is kept relative to a point near
   /// it, so that it moves as it would at 0; then this is a copy, in which digits are lost, made once a step.
@@ -139,11 +156,14 @@ class Simulation {
   struct Rows {
     std::size_t begin, end;
   };
+  /// Where the body stands now.
   Rows rows(BodyId body) const;
+  /// What the body is made of.
   MaterialId material(BodyId body) const;
 
   /// Copies in the order of slots, whatever that of rows is: entry i is particle i where none was removed.
   std::vector<Vec3> positions_by_id() const;
+  /// @copydoc positions_by_id()
   std::vector<Vec3> velocities_by_id() const;
   std::vector<std::uint32_t> bodies_by_id() const;  ///< BodyId of each particle
 
