@@ -4,6 +4,12 @@
 // them, each lane on its own, gets the same bits at every level: the width only says how many lanes go at
 // once.
 //
+// This header and core/cluster_lanes.h are what a port of the kernels is: they name the vector types and all
+// intrinsics, and have plain C++ where a machine has none (tools/check_arm builds it so). The vector types
+// are those of GCC, which Clang and clang-cl have too; a compiler without them takes classes with these
+// operators here. Two files declare one more for themselves: shape_matching/moment_kernels.cpp, of doubles,
+// and core/bounds.cpp.
+//
 // Everything here is in an anonymous namespace of the level, so that no level's code can stand in for
 // another's (core/isa.h).
 #include "core/isa.h"

@@ -119,59 +119,9 @@ std::size_t find_runs(const SearchInput& in, const Bounds& box, PlaceRun* runs) 
   return count;
 }
 
-#ifdef __SSSE3__
-/// Per mask of `lanes` lanes those that are set, in order; each as the places of `bytes` bytes.
-template <unsigned lanes, unsigned bytes>
-struct LaneTable {
-  alignas(16) unsigned char places[1u << lanes][lanes * bytes];
-};
-template <unsigned lanes, unsigned bytes>
-constexpr LaneTable<lanes, bytes> lane_table() {
-  LaneTable<lanes, bytes> table{};
-  for (unsigned mask = 0; mask < 1u << lanes; ++mask)
-    for (unsigned l = 0, n = 0; l < lanes; ++l)
-      if (mask >> l & 1)
-        for (unsigned b = 0; b < bytes; ++b)
-          table.places[mask][n++] = static_cast<unsigned char>(bytes * l + b);
-  return table;
-}
-#ifdef __AVX2__
-constexpr LaneTable<8, 1> k_lane_table = lane_table<8, 1>();
-#else
-constexpr LaneTable<4, 4> k_lane_table = lane_table<4, 4>();
-#endif
-#endif
-
 /// Of the mask the bits of the first `count` lanes.
 MALLOW_INLINE unsigned bits_of(const Ints& mask, std::size_t count) {
   return bits(mask) & ((1u << (count < k_cluster ? count : k_cluster)) - 1);
-}
-
-/// Writes the values of the lanes whose bit is set, in order, and returns how many; may write k_cluster.
-MALLOW_INLINE std::size_t compress(unsigned set, const Ints& values, std::uint32_t* out) {
-#ifdef __AVX2__
-  const __m256i lanes =
-      _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(k_lane_table.places[set])));
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
-                      _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(values), lanes));
-#elif defined(__SSSE3__)
-  const auto packed = [](const __m128i& four, unsigned part) {
-    return _mm_shuffle_epi8(four,
-                            _mm_load_si128(reinterpret_cast<const __m128i*>(k_lane_table.places[part])));
-  };
-  __m128i low, high;
-  __builtin_memcpy(&low, &values, sizeof low);
-  __builtin_memcpy(&high, reinterpret_cast<const char*>(&values) + sizeof low, sizeof high);
-  _mm_storeu_si128(reinterpret_cast<__m128i*>(out), packed(low, set & 15));
-  _mm_storeu_si128(reinterpret_cast<__m128i*>(out + __builtin_popcount(set & 15)), packed(high, set >> 4));
-#else
-  // Always written, kept only where the bit is: no branch to predict.
-  for (std::size_t l = 0; l < k_cluster; ++l) {
-    *out = static_cast<std::uint32_t>(values[l]);
-    out += set >> l & 1;
-  }
-#endif
-  return static_cast<std::size_t>(__builtin_popcount(set));
 }
 
 std::size_t near_cluster(const SearchInput& in, const Bounds& box, const PlaceRun* runs, std::size_t count,
