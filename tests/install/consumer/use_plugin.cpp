@@ -1,0 +1,5 @@
+int check_plugin();
+
+int main() {
+  return check_plugin();
+}
