@@ -5,24 +5,10 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "motion/block_contact.h"
+#include "motion/motion_kernels.h"
 
 namespace mallow {
 namespace {
-
-void translate(Plane& plane, const Vec3& offset) {
-  plane.offset += plane.normal.dot(offset);
-}
-void translate(Sphere& sphere, const Vec3& offset) {
-  sphere.center += offset;
-}
-void translate(Box& box, const Vec3& offset) {
-  box.min += offset;
-  box.max += offset;
-}
-void translate(Union& shapes, const Vec3& offset) {
-  for (Primitive& part : shapes.parts) std::visit([&](auto& shape) { translate(shape, offset); }, part);
-}
 
 ConstVectors raw_or_null(const VectorColumn* column) {
   return column ? raw(*column) : ConstVectors{};
@@ -68,7 +54,8 @@ std::size_t first_bad_row(const ParticleStore& store, std::size_t begin, std::si
 
 /// The particles [begin, end) of the store; only reads and writes their own rows.
 MotionSums move_block(const MotionInput& in, const ForcesInput& forces, InstructionLevel level,
-                      std::size_t begin, std::size_t end, ParticleStore& store) {
+                      std::size_t begin, std::size_t end, ParticleStore& store,
+                      std::span<ColliderLoad> loads) {
   const MotionKernels& kernels = MALLOW_SELECT(level, motion_kernels);
   MotionSums sums{.unpinned = end - begin};
   const BlockBounds bounds = kernels.blend(forces, begin, end, raw(store.next_velocity));
@@ -85,7 +72,7 @@ MotionSums move_block(const MotionInput& in, const ForcesInput& forces, Instruct
       std::copy_n(store.next_velocity.axis(a) + begin, end - begin, free[a].data());
   if (!in.colliders.empty())
     resolve_contacts({begin, end, store.position, store.velocity, forces.pin, bounds}, in.colliders,
-                     in.contact, MALLOW_SELECT(level, contact_kernels), store.next_velocity);
+                     in.contact, store.next_velocity, loads);
   const ConstVectors velocity = raw(std::as_const(store.next_velocity));
   if (in.measure_external)
     sums.external =
@@ -101,25 +88,27 @@ void move_particles(const Threads& threads, InstructionLevel level, ParticleStor
                     MovingBodies& bodies) {
   bodies.blocks.clear();
   for (const MotionInput& in : bodies.inputs) bodies.blocks.add(in.end - in.begin);
-  bodies.partial.resize(bodies.blocks.blocks.size());
+  const std::size_t blocks = bodies.blocks.blocks.size(), colliders = bodies.loads.size();
+  bodies.partial.resize(blocks);
+  bodies.partial_loads.assign(blocks * colliders, {});
   parallel_for(threads, bodies.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     const MotionInput& in = bodies.inputs[block.range];
+    const auto loads = std::span(bodies.partial_loads).subspan(number * colliders, colliders);
     bodies.partial[number] =
-        move_block(in, forces(in, store), level, in.begin + block.begin, in.begin + block.end, store);
+        move_block(in, forces(in, store), level, in.begin + block.begin, in.begin + block.end, store, loads);
   });
   bodies.sums.assign(bodies.inputs.size(), {});
-  for (std::size_t b = 0; b < bodies.partial.size(); ++b) {
-    MotionSums& sums = bodies.sums[bodies.blocks.blocks[b].range];
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t body = bodies.blocks.blocks[b].range;
+    MotionSums& sums = bodies.sums[body];
     sums.external += bodies.partial[b].external;
     sums.unpinned += bodies.partial[b].unpinned;
     sums.bad_row = std::min(sums.bad_row, bodies.partial[b].bad_row);
-  }
-}
-
-void move_colliders(double time_step, std::span<Collider> colliders) {
-  for (Collider& collider : colliders) {
-    const Vec3 offset = static_cast<float>(time_step) * collider.velocity;
-    if (offset != Vec3(0, 0, 0)) std::visit([&](auto& shape) { translate(shape, offset); }, collider.shape);
+    const double mass = static_cast<double>(bodies.inputs[body].mass);
+    for (std::size_t c = 0; c < colliders; ++c) {
+      bodies.loads[c].impulse += mass * bodies.partial_loads[b * colliders + c].impulse;
+      bodies.loads[c].torque += mass * bodies.partial_loads[b * colliders + c].torque;
+    }
   }
 }
 

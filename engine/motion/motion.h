@@ -3,12 +3,11 @@
 #include <span>
 #include <vector>
 
+#include "colliders/contact.h"
 #include "core/column.h"
 #include "core/isa.h"
 #include "core/range_blocks.h"
 #include "core/threads.h"
-#include "mallow/collider.h"
-#include "motion/contact.h"
 #include "particles/particle_store.h"
 
 namespace mallow {
@@ -24,10 +23,11 @@ struct MotionInput {
   const VectorColumn* cross_group;       ///< by row of the store [m/s²]
   const VectorColumn* user;              ///< by row of the store [m/s²]
   const VectorColumn* pull;              ///< g − x, by row of the body [m]
-  std::span<const Collider> colliders;
+  std::span<const PlacedCollider> colliders;
   ContactStep contact;
   std::span<const Vec3> pin_velocities;
   bool measure_external;  ///< sum |a_ext|
+  float mass;             ///< m [kg], by which loads are counted
 };
 
 /// What the update rule and the checks want to know of a body's motion.
@@ -37,21 +37,21 @@ struct MotionSums {
   std::size_t bad_row = SIZE_MAX;  ///< first row whose new velocity or position is not finite
 };
 
-/// Bodies that move together, and what is known of each afterwards.
+/// Bodies that move together, and what is known of them afterwards.
 struct MovingBodies {
   std::vector<MotionInput> inputs;
   std::vector<MotionSums> sums;  ///< of each
+  /// One a collider, where any measures it: what it got from all of them is added. Else empty.
+  std::vector<ColliderLoad> loads;
 
-  // Scratch.
+  // Scratch, by block.
   RangeBlocks blocks;
   std::vector<MotionSums> partial;
+  std::vector<ColliderLoad> partial_loads;
 };
 
 /// Blend, contact, positions: v' and x' into the store's next columns. [model 4, 5; TK eq. 10, 11, 13]
 void move_particles(const Threads& threads, InstructionLevel level, ParticleStore& store,
                     MovingBodies& bodies);
-
-/// Colliders at the end of a step.
-void move_colliders(double time_step, std::span<Collider> colliders);
 
 }  // namespace mallow

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "colliders/collider_kernels.h"
 #include "core/isa.h"
 #include "core/raw_columns.h"
 
@@ -28,13 +29,7 @@ struct ForcesInput {
   float elastic_factor;      ///< (1 − α) Δt/(Δt0 Δt_SM) [1/s]
 };
 
-/// Within which a block of particles lies and how fast it is.
-struct BlockBounds {
-  float min[3], max[3];  ///< of the positions [m]
-  float squared_speed;   ///< largest |v|² [m²/s²]
-};
-
-/// All of model section 4 but contact (motion/contact_kernels.h). They write to no row outside [begin, end).
+/// All of model section 4 but contact (engine/colliders). They write to no row outside [begin, end).
 struct MotionKernels {
   /// v' before contact of free particles and of pinned ones alike, and what it says of the rows.
   BlockBounds (*blend)(const ForcesInput&, std::size_t begin, std::size_t end, Vectors velocity) noexcept;

@@ -138,7 +138,11 @@ FieldTable fields(ImplicitSource& source) {
 
 FieldTable fields(SceneCollider& collider) {
   return {
+      {"translate", &collider.translate, k_finite, "m", "where the origin of its shape is at the start"},
+      {"rotate", &collider.rotate, k_finite, "degrees", "turn of its shape about x, then y, then z"},
       {"velocity", &collider.velocity, k_finite, "m/s", "the obstacle moves with it"},
+      {"angular_velocity", &collider.angular_velocity, k_finite, "rad/s",
+       "the obstacle turns with it about the origin of its shape"},
       {"restitution", &collider.restitution, between(0, 1), "",
        "share of the normal velocity that bounces back, e"},
       {"friction", &collider.friction, k_not_negative, "", "Coulomb's μ_f"},
@@ -146,27 +150,18 @@ FieldTable fields(SceneCollider& collider) {
   };
 }
 
-FieldTable fields(Plane& plane) {
-  return {
-      {"normal", &plane.normal, k_finite, "", "towards the free side, of any length but 0"},
-      {"offset", &plane.offset, k_finite, "m", "normal · x >= offset is free"},
-  };
-}
-
-FieldTable fields(Sphere& sphere) {
-  return {
-      {"center", &sphere.center, k_finite, "m", "middle of the ball"},
-      {"radius", &sphere.radius, k_positive, "m", "of the ball", k_required},
-      {"inside", &sphere.inside, k_any, "", "particles are kept in, not out"},
-  };
-}
-
-FieldTable fields(Box& box) {
-  return {
-      {"min", &box.min, k_finite, "m", "lowest corner", k_required},
-      {"max", &box.max, k_finite, "m", "highest corner", k_required},
-      {"inside", &box.inside, k_any, "", "particles are kept in, not out"},
-  };
+FieldTable fields(Primitive& primitive) {
+  FieldTable table;
+  std::visit(
+      [&]<class Shape>(Shape& shape) {
+        ShapeTraits<Shape>::visit_members(shape, [&](auto& member, const ShapeMember& about) {
+          const Range range = about.values == ShapeMember::Values::positive ? k_positive : k_finite;
+          table.push_back(
+              {about.key, &member, range, about.unit, about.doc, about.required ? k_required : ""});
+        });
+      },
+      primitive);
+  return table;
 }
 
 FieldTable fields(ScenePin& pin) {
@@ -232,7 +227,9 @@ const std::vector<Kind<BodySource>>& source_kinds() {
 }
 
 const std::vector<Kind<Primitive>>& primitive_kinds() {
-  static const std::vector<Kind<Primitive>> kinds{{"plane", Plane{}}, {"sphere", Sphere{}}, {"box", Box{}}};
+  static const std::vector<Kind<Primitive>> kinds = []<class... Shapes>(const std::variant<Shapes...>&) {
+    return std::vector<Kind<Primitive>>{{ShapeTraits<Shapes>::k_key, Shapes{}}...};
+  }(Primitive{});
   return kinds;
 }
 

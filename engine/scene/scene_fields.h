@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "colliders/shapes.h"
 #include "mallow/scene.h"
 #include "scene/field_table.h"
 
@@ -19,9 +20,7 @@ FieldTable fields(MeshSource& source);
 FieldTable fields(PointsSource& source);
 FieldTable fields(ImplicitSource& source);
 FieldTable fields(SceneCollider& collider);  ///< without its shape
-FieldTable fields(Plane& plane);
-FieldTable fields(Sphere& sphere);
-FieldTable fields(Box& box);
+FieldTable fields(Primitive& primitive);
 FieldTable fields(ScenePin& pin);  ///< without its box
 FieldTable fields(Aabb& box);
 FieldTable fields(SurfaceConfig& config);
@@ -36,19 +35,15 @@ struct Kind {
 };
 const std::vector<Kind<BodySource>>& source_kinds();    ///< in the order of BodySource
 const std::vector<Kind<Primitive>>& primitive_kinds();  ///< in the order of Primitive
-inline constexpr const char* k_union_key = "union";
 
 inline FieldTable fields(BodySource& source) {
   return std::visit([](auto& one) { return fields(one); }, source);
-}
-inline FieldTable fields(Primitive& primitive) {
-  return std::visit([](auto& one) { return fields(one); }, primitive);
 }
 inline const char* key_of(const BodySource& source) {
   return source_kinds()[source.index()].key;
 }
 inline const char* key_of(const Primitive& primitive) {
-  return primitive_kinds()[primitive.index()].key;
+  return std::visit([](const auto& one) { return mallow::key_of(one); }, primitive);
 }
 
 /// Particles of one body and of all together, at most: what 32-bit ids and the memory of one machine leave

@@ -4,6 +4,7 @@
 #include <map>
 #include <system_error>
 
+#include "colliders/pose.h"
 #include "scene/document.h"
 #include "scene/field_reader.h"
 #include "scene/nearest_name.h"
@@ -102,6 +103,7 @@ class SceneReader {
     SceneCollider& collider = scene_.colliders.emplace_back();
     read_fields(node, path, fields(collider), shape_keys(), problems_);
     read_shape(node, path, collider, problems_);
+    collider.pose = pose_of(collider.translate, collider.rotate);
   }
 
   void read_pin(const Node& node, const std::string& path) {
@@ -113,7 +115,7 @@ class SceneReader {
     const Node* box = find(node, "box");
     if (!box) return problems_.add(node.place, box_path, "is missing: { min = [...], max = [...] }");
     if (read_whole(*box, box_path, fields(pin.box), {}, problems_))
-      check_box(pin.box.min, pin.box.max, true, *box, box_path, problems_);
+      check_box(pin.box, *box, box_path, problems_);
   }
 
   /// Names are unique, bodies use names that there are, and every material is used.

@@ -103,17 +103,6 @@ class ShapeCheck {
     check_name(implicit.shape, "shape");
   }
 
-  void operator()(const Plane& plane) const {
-    // Outside these lengths the square of the normal leaves single precision, and its direction is lost.
-    const float length = plane.normal.stableNorm();
-    if (length >= 1e-15f && length <= 1e15f) return;
-    complain("normal", text_of(plane.normal), "a direction, of length in [1e-15, 1e15]");
-  }
-
-  void operator()(const Sphere&) const {}
-
-  void operator()(const Box& box) const { check_box(box.min, box.max, false, table_, path_, problems_); }
-
   /// key: where the name stands, empty where it is the whole value.
   void check_name(const std::string& shape, const std::string& key) const {
     const auto names = implicit_shape_names();
@@ -168,8 +157,16 @@ class ShapeCheck {
 
 Primitive read_primitive(const Entry& entry, const std::string& path, Problems& problems) {
   Primitive primitive = kind_of(primitive_kinds(), entry.key);
-  if (read_whole(entry.node, path, fields(primitive), {}, problems))
-    std::visit(ShapeCheck(entry.node, path, nullptr, problems), primitive);
+  const FieldTable table = fields(primitive);
+  if (!read_whole(entry.node, path, table, {}, problems)) return primitive;
+  const auto problem = std::visit(
+      []<class Shape>(const Shape& shape) { return ShapeTraits<Shape>::problem(shape); }, primitive);
+  for (const Field& field : table) {
+    if (!problem || std::string_view(problem->key) != field.name) continue;
+    const Node* given = find(entry.node, field.name);
+    problems.add(given ? given->place : entry.place, join_path(path, field.name),
+                 not_allowed(value_text(field), problem->allowed));
+  }
   return primitive;
 }
 
@@ -242,13 +239,10 @@ bool read_whole(const Node& table, const std::string& path, const FieldTable& fi
   return problems.count() == problems_before;
 }
 
-void check_box(const Vec3& min, const Vec3& max, bool may_be_flat, const Node& table, const std::string& path,
-               Problems& problems) {
-  const auto size = (max - min).array();
-  if (may_be_flat ? (size >= 0).all() : (size > 0).all()) return;
+void check_box(const Aabb& box, const Node& table, const std::string& path, Problems& problems) {
+  if ((box.min.array() <= box.max.array()).all()) return;
   problems.add(find(table, "max")->place, join_path(path, "max"),
-               not_allowed(text_of(max), std::string(may_be_flat ? "at least" : "above") + " min, " +
-                                             text_of(min) + ", along every axis"));
+               not_allowed(text_of(box.max), "at least min, " + text_of(box.min) + ", along every axis"));
 }
 
 }  // namespace mallow::scene_file

@@ -24,8 +24,7 @@ void read_shape(const Node& table, const std::string& path, Collider& collider, 
 /// sense.
 bool read_whole(const Node& table, const std::string& path, const FieldTable& fields,
                 const std::vector<std::string>& also, Problems& problems);
-/// A box of which each side may be empty (`may_be_flat`) or not, but never negative.
-void check_box(const Vec3& min, const Vec3& max, bool may_be_flat, const Node& table, const std::string& path,
-               Problems& problems);
+/// A box of which each side may be empty, but not negative.
+void check_box(const Aabb& box, const Node& table, const std::string& path, Problems& problems);
 
 }  // namespace mallow::scene_file

@@ -2,70 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <variant>
-
-#include "shapes/norm_range.h"
 
 namespace mallow {
-namespace {
-
-constexpr float k_no_length = std::numeric_limits<float>::min();
-
-/// |v|, also where a float does not hold the square of it.
-float norm(const Vec3& v) {
-  const float square = v.squaredNorm();
-  return square > k_least_square && square < k_greatest_square ? std::sqrt(square) : v.stableNorm();
-}
-
-/// Seen from the other side: what was inside is outside.
-SurfacePoint turned(const SurfacePoint& point) {
-  return {-point.distance, -point.normal};
-}
-
-}  // namespace
-
-SurfacePoint nearest(const Plane& plane, const Vec3& x) {
-  const float length = plane.normal.stableNorm();
-  const Vec3 normal = plane.normal / length;
-  return {normal.dot(x) - plane.offset / length, normal};
-}
-
-SurfacePoint nearest(const Sphere& sphere, const Vec3& x) {
-  const Vec3 offset = x - sphere.center;
-  const float length = norm(offset);
-  const Vec3 normal = length > k_no_length ? Vec3(offset / length) : Vec3::UnitZ();
-  const SurfacePoint point{length - sphere.radius, normal};
-  return sphere.inside ? turned(point) : point;
-}
-
-SurfacePoint nearest(const Box& box, const Vec3& x) {
-  const Vec3 below = box.min - x;
-  const Vec3 above = x - box.max;
-  const Vec3 outside = above.cwiseMax(0.0f) - below.cwiseMax(0.0f);
-  const float length = norm(outside);
-  SurfacePoint point;
-  if (length > k_no_length) {
-    point = {length, outside / length};
-  } else {
-    // On or in the box the nearest face counts. The axes are tried from z down, so that z wins a tie.
-    point = {-std::numeric_limits<float>::infinity(), Vec3::UnitZ()};
-    for (int axis : {2, 1, 0}) {
-      if (above[axis] > point.distance) point = {above[axis], Vec3::Unit(axis)};
-      if (below[axis] > point.distance) point = {below[axis], -Vec3::Unit(axis)};
-    }
-  }
-  return box.inside ? turned(point) : point;
-}
-
-SurfacePoint nearest(const Union& shapes, const Vec3& x) {
-  SurfacePoint best{std::numeric_limits<float>::infinity(), Vec3::UnitZ()};
-  for (const Primitive& part : shapes.parts) {
-    const SurfacePoint point = std::visit([&](const auto& shape) { return nearest(shape, x); }, part);
-    if (point.distance < best.distance) best = point;
-  }
-  return best;
-}
 
 float sphere_distance(const Vec3& x, const Vec3& center, float radius) {
   return (x - center).norm() - radius;

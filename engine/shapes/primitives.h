@@ -1,6 +1,5 @@
 #pragma once
 
-#include "mallow/collider.h"
 #include "mallow/vec3.h"
 
 /// Signed distances, negative inside, from which implicit shapes are put together. All have slope 1 at most,

@@ -2,7 +2,6 @@
 
 #include "core/column.h"
 #include "mallow/body.h"
-#include "mallow/collider.h"
 
 namespace mallow {
 
@@ -14,6 +13,5 @@ Vec3 choose_origin(const Body& body);
 
 /// x − origin, rounded once.
 Vec3 relative_to(const Vec3& origin, const Vec3& x);
-Collider relative_to(const Vec3& origin, const Collider& collider);
 
 }  // namespace mallow

@@ -2,6 +2,7 @@
 #include <limits>
 #include <sstream>
 
+#include "colliders/pose.h"
 #include "core/parallel.h"
 #include "simulation/damage.h"
 #include "simulation/settings.h"
@@ -278,7 +279,7 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
       .cross_group = state.cross_group(),
       .user = state.user(),
       .pull = body.matches_shape() ? &body.shape.pull : nullptr,
-      .colliders = state.contact_colliders(),
+      .colliders = state.placed_colliders,
       .contact = {.time_step = time_step,
                   .max_push = config.support_radius / (10.0f * state.base_step()),
                   .contact_offset = config.contact_offset.value_or(0.5f * body.spacing),
@@ -286,6 +287,7 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
                   .least_bounce = 2.0f * config.gravity.norm() * time_step},
       .pin_velocities = state.pin_velocities,
       .measure_external = body.step_weight > 0,
+      .mass = body.mass,
   };
 }
 
@@ -297,6 +299,8 @@ void move_bodies(Simulation::State& state, float time_step) {
   // its place, steps that a limit varies feed a stiff body. The two are the same where steps are equal.
   const auto last_step = static_cast<float>(state.last_time_step);
   const float pull_time = last_step > 0 ? 0.5f * (last_step + time_step) : time_step;
+  place_colliders(state.colliders, state.origin, time_step, state.level, state.placed_colliders);
+  state.moving.loads.assign(any_measures_load(state.placed_colliders) ? state.colliders.size() : 0, {});
   state.moving.inputs.clear();
   for (BodyState& body : state.bodies) {
     body.step_weight = body.keeps_reference() ? weight : 0.0;
@@ -316,7 +320,6 @@ void finish_step(Simulation::State& state, const ChosenStep& step) {
   state.store.position.swap(state.store.next_position);
   state.store.velocity.swap(state.store.next_velocity);
   move_colliders(static_cast<double>(step.time_step), state.colliders);
-  move_colliders(static_cast<double>(step.time_step), state.near_colliders);
   add_external(state);
   state.time = step.end;
   state.last_time_step = static_cast<double>(step.time_step);

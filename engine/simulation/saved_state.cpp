@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "colliders/collider_archive.h"
+#include "colliders/collider_checks.h"
 #include "core/archive.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
@@ -12,7 +14,7 @@ namespace mallow {
 namespace {
 
 /// Counted up whenever the chunks or what they mean change.
-constexpr std::uint32_t k_version = 3;
+constexpr std::uint32_t k_version = 4;
 static_assert(sizeof(std::size_t) == sizeof(std::uint64_t), "sizes are saved as they are");
 
 // One list of members a type, for both ways: see PackingArchive.
@@ -121,57 +123,6 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   archive.array(frame.translation.data(), 3);
   archive(sizes.references);
   archive(sizes.regions);
-}
-
-template <class Archive, class Shape>
-void pass_primitive(Archive& archive, Shape& shape) {
-  if constexpr (std::is_same_v<std::remove_const_t<Shape>, Plane>) {
-    archive(shape.normal);
-    archive(shape.offset);
-  } else if constexpr (std::is_same_v<std::remove_const_t<Shape>, Sphere>) {
-    archive(shape.center);
-    archive(shape.radius);
-    archive(shape.inside);
-  } else {
-    archive(shape.min);
-    archive(shape.max);
-    archive(shape.inside);
-  }
-}
-
-/// Which alternative a variant of shapes holds; unpacking makes it hold that.
-template <class Archive, class Shapes>
-void pass_kind(Archive& archive, Shapes& shapes) {
-  auto kind = static_cast<std::uint8_t>(shapes.index());
-  archive(kind);
-  if constexpr (!Archive::k_packs) {
-    if (kind >= std::variant_size_v<Shapes>) archive.fail(std::to_string(kind) + " is not a kind of shape");
-    if (kind == 0) shapes = Plane{};
-    if (kind == 1) shapes = Sphere{};
-    if (kind == 2) shapes = Box{};
-    if constexpr (std::variant_size_v < Shapes >> 3)
-      if (kind == 3) shapes = Union{};
-  }
-}
-
-template <class Archive, class Collider>
-void pass_collider(Archive& archive, Collider& collider) {
-  pass_kind(archive, collider.shape);
-  std::visit(
-      [&](auto& shape) {
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(shape)>, Union>) {
-          pass_list(archive, shape.parts, 16, [&](auto& part) {
-            pass_kind(archive, part);
-            std::visit([&](auto& one) { pass_primitive(archive, one); }, part);
-          });
-        } else {
-          pass_primitive(archive, shape);
-        }
-      },
-      collider.shape);
-  archive(collider.velocity);
-  archive(collider.restitution);
-  archive(collider.friction);
 }
 
 template <class Pack>
@@ -287,15 +238,11 @@ void unpack_obstacles(const SavedState& saved, Simulation::State& state) {
   });
   unpack(saved, "colliders", [&](UnpackingArchive& archive) {
     Checks checks;
-    for (std::vector<Collider>* colliders : {&state.colliders, &state.near_colliders}) {
-      pass_list(archive, *colliders, 16, [&](Collider& collider) {
-        pass_collider(archive, collider);
-        check(collider, checks);
-      });
-    }
+    pass_list(archive, state.colliders, 64, [&](Collider& collider) {
+      pass_collider(archive, collider);
+      check(collider, checks);
+    });
     checks.finish();
-    if (state.near_colliders.size() != (state.is_far() ? state.colliders.size() : 0))
-      archive.fail("there must be one relative to the origin for each collider");
   });
   unpack(saved, "pins", [&](UnpackingArchive& archive) {
     pass_list(archive, state.pin_velocities, sizeof(Vec3), [&](Vec3& velocity) {
@@ -425,8 +372,7 @@ SavedState Simulation::save() const {
   }));
   add(packed("origin", [&](PackingArchive& archive) { archive(s.origin); }));
   add(packed("colliders", [&](PackingArchive& archive) {
-    for (const std::vector<Collider>* colliders : {&s.colliders, &s.near_colliders})
-      pass_list(archive, *colliders, 0, [&](const Collider& collider) { pass_collider(archive, collider); });
+    pass_list(archive, s.colliders, 0, [&](const Collider& collider) { pass_collider(archive, collider); });
   }));
   add(packed("pins", [&](PackingArchive& archive) {
     pass_list(archive, s.pin_velocities, 0, [&](const Vec3& velocity) { archive(velocity); });

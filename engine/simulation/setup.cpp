@@ -2,6 +2,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "colliders/collider_checks.h"
 #include "core/parallel.h"
 #include "simulation/overlaps.h"
 #include "simulation/settings.h"
@@ -22,17 +23,6 @@ auto& checked(List& list, Id id, const char* kind) {
     throw ConfigError(kind, std::string("there is no ") + kind + ' ' + std::to_string(index) + "; there are " +
                                 std::to_string(list.size()));
   return list[index];
-}
-
-void normalize(Plane& plane) {
-  const float length = plane.normal.norm();
-  plane.normal /= length;
-  plane.offset /= length;
-}
-void normalize(Sphere&) {}
-void normalize(Box&) {}
-void normalize(Union& shapes) {
-  for (Primitive& part : shapes.parts) std::visit([](auto& shape) { normalize(shape); }, part);
 }
 
 /// m and ρ0 of a body; what the material leaves out follows from ρ0 = m Σ W over the lattice. [model 1]
@@ -62,15 +52,6 @@ std::string why_unknown(const ParticleStore& store, ParticleId id) {
     return "particle " + std::to_string(id) + " was removed";
   return "there is no particle " + std::to_string(id) + "; ids are 0 to " +
          std::to_string(static_cast<std::int64_t>(store.slots.size()) - 1);
-}
-
-/// Colliders that are there already are seen from the origin too.
-void take_origin(Simulation::State& state, const Vec3& origin) {
-  state.origin = origin;
-  state.near_colliders.clear();
-  if (!state.is_far()) return;
-  for (const Collider& collider : state.colliders)
-    state.near_colliders.push_back(relative_to(origin, collider));
 }
 
 }  // namespace
@@ -157,7 +138,7 @@ void add_points(Simulation::State& s, const Body& points, BodyState& body) {
   check_neighbors(s, body.material->settings, points);
   std::vector<Vec3> velocities(points.positions.size(), points.velocity);
   for (std::size_t i = 0; i < points.velocities.size(); ++i) velocities[i] += points.velocities[i];
-  if (s.store.size() == 0) take_origin(s, origin);
+  if (s.store.size() == 0) s.origin = origin;
   s.store.insert(body.end, positions, velocities);
   body.end += positions.size();
   body.grew = true;
@@ -230,9 +211,6 @@ ColliderId Simulation::add_collider(const Collider& collider) {
   check(collider, checks);
   checks.finish();
   state_->colliders.push_back(collider);
-  std::visit([](auto& shape) { normalize(shape); }, state_->colliders.back().shape);
-  if (state_->is_far())
-    state_->near_colliders.push_back(relative_to(state_->origin, state_->colliders.back()));
   return static_cast<ColliderId>(state_->colliders.size() - 1);
 }
 
@@ -310,14 +288,19 @@ void Simulation::set_alpha(MaterialId id, const AlphaSchedule& alpha) {
 }
 
 void Simulation::set_velocity(ColliderId id, const Vec3& velocity) {
+  set_twist(id, velocity, collider(id).angular_velocity);
+}
+
+void Simulation::set_twist(ColliderId id, const Vec3& velocity, const Vec3& angular_velocity) {
   state_->refuse_in_callback();
+  collider(id);
   Checks checks;
   checks.vector("collider.velocity", velocity);
-  if (static_cast<std::size_t>(id) >= state_->colliders.size())
-    checks.problem("collider", "there is no collider " + std::to_string(static_cast<std::size_t>(id)));
+  checks.vector("collider.angular_velocity", angular_velocity);
   checks.finish();
-  state_->colliders[static_cast<std::size_t>(id)].velocity = velocity;
-  if (state_->is_far()) state_->near_colliders[static_cast<std::size_t>(id)].velocity = velocity;
+  Collider& changed = state_->colliders[static_cast<std::size_t>(id)];
+  changed.velocity = velocity;
+  changed.angular_velocity = angular_velocity;
 }
 
 void Simulation::set_velocity(PinId id, const Vec3& velocity) {

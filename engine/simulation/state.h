@@ -73,8 +73,7 @@ struct Simulation::State {
   ParticleStore store;
   std::deque<MaterialState> materials;  ///< bodies point to them
   std::vector<BodyState> bodies;        ///< in the order of their rows
-  std::vector<Collider> colliders;       ///< as the user sees them
-  std::vector<Collider> near_colliders;  ///< relative to the origin; empty where that is 0
+  std::vector<Collider> colliders;
   std::vector<Vec3> pin_velocities;
   ForceCallback force;
   Sph sph;
@@ -93,6 +92,7 @@ struct Simulation::State {
   MovingBodies moving;
   Column<std::uint32_t> fluid_order;
   std::vector<TimeStepLimits::Pressure> pressures;
+  std::vector<PlacedCollider> placed_colliders;
 
   /// Δt0, and what bounds the steps that are taken. Known from the first prepare() on [s].
   float base_step() const { return *config.time_step; }
@@ -113,9 +113,6 @@ struct Simulation::State {
     sph.kept.forget();
     far_step = -1;
   }
-  /// The colliders that contact reads.
-  std::span<Collider> contact_colliders() { return is_far() ? near_colliders : colliders; }
-
   /// Called behind every phase; tests damage columns there.
   std::function<void(Phase)> after_phase;
 

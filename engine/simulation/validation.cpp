@@ -17,31 +17,6 @@ void check_optional(const char* field, const std::optional<float>& value, Checks
   if (value) checks.number(field, *value, *value > 0, k_positive);
 }
 
-void check(const Plane& plane, Checks& checks) {
-  checks.vector("collider.plane.normal", plane.normal);
-  if (!(plane.normal.norm() > 0))
-    checks.problem("collider.plane.normal", "(0 0 0) is not allowed: a vector other than 0");
-  checks.number("collider.plane.offset", plane.offset, true, "a finite number");
-}
-
-void check(const Sphere& sphere, Checks& checks) {
-  checks.vector("collider.sphere.center", sphere.center);
-  checks.number("collider.sphere.radius", sphere.radius, sphere.radius > 0, k_positive);
-}
-
-void check(const Box& box, Checks& checks) {
-  checks.vector("collider.box.min", box.min);
-  checks.vector("collider.box.max", box.max);
-  if (!(box.min.array() < box.max.array()).all())
-    checks.problem("collider.box", "min must be below max in every component");
-}
-
-void check(const Union& shapes, Checks& checks) {
-  if (shapes.parts.empty()) checks.problem("collider.union", "has no parts: at least one is needed");
-  for (const Primitive& part : shapes.parts)
-    std::visit([&](const auto& shape) { check(shape, checks); }, part);
-}
-
 }  // namespace
 
 void check(const SolverConfig& config, Checks& checks) {
@@ -130,14 +105,6 @@ void check_stiffness(const SolverConfig& config, const Material& material, Check
        << (factor == 1 ? "" : "time_step_factor^2 ") << "solver.time_step/" << k_most << " = " << least
        << ", as a stiffer body would gain energy; lower solver.time_step (now " << *config.time_step << ")";
   checks.problem("material.elastic_time_step", text.str());
-}
-
-void check(const Collider& collider, Checks& checks) {
-  std::visit([&](const auto& shape) { check(shape, checks); }, collider.shape);
-  checks.vector("collider.velocity", collider.velocity);
-  checks.number("collider.restitution", collider.restitution,
-                collider.restitution >= 0 && collider.restitution <= 1, k_share);
-  checks.number("collider.friction", collider.friction, collider.friction >= 0, k_not_negative);
 }
 
 void check(const Body& body, Checks& checks) {

@@ -2,7 +2,6 @@
 
 #include "core/checks.h"
 #include "mallow/body.h"
-#include "mallow/collider.h"
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 
@@ -20,7 +19,6 @@ void check(const Material& material, Checks& checks);
 inline constexpr float k_stiffest = 2.5f;
 /// Whether steps of this solver are short enough for the material's springs.
 void check_stiffness(const SolverConfig& config, const Material& material, Checks& checks);
-void check(const Collider& collider, Checks& checks);
 void check(const Body& body, Checks& checks);
 
 }  // namespace mallow

@@ -83,6 +83,20 @@ const SolverConfig& Simulation::config() const {
 const std::vector<Collider>& Simulation::colliders() const {
   return state_->colliders;
 }
+const Collider& Simulation::collider(ColliderId id) const {
+  const auto index = static_cast<std::size_t>(id);
+  if (index >= state_->colliders.size())
+    throw ConfigError("collider", "there is no collider " + std::to_string(index));
+  return state_->colliders[index];
+}
+ColliderLoad Simulation::load(ColliderId id) const {
+  if (!collider(id).measure_load)
+    throw ConfigError("collider.measure_load", "is false: the loads of collider " +
+                                                   std::to_string(static_cast<std::size_t>(id)) +
+                                                   " are not measured");
+  const auto index = static_cast<std::size_t>(id);
+  return index < state_->moving.loads.size() ? state_->moving.loads[index] : ColliderLoad{};
+}
 
 std::span<const ParticleId> Simulation::ids() const {
   return state_->store.id.span();

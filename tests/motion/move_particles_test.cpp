@@ -3,8 +3,8 @@
 #include <cmath>
 #include <random>
 
+#include "colliders/one_row.h"
 #include "levels.h"
-#include "motion/contact.h"
 #include "motion/motion.h"
 
 namespace mallow {
@@ -82,22 +82,23 @@ struct World {
                          .gravity = {0.1f, 0, -0.6f},
                          .least_bounce = 0.16f},
              .pin_velocities = pin_velocities,
-             .measure_external = true};
+             .measure_external = true,
+             .mass = 1};
   }
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  void collide(std::vector<Collider> with) {
-    colliders = std::move(with);
-    input.colliders = colliders;
-  }
+  void collide(std::vector<Collider> with) { colliders = std::move(with); }
   void pin_some() {
     store.pin.resize(k_rows);
     for (std::size_t i = 0; i < k_rows; i += 7) store.pin[i] = static_cast<std::uint16_t>(1 + i % 2);
   }
   MotionSums move(int threads = 2, InstructionLevel level = best_instruction_level()) {
+    std::vector<PlacedCollider> placed;
+    place_colliders(colliders, {0, 0, 0}, input.time_step, level, placed);
     MovingBodies bodies;
     bodies.inputs = {input};
+    bodies.inputs[0].colliders = placed;
     move_particles(threads, level, store, bodies);
     return bodies.sums[0];
   }
@@ -122,12 +123,12 @@ struct World {
     if (input.pull) v += input.elastic_factor * pull.get(i - k_begin);
     const Vec3 free = v;
     const Vec3 before = store.velocity.get(i);
-    for (const Collider& collider : colliders) v = resolve_contact(collider, input.contact, x, before, v);
+    for (const Collider& collider : colliders) v = resolve_one_row(collider, input.contact, x, before, v);
     return {x + input.time_step * v, v,
             static_cast<double>((external + (v - free) / input.time_step).norm())};
   }
-  /// That a step is what the literal one is, to the bit, at every level and for every number of threads; and
-  /// how many particles were touched.
+  /// That a step is what the literal one is, row by row, to the bit, at every level and for every number of
+  /// threads; and how many particles were touched.
   std::size_t expect_literal() {
     double external = 0;
     std::size_t unpinned = 0, touched = 0;
@@ -236,7 +237,7 @@ TEST(move_particles, equals_the_recurrence_far_from_the_origin) {
   EXPECT_GT(world.expect_literal(), 10u);
 }
 
-// Centres, and gaps whose squares a float does not hold, are resolved one by one.
+// Centres, and gaps whose squares a float does not hold.
 TEST(move_particles, equals_the_recurrence_at_distances_out_of_range) {
   const Vec3 corner(1, 2, 3);
   World world;

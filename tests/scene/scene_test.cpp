@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <sstream>
@@ -67,7 +68,10 @@ material = "jelly \"red\""
 implicit = { shape = "moai", count = 500 }
 [[collider]]
 plane = { normal = [0, 1, 0], offset = -3 }
+translate = [1, 2, 3]
+rotate = [0, 0, 90]
 velocity = [0, 0, 0.5]
+angular_velocity = [0, 0.25, 0]
 restitution = 0.25
 friction = 0.125
 visible = false
@@ -185,7 +189,11 @@ TEST_F(every_key, reaches_its_member) {
 
   ASSERT_EQ(read.colliders.size(), 4u);
   EXPECT_EQ(std::get<Plane>(read.colliders[0].shape).offset, -3.0f);
+  EXPECT_EQ(read.colliders[0].pose.translation, Eigen::Vector3d(1, 2, 3));
+  EXPECT_NEAR(read.colliders[0].pose.rotation.z(), std::sqrt(0.5), 1e-7);
   EXPECT_EQ(read.colliders[0].velocity, Vec3(0, 0, 0.5f));
+  EXPECT_EQ(read.colliders[0].angular_velocity, Vec3(0, 0.25f, 0));
+  EXPECT_EQ(read.colliders[1].pose.rotation, Eigen::Vector4d(0, 0, 0, 1));
   EXPECT_EQ(read.colliders[0].restitution, 0.25f);
   EXPECT_EQ(read.colliders[0].friction, 0.125f);
   EXPECT_FALSE(read.colliders[0].visible);

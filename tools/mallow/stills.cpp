@@ -1,7 +1,8 @@
 #include "mallow/stills.h"
 
 #include <algorithm>
-#include <variant>
+#include <limits>
+#include <type_traits>
 
 #include "mallow/group_appearances.h"
 
@@ -11,27 +12,6 @@ namespace {
 void extend(Aabb& box, const Aabb& other) {
   box.min = box.min.cwiseMin(other.min);
   box.max = box.max.cwiseMax(other.max);
-}
-
-void move(Primitive& shape, const Vec3& by) {
-  if (auto* plane = std::get_if<Plane>(&shape)) plane->offset += plane->normal.dot(by);
-  if (auto* sphere = std::get_if<Sphere>(&shape)) sphere->center += by;
-  if (auto* box = std::get_if<Box>(&shape)) {
-    box->min += by;
-    box->max += by;
-  }
-}
-
-std::vector<Primitive> primitives(const Collider& collider) {
-  return std::visit(
-      [](const auto& shape) -> std::vector<Primitive> {
-        if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Union>) {
-          return shape.parts;
-        } else {
-          return {Primitive(shape)};
-        }
-      },
-      collider.shape);
 }
 
 /// The colliders of a scene that are seen.
@@ -45,11 +25,7 @@ std::vector<Collider> visible_colliders(const Scene& scene) {
 /// The same where they are at a time.
 std::vector<Collider> colliders_at(const Scene& scene, double time) {
   std::vector<Collider> colliders = visible_colliders(scene);
-  for (Collider& collider : colliders) {
-    std::vector<Primitive> parts = primitives(collider);
-    for (Primitive& part : parts) move(part, static_cast<float>(time) * collider.velocity);
-    collider.shape = Union{std::move(parts)};
-  }
+  for (Collider& collider : colliders) collider.pose = pose_after(collider, time);
   return colliders;
 }
 
@@ -71,33 +47,31 @@ Aabb view_bounds(const Scene& scene, const ParticleFrame& first) {
   const Vec3 middle = 0.5f * (box.min + box.max);
   const float side = (box.max - box.min).maxCoeff();
 
-  std::vector<Primitive> shapes;
-  for (const Collider& collider : visible_colliders(scene)) {
-    for (const Primitive& part : primitives(collider)) shapes.push_back(part);
-  }
+  const std::vector<Collider> colliders = visible_colliders(scene);
   float lowest = -std::numeric_limits<float>::infinity();
-  for (const Primitive& shape : shapes) {
-    const auto* plane = std::get_if<Plane>(&shape);
-    if (!plane || !is_ground(*plane)) continue;
-    const Vec3 foot(middle.x(), middle.y(), ground_height(*plane, middle));
+  const auto add_ground = [&](const Plane& plane) {
+    if (!is_ground(plane)) return;
+    const Vec3 foot(middle.x(), middle.y(), ground_height(plane, middle));
     // What falls spreads: to about twice its width.
     const Vec3 spread(side, side, 0.0f);
     extend(box, {foot - spread, foot + spread});
     lowest = std::max(lowest, std::min(foot.z(), box.min.z()));
-  }
+  };
+  for (const Collider& collider : colliders)
+    visit_parts(collider, [&]<class Shape>(const Shape& shape) {
+      if constexpr (std::is_same_v<Shape, Plane>) add_ground(placed(shape, collider.pose));
+    });
 
   // A collider far larger than what moves is a part of the room and does not have to be seen whole.
   const Vec3 reach = Vec3::Constant(0.5f * (box.max - box.min).maxCoeff());
   const Aabb near{box.min - reach, box.max + reach};
   const auto clamped = [&](const Vec3& x) -> Vec3 { return x.cwiseMax(near.min).cwiseMin(near.max); };
-  for (const Primitive& shape : shapes) {
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-      const Vec3 radius = Vec3::Constant(sphere->radius);
-      extend(box, {clamped(sphere->center - radius), clamped(sphere->center + radius)});
-    } else if (const auto* solid = std::get_if<Box>(&shape)) {
-      extend(box, {clamped(solid->min), clamped(solid->max)});
-    }
-  }
+  for (const Collider& collider : colliders)
+    visit_parts(collider, [&]<class Shape>(const Shape& shape) {
+      if constexpr (std::is_same_v<Shape, Plane>) return;  // endless
+      const Aabb whole = placed(bounds(shape), collider.pose);
+      extend(box, {clamped(whole.min), clamped(whole.max)});
+    });
   box.min.z() = std::max(box.min.z(), lowest);  // what is below the ground is not seen
   return box;
 }

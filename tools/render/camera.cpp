@@ -29,14 +29,12 @@ struct Sides {
 
 // How many planes are looked through from `side`, far away.
 int planes_between(const Vec3& side, const Collider& collider) {
-  if (const Plane* plane = std::get_if<Plane>(&collider.shape)) return plane->normal.dot(side) < 0 ? 1 : 0;
-  const Union* shapes = std::get_if<Union>(&collider.shape);
-  if (shapes == nullptr) return 0;
-  return static_cast<int>(
-      std::count_if(shapes->parts.begin(), shapes->parts.end(), [&](const Primitive& part) {
-        const Plane* plane = std::get_if<Plane>(&part);
-        return plane != nullptr && plane->normal.dot(side) < 0;
-      }));
+  int count = 0;
+  visit_parts(collider, [&]<class Shape>(const Shape& shape) {
+    if constexpr (std::is_same_v<Shape, Plane>)
+      count += placed(shape, collider.pose).normal.dot(side) < 0 ? 1 : 0;
+  });
+  return count;
 }
 
 // The direction from the scene to the eye: three quarters from the front, +x, unless another side sees more

@@ -3,10 +3,9 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <variant>
 #include <vector>
 
-#include "mallow/collider.h"
+#include "colliders/shapes.h"
 #include "render/renderer.h"
 
 namespace mallow::render {
@@ -18,11 +17,12 @@ struct Ray {
 };
 inline constexpr float k_far = std::numeric_limits<float>::infinity();
 
-/// A plane that is not the floor: a board of finite size in it.
+/// What is shown of a plane that is not the floor.
 struct Board {
-  Vec3 center, normal, u, v;
+  Vec3 center, u, v;
   float half_side;
-  bool seen;  ///< the eye is on its free side; otherwise it is no more than a veil, to the light too
+  /// From a point of the plane to the nearest edge; below 0 beside the board.
+  float edge_distance(const Vec3& x) const;
 };
 
 /// The colliders as a picture shows them. One rule makes kept-in shapes, walls and ramps all look right: a
@@ -54,11 +54,18 @@ class Obstacles {
   Veil veil(const Ray& ray, float t_max) const;
 
  private:
-  using Shape = std::variant<Sphere, Box, Board>;
-  void add(const Plane& plane, const Camera& camera);
-  void add(const Sphere& sphere, const Camera&) { shapes_.push_back(sphere); }
-  void add(const Box& box, const Camera&) { shapes_.push_back(box); }
-  void add(const Union& shapes, const Camera& camera);
+  struct Shape {
+    Primitive shape;  ///< a plane is given in the world
+    Eigen::Matrix3f rotation;
+    Vec3 translation;
+    bool is_solid;  ///< to what comes from the free side; the others are looked through entirely
+    bool is_shell;  ///< looked through where it is seen from behind
+    std::optional<Board> board;
+  };
+  template <class Solid>
+  void add(const Solid& shape, const Pose& pose, const Camera& camera);
+  void add(const Plane& plane, const Pose& pose, const Camera& camera);
+  static Crossings cross(const Shape& shape, const Ray& ray);
   Veil look(const Shape& shape, const Vec3& position, float cosine) const;
   std::vector<Shape> shapes_;
   std::optional<float> floor_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -8,7 +9,7 @@
 
 namespace mallow {
 
-/// The half space normal · x >= offset is free. The normal need not have unit length, but must not be zero.
+/// The half space normal · x >= offset is free. The length of the normal is of no matter, in [1e-15, 1e15].
 struct Plane {
   Vec3 normal{0, 0, 1};
   float offset = 0.0f;
@@ -21,14 +22,15 @@ struct Sphere {
   bool inside = false;  ///< true: particles are kept in
 };
 
-/// Particles are kept out of the axis-aligned box, or in it. Valid where min < max in every component.
+/// Particles are kept out of the box along the axes of the collider's frame, or in it. Valid where min < max
+/// in every component.
 struct Box {
   Vec3 min{0, 0, 0};
   Vec3 max{1, 1, 1};
   bool inside = false;  ///< true: particles are kept in
 };
 
-/// A part of a Union.
+/// Every shape but the union of them. engine/colliders/shapes.h says what a new one needs.
 using Primitive = std::variant<Plane, Sphere, Box>;
 
 /// Several primitives that act as one obstacle: the nearest one counts. Not empty.
@@ -36,13 +38,47 @@ struct Union {
   std::vector<Primitive> parts;
 };
 
-/// An obstacle. Contact is model section 5: no penetration, restitution, Coulomb friction.
+/// How a frame stands in the world: its point p is at translation + rotation p. In double, as a step may move
+/// it by less than single precision shows.
+struct Pose {
+  Eigen::Vector3d translation{0, 0, 0};  ///< [m]
+  /// Quaternion x, y, z, w, as Eigen::Quaterniond::coeffs() has it; its length is of no matter, but not 0.
+  Eigen::Vector4d rotation{0, 0, 0, 1};
+};
+
+/// An obstacle: a shape in a frame of its own, how the frame stands and how it moves. Contact is model 2,
+/// section 4 A: no penetration, restitution, Coulomb friction.
 struct Collider {
   std::variant<Plane, Sphere, Box, Union> shape = Plane{};
-  Vec3 velocity{0, 0, 0};    ///< [m/s]; the obstacle moves with it
-  float restitution = 0.0f;  ///< e in [0, 1]
-  float friction = 0.0f;     ///< μ_f >= 0
+  Pose pose = {};
+  Vec3 velocity{0, 0, 0};          ///< of pose.translation [m/s]
+  Vec3 angular_velocity{0, 0, 0};  ///< about pose.translation, along the axes of the world [rad/s]
+  float restitution = 0.0f;        ///< e in [0, 1]
+  float friction = 0.0f;           ///< μ_f >= 0
+  bool measure_load = false;       ///< sum up what particles do to it, see Simulation::load()
 };
+
+/// What particles gave a collider in one step.
+struct ColliderLoad {
+  Eigen::Vector3d impulse{0, 0, 0};  ///< momentum that they lost to it [N s]
+  Eigen::Vector3d torque{0, 0, 0};   ///< moment of that about pose.translation [N m s]
+};
+
+/// The pose after some seconds of its velocities.
+Pose pose_after(const Collider& collider, double seconds);
+
+/// Calls visit(part) with each primitive of a collider as what it is.
+template <class Visit>
+void visit_parts(const Collider& collider, const Visit& visit) {
+  if (const Union* shapes = std::get_if<Union>(&collider.shape))
+    for (const Primitive& part : shapes->parts) std::visit(visit, part);
+  else
+    std::visit(
+        [&](const auto& shape) {
+          if constexpr (!std::is_same_v<decltype(shape), const Union&>) visit(shape);
+        },
+        collider.shape);
+}
 
 /// Signed distance to a shape [m], positive where particles may be, and its gradient (unit length).
 /// At a point where the distance has no gradient (a sphere's centre) the normal is one of the possible ones.
@@ -50,7 +86,7 @@ struct SurfacePoint {
   float distance;
   Vec3 normal;
 };
-/// Where a shape is seen from x.
+/// x in the frame of the shape.
 MALLOW_EXPORT SurfacePoint nearest(const Plane& plane, const Vec3& x);
 /// @copydoc nearest(const Plane&, const Vec3&)
 MALLOW_EXPORT SurfacePoint nearest(const Sphere& sphere, const Vec3& x);
@@ -58,5 +94,19 @@ MALLOW_EXPORT SurfacePoint nearest(const Sphere& sphere, const Vec3& x);
 MALLOW_EXPORT SurfacePoint nearest(const Box& box, const Vec3& x);
 /// @copydoc nearest(const Plane&, const Vec3&)
 MALLOW_EXPORT SurfacePoint nearest(const Union& shapes, const Vec3& x);
+/// x in the world.
+MALLOW_EXPORT SurfacePoint nearest(const Collider& collider, const Vec3& x);
+
+/// The smallest box in the frame of the shape around all points of its surface; infinite where that is.
+MALLOW_EXPORT Aabb bounds(const Plane& plane);
+/// @copydoc bounds(const Plane&)
+MALLOW_EXPORT Aabb bounds(const Sphere& sphere);
+/// @copydoc bounds(const Plane&)
+MALLOW_EXPORT Aabb bounds(const Box& box);
+
+/// A plane of a frame, in the world, with a unit normal.
+MALLOW_EXPORT Plane placed(const Plane& plane, const Pose& pose);
+/// The smallest box along the axes of the world around one of a frame.
+MALLOW_EXPORT Aabb placed(const Aabb& box, const Pose& pose);
 
 }  // namespace mallow

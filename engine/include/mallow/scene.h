@@ -66,6 +66,9 @@ struct SceneBody {
 
 /// A collider of a scene.
 struct SceneCollider : Collider {
+  /// What scene files make of the pose: read_scene() sets both, print_scene() prints these.
+  Vec3 translate{0, 0, 0};  ///< [m]
+  Vec3 rotate{0, 0, 0};     ///< about x, then y, then z [degrees]
   bool visible = true;  ///< in pictures; it acts on particles in any case
 };
 

@@ -112,6 +112,8 @@ class MALLOW_EXPORT Simulation {
   void set_alpha(MaterialId material, const AlphaSchedule& alpha);
   /// The velocity of a collider from now on [m/s], finite.
   void set_velocity(ColliderId collider, const Vec3& velocity);
+  /// [m/s], and [rad/s] about its pose's translation.
+  void set_twist(ColliderId collider, const Vec3& velocity, const Vec3& angular_velocity);
   /// The velocity of the particles of a pin from now on [m/s], finite.
   void set_velocity(PinId pin, const Vec3& velocity);
 
@@ -142,7 +144,11 @@ class MALLOW_EXPORT Simulation {
   /// As given; from the first prepare() on with the time_step that is in force. What else was left out,
   /// info() tells.
   const SolverConfig& config() const;
-  const std::vector<Collider>& colliders() const;  ///< as they stand now
+  const std::vector<Collider>& colliders() const;  ///< as given, in the poses that they have now
+  const Collider& collider(ColliderId id) const;   ///< throws ConfigError where there is none
+  /// What particles gave a collider in the last step; zeros before the first. Its measure_load must be set:
+  /// else ConfigError. Summed in double, in an order that does not depend on the number of threads.
+  ColliderLoad load(ColliderId id) const;
 
   /// The particle of each row; sorting moves rows, never ids.
   std::span<const ParticleId> ids() const;

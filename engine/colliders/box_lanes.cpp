@@ -1,0 +1,76 @@
+// The outside of a box along the axes, or its inside. Numbers: least corner, greatest corner.
+#include "colliders/collider_lanes.h"
+
+namespace mallow::MALLOW_LEVEL {
+namespace {
+
+/// What of x is beyond a range, on either side.
+Lanes beyond(const Lanes& x, float low, float high) {
+  return larger(larger(low - x, x - high), Lanes{});
+}
+
+struct BoxLanes {
+  const float *min, *max;
+  bool inside;
+
+  explicit BoxLanes(const ShapeNumbers& n) : min(n.at), max(n.at + 3), inside(n.inside) {}
+
+  /// A box that keeps particles in is met as six planes, see box.cpp.
+  Meets meets() const { return Meets::on_the_way; }
+
+  Surface nearest(const LaneVec3& x) const {
+    const Lanes zero = {};
+    const LaneVec3 below = minus(constant(min), x), above = minus(x, constant(max));
+    const LaneVec3 outside = {larger(above.x, zero) - larger(below.x, zero),
+                              larger(above.y, zero) - larger(below.y, zero),
+                              larger(above.z, zero) - larger(below.z, zero)};
+    const Lanes length = norm(outside);
+    const LaneMask is_outside = length > k_no_length;
+    const Surface face = nearest_face(below, above);
+    const Surface s = {is_outside ? length : face.distance,
+                       select(is_outside, over(outside, length), face.normal)};
+    return inside ? Surface{-s.distance, opposite(s.normal)} : s;
+  }
+
+  /// Squares are compared, so that there is no root; "not farther" holds for what is not a number, too.
+  LaneMask is_near(const LaneVec3& x, const Lanes& reach) const {
+    const LaneVec3 outside = {beyond(x.x, min[0], max[0]), beyond(x.y, min[1], max[1]),
+                              beyond(x.z, min[2], max[2])};
+    return ~(squared(outside) > reach * reach);
+  }
+
+  static float least_distance(const ShapeNumbers& box, const float* min, const float* max) {
+    float square = 0;
+    for (int k = 0; k < 3; ++k) {
+      const float below = min[k] - box.at[3 + k], above = box.at[k] - max[k];
+      const float part = below > above ? below : above;
+      square += part > 0 ? part * part : 0.0f;
+    }
+    return __builtin_sqrtf(square);
+  }
+
+ private:
+  /// On or in the box the nearest face counts; z wins a tie.
+  static Surface nearest_face(const LaneVec3& below, const LaneVec3& above) {
+    const Lanes zero = {}, one = all_lanes(1.0f);
+    Surface face = {all_lanes(-__builtin_inff()), {zero, zero, one}};
+    const auto take_farther = [&](const Lanes& distance, const LaneVec3& normal) {
+      const LaneMask farther = distance > face.distance;
+      face = {farther ? distance : face.distance, select(farther, normal, face.normal)};
+    };
+    take_farther(above.z, {zero, zero, one});
+    take_farther(below.z, {-zero, -zero, -one});
+    take_farther(above.y, {zero, one, zero});
+    take_farther(below.y, {-zero, -one, -zero});
+    take_farther(above.x, {one, zero, zero});
+    take_farther(below.x, {-one, -zero, -zero});
+    return face;
+  }
+};
+
+}  // namespace
+
+extern const ColliderKernels box_kernels;
+const ColliderKernels box_kernels = kernels_of<BoxLanes>();
+
+}  // namespace mallow::MALLOW_LEVEL

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "core/checks.h"
+#include "mallow/collider.h"
+
+namespace mallow {
+
+/// Everything in a collider that is out of range.
+void check(const Collider& collider, Checks& checks);
+
+}  // namespace mallow

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "colliders/collider_kernels.h"
+#include "core/column.h"
+#include "mallow/collider.h"
+#include "mallow/instruction_level.h"
+
+namespace mallow {
+
+/// A collider as a step meets it.
+struct PlacedCollider {
+  struct Part {
+    ShapeNumbers numbers;
+    const ColliderKernels* kernels;
+  };
+  ContactSurface surface;
+  std::vector<Part> parts;
+  bool measures_load;
+};
+
+/// Colliders as they stand at the start of a step of `time_step` [s], relative to `origin`. Keeps the memory
+/// that `placed` has.
+void place_colliders(std::span<const Collider> colliders, const Vec3& origin, float time_step,
+                     InstructionLevel level, std::vector<PlacedCollider>& placed);
+
+/// Whether any measures what particles do to it.
+bool any_measures_load(std::span<const PlacedCollider> colliders);
+
+/// Rows [begin, end) of the store, at most k_block of them, that meet obstacles with new velocities.
+struct ContactBlock {
+  std::size_t begin, end;
+  const VectorColumn& position;
+  const VectorColumn& before;  ///< v at the start of the step
+  const std::uint16_t* pin;    ///< rows whose pin is not 0 meet nothing; null: all do
+  BlockBounds bounds;          ///< of the positions and of the velocities before contact
+};
+
+/// v of every row becomes what contact with each collider in order makes of it, and with the parts of one in
+/// order. Only rows within reach of a part are resolved, and only parts within reach of the block are looked
+/// at: a surface farther than contact_offset + Δt |v − u| leaves v alone, for |n| = 1. loads: where given,
+/// one a collider, to which what those that measure it got is added, for a mass of 1. [model 2, section 4 A]
+void resolve_contacts(const ContactBlock& block, std::span<const PlacedCollider> colliders,
+                      const ContactStep& step, VectorColumn& velocity, std::span<ColliderLoad> loads);
+
+}  // namespace mallow

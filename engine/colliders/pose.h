@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "mallow/collider.h"
+
+namespace mallow {
+
+/// R of a pose: from its frame to the world.
+Eigen::Matrix3d rotation_of(const Pose& pose);
+/// One that is turned about x, then y, then z by these degrees, and then moved.
+Pose pose_of(const Vec3& translation, const Vec3& degrees);
+/// Whether the frame does not stand along the axes of the world, or will not.
+bool turns(const Collider& collider);
+/// (exp(Δt [ω]) − 1)/Δt, which is [ω] as Δt goes to 0: with it a point of the collider moves in a step to
+/// where the turned collider has it. [1/s]
+Eigen::Matrix3d mean_spin(const Vec3& angular_velocity, double time_step);
+
+/// Poses at the end of a step.
+void move_colliders(double time_step, std::span<Collider> colliders);
+
+}  // namespace mallow

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <limits>
+#include <optional>
+
+#include "colliders/collider_kernels.h"
+#include "mallow/collider.h"
+#include "mallow/instruction_level.h"
+
+namespace mallow {
+
+/// A member of a shape, as scene files, checks and archives know it.
+struct ShapeMember {
+  enum class Values { any, finite, positive };  ///< any: a flag
+
+  const char* key;
+  const char* unit;  ///< empty for plain numbers and flags
+  const char* doc;
+  Values values = Values::finite;
+  bool required = false;  ///< in scene files
+};
+
+/// A member that does not go with the others.
+struct ShapeProblem {
+  const char* key;
+  const char* allowed;
+};
+
+/// A place where a line passes a surface, and the normal there, towards the free side.
+struct Crossing {
+  float t = std::numeric_limits<float>::infinity();
+  Vec3 normal{0, 0, 0};
+};
+/// A line passes a convex shape twice at most.
+using Crossings = std::array<Crossing, 2>;
+
+/// What a shape is to the rest of the engine, specialised in its own header. What it does to particles is in
+/// its kernels.
+template <class Shape>
+struct ShapeTraits;
+
+/// What a specialisation has to offer.
+template <class Shape>
+concept ColliderShape = requires(const Shape& shape, const Vec3& x, const Eigen::Vector3d& by) {
+  /// Its name in scene files and archives.
+  { ShapeTraits<Shape>::k_key } -> std::convertible_to<const char*>;
+  /// visit_members(shape, visit) calls visit(member, ShapeMember) with each; ranges, scene fields, archive
+  /// and messages follow from that.
+  /// What is wrong with members together that are right one by one.
+  { ShapeTraits<Shape>::problem(shape) } -> std::same_as<std::optional<ShapeProblem>>;
+  /// Whether particles are kept in.
+  { ShapeTraits<Shape>::keeps_in(shape) } -> std::same_as<bool>;
+  /// visit_met(shape, visit) calls visit(part) with each shape that a particle meets one after the other.
+  /// The shape `by` farther on, as its kernels read it; and them.
+  { ShapeTraits<Shape>::numbers(shape, by) } -> std::same_as<ShapeNumbers>;
+  { ShapeTraits<Shape>::kernels(InstructionLevel::baseline) } -> std::same_as<const ColliderKernels&>;
+  /// Where the line origin + t direction passes the surface; t may be below 0.
+  { ShapeTraits<Shape>::cross(shape, x, x) } -> std::same_as<Crossings>;
+  /// Of a point of the surface, from the nearest edge; infinite where there are none. Pictures show edges.
+  { ShapeTraits<Shape>::edge_distance(shape, x) } -> std::same_as<float>;
+  /// As mallow/collider.h has it.
+  { bounds(shape) } -> std::same_as<Aabb>;
+};
+
+}  // namespace mallow
