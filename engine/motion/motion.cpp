@@ -52,53 +52,88 @@ std::size_t first_bad_row(const ParticleStore& store, std::size_t begin, std::si
   return SIZE_MAX;
 }
 
-/// The particles [begin, end) of the store; only reads and writes their own rows.
-MotionSums move_block(const MotionInput& in, const ForcesInput& forces, InstructionLevel level,
-                      std::size_t begin, std::size_t end, ParticleStore& store,
-                      std::span<ColliderLoad> loads) {
-  const MotionKernels& kernels = MALLOW_SELECT(level, motion_kernels);
-  MotionSums sums{.unpinned = end - begin};
-  const BlockBounds bounds = kernels.blend(forces, begin, end, raw(store.next_velocity));
-  if (forces.pin) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!is_pinned(forces, i)) continue;
-      store.next_velocity.set(i, in.pin_velocities[forces.pin[i] - 1u]);
-      --sums.unpinned;
-    }
+/// The particles [begin, end) of the store, of one body; only reads and writes their own rows.
+class MovingBlock {
+ public:
+  MovingBlock(const MotionInput& in, InstructionLevel level, std::size_t begin, std::size_t end,
+              ParticleStore& store)
+      : in_(in),
+        forces_(forces(in, store)),
+        kernels_(MALLOW_SELECT(level, motion_kernels)),
+        begin_(begin),
+        end_(end),
+        store_(store) {}
+
+  /// Returns what it says of the rows, pins left out.
+  BlockBounds predict() {
+    const BlockBounds bounds = kernels_.blend(forces_, begin_, end_, raw(store_.next_velocity));
+    if (!forces_.pin) return bounds;
+    for (std::size_t i = begin_; i < end_; ++i)
+      if (is_pinned(forces_, i)) store_.next_velocity.set(i, in_.pin_velocities[forces_.pin[i] - 1u]);
+    return bounds;
   }
-  std::array<std::array<float, k_block>, 3> free;
-  if (in.measure_external)
-    for (std::size_t a = 0; a < 3; ++a)
-      std::copy_n(store.next_velocity.axis(a) + begin, end - begin, free[a].data());
-  if (!in.colliders.empty())
-    resolve_contacts({begin, end, store.position, store.velocity, forces.pin, bounds}, in.colliders,
-                     in.contact, store.next_velocity, loads);
-  const ConstVectors velocity = raw(std::as_const(store.next_velocity));
-  if (in.measure_external)
-    sums.external =
-        sum_external(forces, kernels, begin, end, {free[0].data(), free[1].data(), free[2].data()}, velocity);
-  if (!kernels.advance(forces, begin, end, velocity, raw(store.next_position)))
-    sums.bad_row = first_bad_row(store, begin, end);
-  return sums;
-}
+  BlockBounds bounds() const {
+    return kernels_.bounds(forces_, begin_, end_, raw(std::as_const(store_.next_velocity)));
+  }
+  void collide(const BlockBounds& bounds, std::span<ColliderLoad> loads) {
+    if (in_.colliders.empty()) return;
+    resolve_contacts({begin_, end_, store_.position, store_.velocity, forces_.pin, bounds}, in_.colliders,
+                     in_.contact, store_.next_velocity, loads);
+  }
+  /// predicted: v' before contact, from the block's first row on.
+  void measure(ConstVectors predicted, MotionSums& sums) const {
+    sums.unpinned = end_ - begin_;
+    if (forces_.pin)
+      for (std::size_t i = begin_; i < end_; ++i) sums.unpinned -= is_pinned(forces_, i);
+    if (in_.measure_external)
+      sums.external = sum_external(forces_, kernels_, begin_, end_, predicted,
+                                   raw(std::as_const(store_.next_velocity)));
+  }
+  void advance(MotionSums& sums) {
+    if (!kernels_.advance(forces_, begin_, end_, raw(std::as_const(store_.next_velocity)),
+                          raw(store_.next_position)))
+      sums.bad_row = first_bad_row(store_, begin_, end_);
+  }
 
-}  // namespace
+  /// The phases one after the other. predicted: where v' before contact goes in one loop and comes from in the
+  /// next; not used where one loop does both.
+  void move(const MotionPhases& phases, VectorColumn& predicted, std::span<ColliderLoad> loads,
+            MotionSums& sums) {
+    BlockBounds bounds{};
+    if (phases.predict) {
+      bounds = predict();
+      sums = {};
+    }
+    std::array<std::array<float, k_block>, 3> here;
+    for (std::size_t a = 0; a < 3 && phases.predict && in_.measure_external; ++a)
+      std::copy_n(store_.next_velocity.axis(a) + begin_, end_ - begin_,
+                  phases.collide ? here[a].data() : predicted.axis(a) + begin_);
+    if (phases.collide) {
+      collide(phases.predict ? bounds : this->bounds(), loads);
+      measure(phases.predict ? ConstVectors{here[0].data(), here[1].data(), here[2].data()}
+                             : from(std::as_const(predicted), begin_),
+              sums);
+    }
+    if (phases.advance) advance(sums);
+  }
 
-void move_particles(const Threads& threads, InstructionLevel level, ParticleStore& store,
-                    MovingBodies& bodies) {
-  bodies.blocks.clear();
-  for (const MotionInput& in : bodies.inputs) bodies.blocks.add(in.end - in.begin);
-  const std::size_t blocks = bodies.blocks.blocks.size(), colliders = bodies.loads.size();
-  bodies.partial.resize(blocks);
-  bodies.partial_loads.assign(blocks * colliders, {});
-  parallel_for(threads, bodies.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
-    const MotionInput& in = bodies.inputs[block.range];
-    const auto loads = std::span(bodies.partial_loads).subspan(number * colliders, colliders);
-    bodies.partial[number] =
-        move_block(in, forces(in, store), level, in.begin + block.begin, in.begin + block.end, store, loads);
-  });
+ private:
+  static ConstVectors from(const VectorColumn& column, std::size_t row) {
+    return {column.x() + row, column.y() + row, column.z() + row};
+  }
+
+  const MotionInput& in_;
+  const ForcesInput forces_;
+  const MotionKernels& kernels_;
+  const std::size_t begin_, end_;
+  ParticleStore& store_;
+};
+
+/// What bodies and colliders got, block by block.
+void add_up(MovingBodies& bodies) {
+  const std::size_t colliders = bodies.loads.size();
   bodies.sums.assign(bodies.inputs.size(), {});
-  for (std::size_t b = 0; b < blocks; ++b) {
+  for (std::size_t b = 0; b < bodies.partial.size(); ++b) {
     const std::size_t body = bodies.blocks.blocks[b].range;
     MotionSums& sums = bodies.sums[body];
     sums.external += bodies.partial[b].external;
@@ -110,6 +145,27 @@ void move_particles(const Threads& threads, InstructionLevel level, ParticleStor
       bodies.loads[c].torque += mass * bodies.partial_loads[b * colliders + c].torque;
     }
   }
+}
+
+}  // namespace
+
+void move_particles(const MotionPhases& phases, const Threads& threads, InstructionLevel level,
+                    ParticleStore& store, MovingBodies& bodies) {
+  const std::size_t colliders = bodies.loads.size();
+  if (phases.predict) {
+    bodies.blocks.clear();
+    for (const MotionInput& in : bodies.inputs) bodies.blocks.add(in.end - in.begin);
+    bodies.partial.resize(bodies.blocks.blocks.size());
+    bodies.partial_loads.assign(bodies.partial.size() * colliders, {});
+    if (!phases.collide) bodies.predicted.resize_unset(store.size());
+  }
+  parallel_for(threads, bodies.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
+    const MotionInput& in = bodies.inputs[block.range];
+    MovingBlock(in, level, in.begin + block.begin, in.begin + block.end, store)
+        .move(phases, bodies.predicted,
+              std::span(bodies.partial_loads).subspan(number * colliders, colliders), bodies.partial[number]);
+  });
+  if (phases.advance) add_up(bodies);
 }
 
 }  // namespace mallow

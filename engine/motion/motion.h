@@ -37,6 +37,13 @@ struct MotionSums {
   std::size_t bad_row = SIZE_MAX;  ///< first row whose new velocity or position is not finite
 };
 
+/// What of the motion a loop over blocks does, in this order. Phases that nothing stands between go in one loop.
+struct MotionPhases {
+  bool predict = false;  ///< all accelerations but contact -> v', the velocities of pins
+  bool collide = false;  ///< contact with colliders -> v', loads, |a_ext|
+  bool advance = false;  ///< v' -> x'
+};
+
 /// Bodies that move together, and what is known of them afterwards.
 struct MovingBodies {
   std::vector<MotionInput> inputs;
@@ -48,10 +55,12 @@ struct MovingBodies {
   RangeBlocks blocks;
   std::vector<MotionSums> partial;
   std::vector<ColliderLoad> partial_loads;
+  VectorColumn predicted;  ///< v' before contact, where one loop predicts and another collides
 };
 
-/// Blend, contact, positions: v' and x' into the store's next columns. [model 4, 5; TK eq. 10, 11, 13]
-void move_particles(const Threads& threads, InstructionLevel level, ParticleStore& store,
-                    MovingBodies& bodies);
+/// v' and x' into the store's next columns. Each phase is asked for once, in their order.
+/// [model 4, 5; TK eq. 10, 11, 13]
+void move_particles(const MotionPhases& phases, const Threads& threads, InstructionLevel level,
+                    ParticleStore& store, MovingBodies& bodies);
 
 }  // namespace mallow

@@ -35,11 +35,27 @@ LaneVec3 gravity(const ForcesInput& in) {
   return {all_lanes(in.gravity[0]), all_lanes(in.gravity[1]), all_lanes(in.gravity[2])};
 }
 
-BlockBounds blend(const ForcesInput& in, std::size_t begin, std::size_t end, Vectors velocity) noexcept {
-  constexpr float k_infinity = __builtin_inff();
+/// What rows lie in, and how fast they are.
+struct Bounds {
+  static constexpr float k_infinity = __builtin_inff();
   LaneVec3 min = {all_lanes(k_infinity), all_lanes(k_infinity), all_lanes(k_infinity)};
   LaneVec3 max = {all_lanes(-k_infinity), all_lanes(-k_infinity), all_lanes(-k_infinity)};
   Lanes fastest = {};
+
+  void add(const LaneVec3& x, const LaneVec3& v) {
+    min = {smaller(min.x, x.x), smaller(min.y, x.y), smaller(min.z, x.z)};
+    max = {larger(max.x, x.x), larger(max.y, x.y), larger(max.z, x.z)};
+    fastest = larger(fastest, squared(v));
+  }
+  BlockBounds of_block() const {
+    return {{smallest(min.x), smallest(min.y), smallest(min.z)},
+            {largest(max.x), largest(max.y), largest(max.z)},
+            largest(fastest)};
+  }
+};
+
+BlockBounds blend(const ForcesInput& in, std::size_t begin, std::size_t end, Vectors velocity) noexcept {
+  Bounds bounds;
   for_rows(begin, end, [&](auto rows) {
     LaneVec3 v = get(rows, in.velocity);
     add(all_lanes(in.time_step), external_acceleration(in, rows, gravity(in)), v);
@@ -52,14 +68,16 @@ BlockBounds blend(const ForcesInput& in, std::size_t begin, std::size_t end, Vec
     rows.put(v.x, velocity.x);
     rows.put(v.y, velocity.y);
     rows.put(v.z, velocity.z);
-    const LaneVec3 x = get(rows, in.position);
-    min = {smaller(min.x, x.x), smaller(min.y, x.y), smaller(min.z, x.z)};
-    max = {larger(max.x, x.x), larger(max.y, x.y), larger(max.z, x.z)};
-    fastest = larger(fastest, squared(v));
+    bounds.add(get(rows, in.position), v);
   });
-  return {{smallest(min.x), smallest(min.y), smallest(min.z)},
-          {largest(max.x), largest(max.y), largest(max.z)},
-          largest(fastest)};
+  return bounds.of_block();
+}
+
+BlockBounds bounds(const ForcesInput& in, std::size_t begin, std::size_t end,
+                   ConstVectors velocity) noexcept {
+  Bounds bounds;
+  for_rows(begin, end, [&](auto rows) { bounds.add(get(rows, in.position), get(rows, velocity)); });
+  return bounds.of_block();
 }
 
 bool advance(const ForcesInput& in, std::size_t begin, std::size_t end, ConstVectors velocity,
@@ -118,6 +136,6 @@ float fastest(const ForcesInput& in, std::size_t begin, std::size_t end) noexcep
 }  // namespace
 
 extern const MotionKernels motion_kernels;
-const MotionKernels motion_kernels = {blend, advance, external, fastest};
+const MotionKernels motion_kernels = {blend, bounds, advance, external, fastest};
 
 }  // namespace mallow::MALLOW_LEVEL

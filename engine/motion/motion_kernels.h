@@ -33,6 +33,9 @@ struct ForcesInput {
 struct MotionKernels {
   /// v' before contact of free particles and of pinned ones alike, and what it says of the rows.
   BlockBounds (*blend)(const ForcesInput&, std::size_t begin, std::size_t end, Vectors velocity) noexcept;
+  /// What blend says of rows whose velocities have changed since.
+  BlockBounds (*bounds)(const ForcesInput&, std::size_t begin, std::size_t end,
+                        ConstVectors velocity) noexcept;
   /// x' = x + Δt v'. Returns whether all that is new is finite.
   bool (*advance)(const ForcesInput&, std::size_t begin, std::size_t end, ConstVectors velocity,
                   Vectors position) noexcept;

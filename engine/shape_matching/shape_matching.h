@@ -55,6 +55,10 @@ struct ShapeMatching {
   std::size_t first_row(std::size_t region) const {
     return region_stride == 1 ? region : regions.entries[regions.begin[region]] % regions.rows;
   }
+  /// A region of particle i: its own, or with a stride above 1 the first that its list names.
+  std::size_t first_region(std::size_t i) const {
+    return region_stride == 1 ? i : memberships.entries[memberships.begin[i]] % memberships.rows;
+  }
   const TableLists& by_particle() const { return region_stride == 1 ? regions : memberships; }
   std::size_t bytes() const;
 };

@@ -291,9 +291,7 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
   };
 }
 
-}  // namespace
-
-void move_bodies(Simulation::State& state, float time_step) {
+void plan_motion(Simulation::State& state, float time_step) {
   const double weight = external_weight(state, time_step);
   // Velocities go from the middle of the last step to the middle of this one: with the whole of this one in
   // its place, steps that a limit varies feed a stiff body. The two are the same where steps are equal.
@@ -306,7 +304,9 @@ void move_bodies(Simulation::State& state, float time_step) {
     body.step_weight = body.keeps_reference() ? weight : 0.0;
     state.moving.inputs.push_back(motion_of(state, body, time_step, pull_time));
   }
-  move_particles(state.threads, state.level, state.store, state.moving);
+}
+
+void judge_motion(Simulation::State& state) {
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     const MotionSums& sums = state.moving.sums[b];
     if (sums.bad_row != SIZE_MAX)
@@ -314,6 +314,14 @@ void move_bodies(Simulation::State& state, float time_step) {
     state.bodies[b].step_external =
         sums.unpinned > 0 ? sums.external / static_cast<double>(sums.unpinned) : 0.0;
   }
+}
+
+}  // namespace
+
+void move_bodies(Simulation::State& state, float time_step, const MotionPhases& phases) {
+  if (phases.predict) plan_motion(state, time_step);
+  move_particles(phases, state.threads, state.level, state.store, state.moving);
+  if (phases.advance) judge_motion(state);
 }
 
 void finish_step(Simulation::State& state, const ChosenStep& step) {

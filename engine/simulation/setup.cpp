@@ -46,14 +46,6 @@ bool merge(const BodyState& a, const BodyState& b) {
          std::abs(a.spacing - b.spacing) <= k_same_spacing * a.spacing;
 }
 
-/// Why an id names no particle.
-std::string why_unknown(const ParticleStore& store, ParticleId id) {
-  if (slot_of(id) < store.slots.size() && !store.slots.generation.empty())
-    return "particle " + std::to_string(id) + " was removed";
-  return "there is no particle " + std::to_string(id) + "; ids are 0 to " +
-         std::to_string(static_cast<std::int64_t>(store.slots.size()) - 1);
-}
-
 }  // namespace
 
 void describe_bodies(Simulation::State& state) {
@@ -84,6 +76,13 @@ void describe_bodies(Simulation::State& state) {
     sph.bodies.push_back({body.end, body.sph_group});
   }
   sph.grid.spacing = static_cast<float>(std::cbrt(volume / static_cast<double>(state.store.size())));
+}
+
+std::string why_unknown(const ParticleStore& store, ParticleId id) {
+  if (slot_of(id) < store.slots.size() && !store.slots.generation.empty())
+    return "particle " + std::to_string(id) + " was removed";
+  return "there is no particle " + std::to_string(id) + "; ids are 0 to " +
+         std::to_string(static_cast<std::int64_t>(store.slots.size()) - 1);
 }
 
 const BodyState& Simulation::State::body(BodyId id) const {

@@ -44,8 +44,9 @@ StepReport Simulation::step_towards(double end) {
   compute_goals(s.threads, s.level, s.matched);  // R_j -> g − x       [TK eq. 7]
   timer.lap(Phase::goals);
 
-  move_bodies(s, step.time_step);  // a, g − x -> v', x'           [TK eq. 10, 11, 13]
-  finish_step(s, step);            // v', x' -> v, x; c ← c + 1
+  // a, g − x -> v', contact with colliders, v' -> x': one loop, as nothing stands between them. [TK eq. 10 to 13]
+  move_bodies(s, step.time_step, {.predict = true, .collide = true, .advance = true});
+  finish_step(s, step);  // v', x' -> v, x; c ← c + 1
   timer.lap(Phase::motion);
   return report;
 }

@@ -135,6 +135,9 @@ struct Simulation::State {
   const VectorColumn* user() const { return force ? &user_acceleration : nullptr; }
 };
 
+/// Why an id names no particle.
+std::string why_unknown(const ParticleStore& store, ParticleId id);
+
 // The phases of step(), in its order. Each says what it reads -> what it writes.
 
 /// time -> alpha of every material, and k where that follows it.
@@ -155,9 +158,9 @@ struct ChosenStep {
 /// velocities, accelerations, time left until `end` -> Δt, with V in the report. [TK eq. 12, model 3] Throws
 /// StepError.
 ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& report);
-/// everything -> next positions and velocities, mean |a_ext|. [TK eq. 10, 11, 13, model 4, 5] Throws
-/// StepError.
-void move_bodies(Simulation::State& state, float time_step);
+/// everything -> next positions and velocities, mean |a_ext|; one loop does what is asked for, each phase once
+/// in a step. [TK eq. 10, 11, 13, model 4, 5] Throws StepError.
+void move_bodies(Simulation::State& state, float time_step, const MotionPhases& phases);
 /// next positions and velocities become the present ones; time, step and colliders move on.
 void finish_step(Simulation::State& state, const ChosenStep& step);
 

@@ -119,6 +119,39 @@ MaterialId Simulation::material(BodyId id) const {
   return MaterialId{state_->body(id).material->number};
 }
 
+std::size_t Simulation::row(ParticleId id) const {
+  const ParticleStore& store = state_->store;
+  if (const std::optional<std::size_t> row = store.slots.find(id)) return *row;
+  throw ConfigError("particle", why_unknown(store, id));
+}
+
+namespace {
+
+/// The body of a row, with a shape to tell of.
+const BodyState& shaped(const Simulation::State& s, std::size_t row) {
+  const BodyState& body = s.body_of(row);
+  if (!body.shape.built)
+    throw ConfigError("particle", "is of body '" + body.name +
+                                      "', which has no reference shape now: its alpha is 1, or prepare() is due");
+  return body;
+}
+
+}  // namespace
+
+Vec3 Simulation::rest_position(ParticleId id) const {
+  const std::size_t at = row(id);
+  const BodyState& body = shaped(*state_, at);
+  return body.shape.reference.get(at - body.begin);
+}
+
+Eigen::Quaternionf Simulation::rotation(ParticleId id) const {
+  const std::size_t at = row(id);
+  const BodyState& body = shaped(*state_, at);
+  const std::size_t region = body.shape.first_region(at - body.begin);
+  const auto q = [&](std::size_t k) { return body.shape.rotation[k][region]; };
+  return {q(3), q(0), q(1), q(2)};
+}
+
 std::vector<Vec3> Simulation::positions_by_id() const {
   return by_id(state_->store, state_->seen_positions());
 }

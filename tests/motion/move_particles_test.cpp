@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include "colliders/one_row.h"
 #include "levels.h"
@@ -93,13 +94,14 @@ struct World {
     store.pin.resize(k_rows);
     for (std::size_t i = 0; i < k_rows; i += 7) store.pin[i] = static_cast<std::uint16_t>(1 + i % 2);
   }
+  std::vector<MotionPhases> loops{{.predict = true, .collide = true, .advance = true}};
   MotionSums move(int threads = 2, InstructionLevel level = best_instruction_level()) {
     std::vector<PlacedCollider> placed;
     place_colliders(colliders, {0, 0, 0}, input.time_step, level, placed);
     MovingBodies bodies;
     bodies.inputs = {input};
     bodies.inputs[0].colliders = placed;
-    move_particles(threads, level, store, bodies);
+    for (const MotionPhases& phases : loops) move_particles(phases, threads, level, store, bodies);
     return bodies.sums[0];
   }
 
@@ -259,6 +261,30 @@ TEST(move_particles, equals_the_recurrence_at_distances_out_of_range) {
        }) {
     world.collide({{.shape = shape, .velocity = {0.3f, 0, 0.2f}, .friction = 0.3f}});
     EXPECT_GT(world.expect_literal(), 5u);
+  }
+}
+
+TEST(move_particles, in_several_loops_has_the_bits_of_one) {
+  const auto run = [](std::vector<MotionPhases> loops, bool pinned) {
+    World world;
+    world.collide({{.shape = Random(3).shapes(5), .friction = 0.3f},
+                   {.shape = Box{{-9, -9, -9}, {9, 9, 9}, true}, .restitution = 0.5f}});
+    if (pinned) world.pin_some();
+    if (!loops.empty()) world.loops = std::move(loops);
+    const MotionSums sums = world.move();
+    std::vector<Vec3> moved;
+    for (std::size_t i = k_begin; i < k_end; ++i) {
+      moved.push_back(world.store.next_position.get(i));
+      moved.push_back(world.store.next_velocity.get(i));
+    }
+    return std::tuple(sums.external, sums.unpinned, sums.bad_row, moved);
+  };
+  const MotionPhases predict{.predict = true}, collide{.collide = true}, advance{.advance = true};
+  for (const bool pinned : {false, true}) {
+    const auto one = run({}, pinned);
+    EXPECT_EQ(run({predict, collide, advance}, pinned), one);
+    EXPECT_EQ(run({predict, {.collide = true, .advance = true}}, pinned), one);
+    EXPECT_EQ(run({{.predict = true, .collide = true}, advance}, pinned), one);
   }
 }
 

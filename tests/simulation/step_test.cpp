@@ -576,5 +576,30 @@ TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
            {"overlap", "second", "0.05"});
 }
 
+TEST(particles, are_read_by_id_with_their_rest_positions_and_rotations) {
+  for (const int stride : {1, 3}) {
+    Simulation s(config());
+    s.add_body(cube(4, {20, 0, 5}), Material{.alpha = 1});
+    Body body = cube(6, {0, 0, 5});
+    const Vec3 middle(3, 3, 8), spin(0, 0, 0.3f);
+    for (const Vec3& x : body.positions) body.velocities.push_back(spin.cross(x - middle));
+    s.add_body(body, Material{.alpha = 0, .region_stride = stride});
+    for (int k = 0; k < 40; ++k) s.step();
+    const std::vector<Vec3> x = s.positions_by_id();
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t id = 64; id < x.size(); ++id) mean += x[id] / 216.0f;
+    for (ParticleId id = 64; id < x.size(); ++id) {
+      EXPECT_EQ(s.positions()[s.row(id)], x[id]);
+      // Nearly rigid: where it is is where its rest position is turned to.
+      EXPECT_LT((mean + s.rotation(id) * s.rest_position(id) - x[id]).norm(), 0.3f) << id;
+      EXPECT_NEAR(s.rotation(id).norm(), 1, 1e-5);
+    }
+    EXPECT_GT(s.rotation(100).angularDistance(Eigen::Quaternionf::Identity()), 0.5f) << "it has turned";
+    EXPECT_NE(message_of([&] { s.rest_position(0); }).find("'body 0', which has no reference shape"),
+              std::string::npos);
+    EXPECT_NE(message_of([&] { s.rotation(999); }).find("no particle 999"), std::string::npos);
+  }
+}
+
 }  // namespace step_test
 }  // namespace mallow

@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "mallow/body.h"
 #include "mallow/collider.h"
 #include "mallow/errors.h"
@@ -166,6 +168,15 @@ class MALLOW_EXPORT Simulation {
   Rows rows(BodyId body) const;
   /// What the body is made of.
   MaterialId material(BodyId body) const;
+
+  /// The row of a particle in every view. Throws ConfigError where there is none of this id, or no longer.
+  std::size_t row(ParticleId id) const;
+  /// x̄ of a particle [m], relative to the mean of its body's. Throws ConfigError as row() does, and where the
+  /// body keeps no reference shape. [TK eq. 7]
+  Vec3 rest_position(ParticleId id) const;
+  /// R of the region that a particle owns, as the last step left it; with a region_stride above 1, of the
+  /// first region that it is in. Throws as rest_position() does. [TK eq. 7]
+  Eigen::Quaternionf rotation(ParticleId id) const;
 
   /// Copies in the order of slots, whatever that of rows is: entry i is particle i where none was removed.
   std::vector<Vec3> positions_by_id() const;
