@@ -8,6 +8,6 @@ int main(int, char** argv) {
   mallow::Simulation simulation = mallow::build(scene);
   simulation.step();
   const mallow::Mesh mesh =
-      mallow::surface(simulation.positions_by_id(), simulation.info().groups[0].spacing, scene.surface);
+      mallow::surface(simulation.positions_by_id(), simulation.info().bodies[0].spacing, scene.surface);
   std::cout << mesh.triangles.size() << " triangles\n";
 }
