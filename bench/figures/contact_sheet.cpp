@@ -21,9 +21,9 @@ void ContactSheet::begin_take(const Scene& scene, const ParticleFrame& first,
 }
 
 void ContactSheet::add(const ParticleFrame& frame) {
-  const Mesh& mesh =
-      surfacer_->draw({.positions = frame.positions, .groups = frame.groups, .spacings = spacings_});
-  stills_->take(frame, mesh, picture(pictures_));
+  SurfaceParticles particles = surface_particles(frame, spacings_);
+  particles.velocities = {};
+  stills_->take(frame, surfacer_->draw(particles), picture(pictures_));
   ++pictures_;
 }
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "mallow/files.h"
-#include "mallow/level_set.h"
 #include "mallow/scene.h"
 #include "mallow/stills.h"
+#include "mallow/surface.h"
 
 namespace mallow::bench {
 

@@ -5,10 +5,11 @@
 #include "harness/command.h"
 #include "kernels/kernel_set.h"
 #include "kernels/lattice.h"
-#include "level_set/dual_mesher.h"
-#include "level_set/surface_field.h"
-#include "mallow/level_set.h"
 #include "mallow/scene.h"
+#include "mallow/surface.h"
+#include "surface/dual_mesher.h"
+#include "surface/particle_order.h"
+#include "surface/surface_field.h"
 
 namespace mallow::bench {
 namespace {
@@ -17,6 +18,8 @@ struct SurfaceScene {
   std::vector<Vec3> positions;
   float spacing = 1;  ///< h [m]
   SurfaceConfig config;
+
+  SurfaceParticles particles() const { return {.positions = positions, .bodies = {{.spacing = spacing}}}; }
 };
 
 SurfaceScene cube_scene(const LatticeScene& lattice) {
@@ -36,6 +39,7 @@ struct Drawing {
   SurfaceScene scene;
   VoxelFrame frame;
   int threads;
+  ParticleOrder order;
   SurfaceField field;
   DualMesher mesher;
   Mesh mesh;
@@ -45,10 +49,11 @@ struct Drawing {
     const Aabb box = bounds(whole);
     frame.voxel_size = static_cast<double>((box.max - box.min).maxCoeff()) / scene.config.voxels.value();
     frame.origin = (box.min.cast<double>() / frame.voxel_size).array().floor() * frame.voxel_size;
+    order.sort(scene.particles(), false);
     fill();
     draw();
   }
-  void fill() { field.build(scene.positions, scene.spacing, scene.config, frame, threads); }
+  void fill() { field.build({scene.positions, order.rows(0)}, scene.spacing, scene.config, frame, threads); }
   void draw() {
     MeshCounts counts;
     mesher.append(field, 0, threads, counts, mesh);
@@ -68,9 +73,7 @@ void add_scene(const std::string& name, const MakeScene& make, int threads, Kern
   set.add({"surface", name, threads, "", "particle"}, [=] {
     const auto scene = std::make_shared<SurfaceScene>(make());
     const auto surfacer = std::make_shared<Surfacer>(scene->config, threads);
-    const auto draw = [=]() -> const Mesh& {
-      return surfacer->draw({.positions = scene->positions, .spacings = {&scene->spacing, 1}});
-    };
+    const auto draw = [=]() -> const Mesh& { return surfacer->draw(scene->particles()); };
     return Timed{.run = [=] { draw(); },
                  .items = static_cast<double>(scene->positions.size()),
                  .about = {{"particles", scene->positions.size()},

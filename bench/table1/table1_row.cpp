@@ -6,11 +6,10 @@
 #include "harness/statistics.h"
 #include "mallow/failure.h"
 #include "mallow/files.h"
-#include "mallow/level_set.h"
-
 #include "mallow/run_report.h"
 #include "mallow/scene.h"
 #include "mallow/stills.h"
+#include "mallow/surface.h"
 #include "table1/plain_surface.h"
 #include "table1/rest_shape.h"
 #include "textbook/from_scene.h"
@@ -77,22 +76,24 @@ Frames draw_frames(const Scene& scene, const Table1Settings& settings, int threa
   const std::filesystem::path picture = std::filesystem::temp_directory_path() / "mallow-bench-table1.png";
   Frames frames;
   const float spacing = *std::max_element(spacings.begin(), spacings.end());
-  const auto draw = [&](const ParticleFrame& frame) -> const Mesh& {
-    return surfacer.draw({.positions = frame.positions, .groups = frame.groups, .spacings = spacings});
+  const auto draw = [&]() -> const Mesh& {
+    SurfaceParticles particles = surface_particles(simulation);
+    particles.velocities = {};
+    return surfacer.draw(particles);
   };
   const auto draw_plain = [&](const ParticleFrame& frame) {
     return plain_surface(frame.positions, spacing, voxel_size(frame, spacing, scene.surface), threads);
   };
   const RestShape shape(scene, threads);
   const ParticleFrame rest = snapshot(simulation);
-  frames.distance = shape.mean_distance(draw(rest)) / static_cast<double>(spacing);
+  frames.distance = shape.mean_distance(draw()) / static_cast<double>(spacing);
   frames.plain_distance = shape.mean_distance(draw_plain(rest)) / static_cast<double>(spacing);
   for (int step = 1; step <= settings.steps; ++step) {
     simulation.step();
     if (step % settings.surface_every != 0) continue;
     const ParticleFrame frame = snapshot(simulation);
     const Mesh* mesh = nullptr;
-    frames.surface.push_back(milliseconds([&] { mesh = &draw(frame); }));
+    frames.surface.push_back(milliseconds([&] { mesh = &draw(); }));
     if (frames.plain_surface.size() < k_plain_frames) {
       frames.plain_surface.push_back(milliseconds([&] { draw_plain(frame); }));
       frames.beside_plain.push_back(frames.surface.back());

@@ -9,6 +9,7 @@
 #include "harness/statistics.h"
 #include "mallow/failure.h"
 #include "mallow/level_set.h"
+#include "mallow/surface.h"
 #include "render/renderer.h"
 #include "scaling/cube.h"
 #include "threads/busy_loops.h"
@@ -148,7 +149,7 @@ void run_threads(const ThreadsOptions& options) {
     if (asked("step")) add("step", particles, steps(particles, options.threads));
   }
   const Body body = sample(Lattice{.count = {16, 16, 16}, .jitter = 0.1f});
-  const SurfaceParticles particles{.positions = body.positions, .spacings = {&body.spacing, 1}};
+  const SurfaceParticles particles{.positions = body.positions, .bodies = {{.spacing = body.spacing}}};
   if (asked("surface")) add("surface", body.positions.size(), surfaces(particles, options.threads));
   const auto mesh = std::make_shared<const Mesh>(surface(body.positions, body.spacing, {.voxels = 64}));
   if (asked("picture")) add("picture", body.positions.size(), pictures(mesh, options.threads));

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "harness/statistics.h"
-#include "mallow/level_set.h"
 #include "mallow/quality.h"
+#include "mallow/surface.h"
 #include "tradeoff/mesh_distance.h"
 #include "tradeoff/pareto.h"
 

@@ -115,6 +115,9 @@ Simulation::Rows Simulation::rows(BodyId id) const {
   const BodyState& body = state_->body(id);
   return {body.begin, body.end};
 }
+float Simulation::spacing(BodyId id) const {
+  return state_->body(id).spacing;
+}
 MaterialId Simulation::material(BodyId id) const {
   return MaterialId{state_->body(id).material->number};
 }

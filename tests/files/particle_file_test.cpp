@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "files/file_fixture.h"
+#include "mallow/surface.h"
 
 namespace mallow {
 namespace particle_file_test {
@@ -22,6 +23,23 @@ TEST(particle_file, gives_the_same_frame_back_to_the_bit) {
   EXPECT_EQ(read.step, frame.step);
   write_particles(folder / "none.ply", ParticleFrame{});
   EXPECT_TRUE(read_particles(folder / "none.ply").positions.empty());
+}
+
+TEST(particle_frame, is_drawn_as_a_body_for_each_stretch_of_a_group_and_refused_where_one_has_no_spacing) {
+  ParticleFrame frame;
+  frame.positions.assign(6, Vec3(1, 2, 3));
+  frame.groups = {2, 2, 0, 2, 2, 2};
+  const std::vector<float> spacings{0.5f, 1, 2};
+  const SurfaceParticles particles = surface_particles(frame, spacings);
+  ASSERT_EQ(particles.bodies.size(), 3u);
+  const std::size_t ends[] = {2, 3, 6};
+  for (std::size_t b = 0; b < 3; ++b) {
+    EXPECT_EQ(particles.bodies[b].group, b == 1 ? 0 : 2);
+    EXPECT_EQ(particles.bodies[b].spacing, b == 1 ? 0.5f : 2.0f);
+    EXPECT_EQ(particles.bodies[b].rows.value().begin, b == 0 ? 0 : ends[b - 1]);
+    EXPECT_EQ(particles.bodies[b].rows.value().end, ends[b]);
+  }
+  EXPECT_THROW(surface_particles(frame, std::span(spacings).first(2)), ConfigError);
 }
 
 TEST(particle_file, state_csv_is_what_printf_would_write) {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "mallow/level_set.h"
+#include "mallow/surface.h"
 
 namespace mallow {
 namespace level_set_vdb_test {
@@ -15,12 +16,11 @@ namespace level_set_vdb_test {
 TEST(level_set_vdb, opens_in_the_python_module_of_openvdb_with_the_distances_it_was_drawn_with) {
   const Vec3 center(1, 2, 3);
   const std::vector<Vec3> positions{center};
-  const std::vector<float> spacings{2};
   Surfacer surfacer({.voxel_size = 0.1f, .kind = SurfaceKind::spheres});
-  surfacer.draw({.positions = positions, .spacings = spacings});
+  surfacer.draw({.positions = positions, .bodies = {{.spacing = 2}}});
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("mallow-" + std::to_string(::getpid()) + ".vdb");
-  std::ofstream(file, std::ios::binary) << surfacer.level_set_vdb();
+  std::ofstream(file, std::ios::binary) << level_set_vdb(surfacer);
 
   std::ostringstream command;
   command << "'" MALLOW_PYTHON "' '" MALLOW_READ_LEVEL_SET "' '" << file.string() << "'";

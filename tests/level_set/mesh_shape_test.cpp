@@ -1,7 +1,7 @@
 #include <limits>
 
-#include "level_set/meshes.h"
 #include "mallow/level_set.h"
+#include "meshes.h"
 
 namespace mallow {
 namespace mesh_shape_test {

@@ -1,6 +1,6 @@
 // A ball of jelly falls on the floor, and its surface is drawn frame by frame as a closed mesh.
-#include <mallow/level_set.h>
 #include <mallow/mallow.h>
+#include <mallow/surface.h>
 
 #include <iostream>
 
@@ -14,9 +14,7 @@ int main() {
   float lowest = 0, flattest = 8;
   for (int frame = 0; frame < 40; ++frame) {
     simulation.advance(0.3);
-    const std::vector<mallow::Vec3> x = simulation.positions_by_id(), v = simulation.velocities_by_id();
-    const mallow::Mesh& mesh =
-        surfacer.draw({.positions = x, .velocities = v, .spacings = {&ball.spacing, 1}});
+    const mallow::Mesh& mesh = surfacer.draw(surface_particles(simulation));
     if (!why_not_closed(mesh).empty()) return 1;
     const mallow::Aabb box = bounds(mesh);
     lowest = std::min(lowest, box.min.z());

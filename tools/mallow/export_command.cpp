@@ -19,6 +19,7 @@
 #include "mallow/level_set.h"
 #include "mallow/run_mark.h"
 #include "mallow/shell_word.h"
+#include "mallow/surface.h"
 
 namespace mallow::cli {
 namespace {
@@ -178,8 +179,10 @@ class FrameWriter {
   }
   /// Level sets are no part of a cache: they are drawn again, with the run's settings.
   void write_level_set(const ParticleFrame& frame, const fs::path& file) {
-    surfacer_.draw({.positions = frame.positions, .groups = frame.groups, .spacings = run_.spacings});
-    write_whole(file, surfacer_.level_set_vdb());
+    SurfaceParticles particles = surface_particles(frame, run_.spacings);
+    particles.velocities = {};
+    surfacer_.draw(particles);
+    write_whole(file, level_set_vdb(surfacer_));
   }
 
  private:

@@ -11,10 +11,10 @@
 #include "mallow/failure.h"
 #include "mallow/files.h"
 #include "mallow/interrupt.h"
-#include "mallow/level_set.h"
 #include "mallow/progress.h"
 #include "mallow/shell_word.h"
 #include "mallow/stills.h"
+#include "mallow/surface.h"
 
 namespace mallow::cli {
 namespace {
@@ -26,14 +26,15 @@ class FrameWriter {
   FrameWriter(const Scene& scene, const RunPlan& plan, const Cache& cache, const ParticleFrame& first,
               RunReport& report)
       : cache_(cache), report_(report), checkpoints_(scene, plan, cache), whole_frames_(report.frames) {
-    for (const BodyInfo& body : report.info.bodies) spacings_.push_back(body.spacing);
     if (plan.surface) {
       std::filesystem::create_directories(cache.surface_file(0).parent_path());
       surfacer_.emplace(scene.surface, plan.threads);
     }
     if (plan.images) {
       std::filesystem::create_directories(cache.images_folder());
-      stills_.emplace(scene, first, spacings_, plan.threads);
+      std::vector<float> spacings;
+      for (const BodyInfo& body : report.info.bodies) spacings.push_back(body.spacing);
+      stills_.emplace(scene, first, spacings, plan.threads);
     }
   }
 
@@ -49,7 +50,8 @@ class FrameWriter {
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
 
-  void write(int number, const std::shared_ptr<const ParticleFrame>& frame) {
+  /// frame: the particles of the simulation as they are now.
+  void write(int number, const Simulation& simulation, const std::shared_ptr<const ParticleFrame>& frame) {
     {
       const StageTimer timer(report_.stage_seconds, Stage::particles);
       files_.add([this, number, frame] {
@@ -60,8 +62,7 @@ class FrameWriter {
     auto mesh = std::make_shared<const Mesh>();
     if (surfacer_) {
       const StageTimer timer(report_.stage_seconds, Stage::surface);
-      mesh = std::make_shared<const Mesh>(
-          surfacer_->draw({frame->positions, frame->velocities, frame->groups, spacings_}));
+      mesh = std::make_shared<const Mesh>(surfacer_->draw(surface_particles(simulation)));
       files_.add([this, number, mesh] {
         write_mesh_ply(cache_.surface_file(number), *mesh);
         whole_frames_ = number;
@@ -95,7 +96,6 @@ class FrameWriter {
   const Cache& cache_;
   RunReport& report_;
   Checkpoints checkpoints_;
-  std::vector<float> spacings_;
   std::optional<Surfacer> surfacer_;
   std::optional<Stills> stills_;
   int whole_frames_;        ///< the last frame of which all files are there; read when none is being written
@@ -130,7 +130,7 @@ void run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan,
   if (cache) {
     const auto first = first_frame(simulation, *cache);
     writer.emplace(scene, plan, *cache, *first, report);
-    if (report.steps == 0) writer->write(0, first);
+    if (report.steps == 0) writer->write(0, simulation, first);
   }
 
   Progress progress("simulating", plan.steps.value_or(plan.frames), plan.steps ? "steps" : "frames",
@@ -150,7 +150,8 @@ void run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan,
       if (plan.steps) progress.show(report.steps);
     }
     if (simulation.time() < frame_end) break;
-    if (writer) writer->write(number, std::make_shared<const ParticleFrame>(snapshot(simulation)));
+    if (writer)
+      writer->write(number, simulation, std::make_shared<const ParticleFrame>(snapshot(simulation)));
     report.frames = number;
     if (writer) writer->after_frame(simulation);
     if (!plan.steps) progress.show(number);

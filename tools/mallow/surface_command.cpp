@@ -10,7 +10,7 @@
 #include "mallow/cached_run.h"
 #include "mallow/failure.h"
 #include "mallow/files.h"
-#include "mallow/level_set.h"
+#include "mallow/surface.h"
 
 namespace mallow::cli {
 namespace {
@@ -26,8 +26,7 @@ void draw_surfaces(const CachedRunOptions& options) {
     count = for_each_frame(run.cache.particle_frames(), "surfacing", [&](int number) {
       const StageTimer timer(seconds, Stage::surface);
       const ParticleFrame frame = read_particles(run.cache.particles_file(number));
-      const auto mesh = std::make_shared<const Mesh>(
-          surfacer.draw({frame.positions, frame.velocities, frame.groups, run.spacings}));
+      const auto mesh = std::make_shared<const Mesh>(surfacer.draw(surface_particles(frame, run.spacings)));
       files.add([file = run.cache.surface_file(number), mesh] { write_mesh_ply(file, *mesh); });
     });
     {

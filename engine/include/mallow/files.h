@@ -41,6 +41,7 @@
 namespace mallow {
 
 class Simulation;
+struct SurfaceParticles;
 
 /// Triangles of an OBJ, PLY, STL or OFF file, by its ending; polygons are split into triangles.
 MALLOW_EXPORT Mesh read_mesh(const std::filesystem::path& file);
@@ -67,6 +68,11 @@ struct ParticleFrame {
 
 /// The particles of a simulation as they are now.
 MALLOW_EXPORT ParticleFrame snapshot(const Simulation& simulation);
+
+/// The particles of a frame for a Surfacer, as views: the meshes are those of surface_particles() of the
+/// simulation that it shows, bit by bit. spacings: h of each group [m]; throws ConfigError where a group has
+/// none.
+MALLOW_EXPORT SurfaceParticles surface_particles(const ParticleFrame& frame, std::span<const float> spacings);
 
 /// Binary PLY with x y z vx vy vz group, time and step as comments.
 MALLOW_EXPORT void write_particles(const std::filesystem::path& file, const ParticleFrame& frame);

@@ -166,6 +166,8 @@ class MALLOW_EXPORT Simulation {
   };
   /// Where the body stands now.
   Rows rows(BodyId body) const;
+  /// h of the body [m].
+  float spacing(BodyId body) const;
   /// What the body is made of.
   MaterialId material(BodyId body) const;
 

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mallow/executor.h"
+#include "mallow/export.h"
+#include "mallow/mesh.h"
+#include "mallow/simulation.h"
+#include "mallow/surface_config.h"
+#include "mallow/vec3.h"
+
+/// Surfaces around particles: target mallow::surface, which needs the engine alone.
+namespace mallow {
+
+/// Vectors of particles, seen where they lie: the columns of a simulation, or an array. Vector i is of row i.
+class StridedVectors {
+ public:
+  StridedVectors() = default;  ///< none
+  // NOLINTBEGIN(google-explicit-constructor): a view of the same values
+  /// Of columns.
+  StridedVectors(const VectorView& columns)
+      : x_(columns.x().data()),
+        y_(columns.y().data()),
+        z_(columns.z().data()),
+        size_(columns.size()),
+        stride_(1) {}
+  /// Of an array.
+  StridedVectors(std::span<const Vec3> array) : size_(array.size()), stride_(3) {
+    if (array.empty()) return;
+    x_ = array.front().data();
+    y_ = x_ + 1;
+    z_ = x_ + 2;
+  }
+  /// Of an array.
+  StridedVectors(const std::vector<Vec3>& array) : StridedVectors(std::span(array)) {}
+  // NOLINTEND(google-explicit-constructor)
+
+  std::size_t size() const { return size_; }  ///< rows
+  bool empty() const { return size_ == 0; }   ///< no rows
+  /// The vector of a row, a copy.
+  Vec3 operator[](std::size_t row) const {
+    const std::size_t at = stride_ * row;
+    return {x_[at], y_[at], z_[at]};
+  }
+
+ private:
+  static_assert(sizeof(Vec3) == 3 * sizeof(float));
+  const float* x_ = nullptr;
+  const float* y_ = nullptr;
+  const float* z_ = nullptr;
+  std::size_t size_ = 0;
+  std::size_t stride_ = 0;  ///< floats from a row to the next
+};
+
+/// Particles that a surface is drawn around.
+struct SurfaceBody {
+  float spacing;           ///< h [m], > 0
+  std::uint8_t group = 0;  ///< bodies of one group have one surface, whose material id it is
+  std::optional<Simulation::Rows> rows = {};  ///< its particles; left out: all
+};
+
+/// Particles that surfaces are drawn around, seen where they lie.
+struct SurfaceParticles {
+  StridedVectors positions;         ///< [m], finite
+  StridedVectors velocities = {};   ///< [m/s], finite; none, or one each: then vertices have velocities too
+  std::vector<SurfaceBody> bodies;  ///< no row is in two of them; those in none are not drawn
+  /// Slots distinct, below 2^28. Sums over particles are taken in the order of slots, so that a mesh has the
+  /// same bits whatever the order of rows is. None: in the order of rows.
+  std::span<const ParticleId> ids = {};
+};
+
+/// The particles of a simulation as they are now, a group for each of its bodies; a view, valid until the
+/// next step or change. Throws ConfigError where there are more than 256 bodies.
+MALLOW_EXPORT SurfaceParticles surface_particles(const Simulation& simulation);
+
+/// Draws the surfaces of one frame after another, and keeps its memory from frame to frame. A mesh is closed,
+/// manifold and oriented; its vertices have normals, material ids, which are groups, and, where particles
+/// have them, velocities. Same particles, same bits, for any number of threads.
+class MALLOW_EXPORT Surfacer {
+ public:
+  /// threads, executor: as in SolverConfig. Throws ConfigError where a value is out of range.
+  explicit Surfacer(const SurfaceConfig& config, int threads = 0,
+                    std::shared_ptr<Executor> executor = nullptr);
+  ~Surfacer();
+  /// Moves, with its memory.
+  Surfacer(Surfacer&&) noexcept;
+  /// @copydoc Surfacer(Surfacer&&)
+  Surfacer& operator=(Surfacer&&) noexcept;
+
+  /// The surfaces of all groups as one mesh, which holds until the next call; no particles, no mesh. Throws
+  /// ConfigError where particles are not as said, or the surface would take more than
+  /// SurfaceConfig::memory_limit.
+  const Mesh& draw(const SurfaceParticles& particles);
+  /// How many surfaces the frame drawn last has: one, or one for each group up to the last that has
+  /// particles.
+  std::size_t surface_count() const;
+  /// Memory it holds [bytes].
+  std::size_t bytes() const;
+
+ private:
+  friend struct SurfacerAccess;  // internal
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+/// The surface around the particles of one body, h = spacing [m]: a Surfacer that draws once.
+MALLOW_EXPORT Mesh surface(StridedVectors positions, float spacing, const SurfaceConfig& config,
+                           int threads = 0);
+
+}  // namespace mallow

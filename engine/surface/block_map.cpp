@@ -1,0 +1,128 @@
+#include "surface/block_map.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace mallow {
+namespace {
+
+constexpr int k_bits = 19, k_bias = 1 << (k_bits - 1);
+
+/// Coordinates of cubes, ordered like the keys: x slowest.
+std::uint64_t key_of(int x, int y, int z) {
+  const auto bits = [](int c) { return static_cast<std::uint64_t>(c + k_bias); };
+  return bits(x) << (2 * k_bits) | bits(y) << k_bits | bits(z);
+}
+BlockMap::Coord cube_at(std::uint64_t key) {
+  const auto coordinate = [&](int shift) {
+    return static_cast<int>(key >> shift & ((1u << k_bits) - 1)) - k_bias;
+  };
+  return {coordinate(2 * k_bits), coordinate(k_bits), coordinate(0)};
+}
+
+/// Bits of a cube whose places along one axis are in [first, last]; `stride` bits from one place to the next.
+std::uint64_t slab(int first, int last, int stride) {
+  constexpr std::uint64_t k_places[3] = {0x000000000000FFFF, 0x000F000F000F000F, 0x1111111111111111};
+  const std::uint64_t place = k_places[stride == 16 ? 0 : stride == 4 ? 1 : 2];
+  std::uint64_t bits = 0;
+  for (int p = std::max(first, 0); p <= std::min(last, 3); ++p) bits |= place << (p * stride);
+  return bits;
+}
+
+}  // namespace
+
+void BlockMap::clear() {
+  std::fill(cubes_.begin(), cubes_.end(), Cube{});
+  used_ = size_ = 0;
+  keys_.clear();
+  blocks_.clear();
+}
+
+std::size_t BlockMap::slot_of(std::uint64_t key) const {
+  // Fibonacci hashing: neighbours along z land far from each other.
+  const std::size_t mask = cubes_.size() - 1;
+  std::size_t slot = static_cast<std::size_t>(key * 0x9E3779B97F4A7C15u >> 32) & mask;
+  while (cubes_[slot].key != k_free && cubes_[slot].key != key) slot = (slot + 1) & mask;
+  return slot;
+}
+
+BlockMap::Cube& BlockMap::cube(std::uint64_t key) {
+  if (2 * (used_ + 1) > cubes_.size()) {
+    std::vector<Cube> old(std::max<std::size_t>(1024, 2 * cubes_.size()));
+    old.swap(cubes_);
+    for (const Cube& c : old)
+      if (c.key != k_free) cubes_[slot_of(c.key)] = c;
+  }
+  Cube& found = cubes_[slot_of(key)];
+  if (found.key == k_free) {
+    found.key = key;
+    ++used_;
+    keys_.push_back(key);
+  }
+  return found;
+}
+
+void BlockMap::insert(const Coord& first, const Coord& last) {
+  for (int x = first.x() >> 2; x <= last.x() >> 2; ++x) {
+    const std::uint64_t in_x = slab(first.x() - k_cube_side * x, last.x() - k_cube_side * x, 16);
+    for (int y = first.y() >> 2; y <= last.y() >> 2; ++y) {
+      const std::uint64_t in_y = slab(first.y() - k_cube_side * y, last.y() - k_cube_side * y, 4);
+      for (int z = first.z() >> 2; z <= last.z() >> 2; ++z) {
+        const std::uint64_t in_z = slab(first.z() - k_cube_side * z, last.z() - k_cube_side * z, 1);
+        Cube& c = cube(key_of(x, y, z));
+        const std::uint64_t more = in_x & in_y & in_z & ~c.blocks;
+        c.blocks |= more;
+        size_ += static_cast<std::size_t>(std::popcount(more));
+      }
+    }
+  }
+}
+
+void BlockMap::number() {
+  std::sort(keys_.begin(), keys_.end());
+  blocks_.clear();
+  for (const std::uint64_t key : keys_) {
+    Cube& c = cubes_[slot_of(key)];
+    c.first = static_cast<std::uint32_t>(blocks_.size());
+    for (std::uint64_t left = c.blocks; left != 0; left &= left - 1) {
+      const int bit = std::countr_zero(left);
+      blocks_.push_back(k_cube_side * cube_at(key) + Coord(bit >> 4, bit >> 2 & 3, bit & 3));
+    }
+  }
+}
+
+const BlockMap::Cube& BlockMap::cube_of(const Coord& block) const {
+  return cubes_[slot_of(key_of(block.x() >> 2, block.y() >> 2, block.z() >> 2))];
+}
+
+std::uint32_t BlockMap::number_in(const Cube& cube, const Coord& block) {
+  const int bit = (block.x() & 3) << 4 | (block.y() & 3) << 2 | (block.z() & 3);
+  if (!(cube.blocks >> bit & 1)) return k_no_block;
+  const std::uint64_t before = cube.blocks & ((std::uint64_t{1} << bit) - 1);
+  return cube.first + static_cast<std::uint32_t>(std::popcount(before));
+}
+
+std::array<std::uint32_t, 27> BlockMap::find_around(const Coord& block) const {
+  std::array<std::uint32_t, 27> around;
+  around.fill(k_no_block);
+  if (cubes_.empty()) return around;
+  std::size_t to = 0;
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      const Cube* cube = nullptr;
+      for (int z = -1; z <= 1; ++z, ++to) {
+        const Coord at = block + Coord(x, y, z);
+        if (!cube || at.z() % k_cube_side == 0) cube = &cube_of(at);
+        around[to] = number_in(*cube, at);
+      }
+    }
+  }
+  return around;
+}
+
+std::size_t BlockMap::bytes() const {
+  return cubes_.capacity() * sizeof(Cube) + keys_.capacity() * sizeof(std::uint64_t) +
+         blocks_.capacity() * sizeof(Coord);
+}
+
+}  // namespace mallow

@@ -1,0 +1,427 @@
+#include "surface/surface_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "core/parallel.h"
+#include "mallow/errors.h"
+#include "mallow/instruction_level.h"
+
+namespace mallow {
+namespace {
+
+/// Blocks that a thread takes at once.
+constexpr std::size_t k_blocks_at_once = 8;
+
+// Variance of particles about their mean that is taken for one part of a body, in squared kernel radii. A
+// face of a full body has 0.19 at a fullness of 0.46, its inside 0.27; a cubic lattice of 1.3 spacings 0.32
+// at 0.5. The middle of a gap of 2.2 spacings has 0.44 at 0.29, that of a pair 2.2 apart 0.30 at 0.13. With
+// the default radius two faces, and a pair, part at a distance of about two spacings.
+constexpr float k_spread = 0.0375f, k_extra_spread = 0.2625f;
+/// The least of it, in squared spacings: a small kernel sees but few particles of a full body.
+constexpr float k_least_spread = 0.15f;
+
+/// Nodes are at most this share of the kernel radius apart. Cubic interpolation is off by 0.6% of a
+/// particle's weight at a quarter.
+constexpr double k_node_distance = 0.2;
+/// Probes are at most this far apart, in spacings: less than a sphere is wide at the default particle radius
+/// and at most what three voxels of background bridge.
+constexpr double k_probe_distance = 0.75;
+/// Bytes of a block that the surface passes through: distances, sums, neighbours, mesh.
+constexpr double k_block_bytes = 8192, k_gibibyte = 1 << 30;
+
+/// How much deeper than `z` spacings x̄ lies under a flat face, `z` above the outermost layer of a full
+/// lattice with a kernel of `radius` spacings. Layers are taken as sheets: (1 − d²/R²)⁴ is the kernel's
+/// integral over a sheet.
+double depth_of_mean(double z, double radius) {
+  double weight = 0, moment = 0;
+  for (int layer = 0; z + layer < radius; ++layer) {
+    const double w = std::pow(1 - (z + layer) * (z + layer) / (radius * radius), 4);
+    weight += w;
+    moment += w * layer;
+  }
+  return weight > 0 ? moment / weight : 0;
+}
+
+SurfaceShape make_shape(const SurfaceConfig& config, double spacing, double voxel_size) {
+  const double radius = config.kernel_radius;
+  const float per_radius = 1 / config.kernel_radius;
+  return {.voxel_size = static_cast<float>(voxel_size / (radius * spacing)),
+          .offset = config.particle_radius * per_radius,
+          .extra_offset = static_cast<float>(depth_of_mean(config.particle_radius, radius) / radius),
+          .spread = std::max(k_spread, k_least_spread * per_radius * per_radius),
+          .extra_spread = k_extra_spread,
+          // ∫ (1 − r²)³ dV = 64π/315 for one particle per cubic spacing.
+          .full_weight = static_cast<float>(64 * std::numbers::pi / 315 * radius * radius * radius),
+          .threshold = 0,
+          .background = SurfaceField::k_background};
+}
+
+/// The farthest from all particles that a point inside can be, in kernel radii: their mean square distance,
+/// which is |x − x̄|² and the variance, is what bounds it.
+double farthest_inside(const SurfaceShape& shape) {
+  const float r = shape.offset + shape.extra_offset;
+  return std::sqrt(r * r / k_excess_share + shape.spread + shape.extra_spread);
+}
+
+/// The largest of 4, 2, 1 voxels that is at most `distance`.
+int step_within(double distance) {
+  return distance >= 4 ? 4 : distance >= 2 ? 2 : 1;
+}
+
+const SurfaceKernels& kernels() {
+  static const InstructionLevel level = best_instruction_level();
+  return MALLOW_SELECT(level, surface_kernels);
+}
+void find_neighbors(const BlockMap& blocks, const Threads& threads,
+                    std::vector<std::array<std::uint32_t, 27>>& neighbors) {
+  neighbors.resize(blocks.size());
+  parallel_for(threads, blocks.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) neighbors[b] = blocks.find_around(blocks.blocks()[b]);
+  });
+}
+
+[[noreturn]] void refuse_memory(double blocks, const VoxelFrame& frame, const SurfaceConfig& config) {
+  std::ostringstream text;
+  text << "voxels of " << frame.voxel_size
+       << " m are too small for these particles: the surface would take at least "
+       << blocks * k_block_bytes / k_gibibyte << " GiB, and surface.memory_limit allows "
+       << config.memory_limit << " GiB";
+  throw ConfigError("surface.voxel_size", text.str());
+}
+
+}  // namespace
+
+void SurfaceField::clear() {
+  blocks_.clear();
+  kind_.clear();
+}
+
+void SurfaceField::build(const PickedVectors& positions, float spacing, const SurfaceConfig& config,
+                         const VoxelFrame& frame, const Threads& threads) {
+  frame_ = frame;
+  shape_ = make_shape(config, static_cast<double>(spacing), frame.voxel_size);
+  surface_kind_ = config.kind;
+  const double voxels = static_cast<double>(spacing) / frame.voxel_size;  // of a spacing
+  double reach = 0;                                                       // of a particle [voxels]
+  node_step_ = 1;
+  switch (config.kind) {
+    case SurfaceKind::blended:
+      radius_ = config.kernel_radius * spacing;
+      node_step_ = step_within(k_node_distance * static_cast<double>(config.kernel_radius) * voxels);
+      // The cells around an edge that leaves the body are less than two voxels away. Sums are interpolated
+      // from nodes in all blocks that any particle reaches.
+      reach = farthest_inside(shape_) * static_cast<double>(config.kernel_radius) * voxels + 2;
+      if (node_step_ > 1) reach = std::max(reach, static_cast<double>(config.kernel_radius) * voxels);
+      break;
+    case SurfaceKind::anisotropic:
+      radius_ = config.kernel_radius * spacing;
+      reach = static_cast<double>(config.kernel_radius) * voxels;
+      break;
+    case SurfaceKind::spheres:
+      reach = static_cast<double>(config.particle_radius) * voxels + static_cast<double>(k_background);
+      radius_ = static_cast<float>(reach * frame.voxel_size);
+      shape_.voxel_size = static_cast<float>(frame.voxel_size / static_cast<double>(radius_));
+      shape_.offset = config.particle_radius * spacing / radius_;
+      break;
+  }
+  deep_ = -0.5f * shape_.offset / shape_.voxel_size;
+  probe_step_ = std::max(step_within(k_probe_distance * voxels), node_step_);
+  weights_ = cubic_weights(node_step_, node_step_ == 4 ? 1 : 0);
+
+  clear();
+  if (positions.size() == 0) return;
+  particles_.sort(positions, spacing, radius_, threads);
+  if (config.kind == SurfaceKind::anisotropic) {
+    const AnisotropyModel model(config.kernel_radius, config.particle_radius);
+    shape_.threshold = static_cast<float>(std::pow(model.threshold, 0.25));
+    kernels_.fit(model, radius_, threads, particles_);
+  }
+  find_blocks(reach, config);
+  find_neighbors(blocks_, threads, neighbors_);
+  probe(threads);
+  classify(threads);
+  if (node_step_ > 1) sum_at_nodes(threads);
+  fill(threads);
+}
+
+/// Every block with a voxel within `reach` voxels of a particle, and some more; all else is outside.
+void SurfaceField::find_blocks(double reach, const SurfaceConfig& config) {
+  const double most = static_cast<double>(config.memory_limit) * k_gibibyte / k_block_bytes;
+  // Particles come sorted, so that those of a block follow each other, in a few runs: a box for each run.
+  blocks_.clear();
+  const auto insert_around = [&](const Eigen::Array3d& low, const Eigen::Array3d& high) {
+    const Eigen::Array3d from = ((low - reach - (k_block_side - 1)) / k_block_side).ceil(),
+                         to = ((high + reach) / k_block_side).floor();
+    if (const double count = (to - from + 1).prod(); count > most) refuse_memory(count, frame_, config);
+    blocks_.insert(from.cast<int>(), to.cast<int>());
+    if (static_cast<double>(blocks_.size()) > most)
+      refuse_memory(static_cast<double>(blocks_.size()), frame_, config);
+  };
+  const auto in_voxels = [&](std::size_t place) -> Eigen::Vector3d {
+    return (particles_.position(place).cast<double>() - frame_.origin) / frame_.voxel_size;
+  };
+  const auto block_of = [](const Eigen::Vector3d& voxel) -> BlockMap::Coord {
+    return (voxel / k_block_side).array().floor().cast<int>();
+  };
+  Eigen::Vector3d low = in_voxels(0), high = low;
+  BlockMap::Coord block = block_of(low);
+  for (std::size_t i = 1; i < particles_.count(); ++i) {
+    const Eigen::Vector3d x = in_voxels(i);
+    if (const BlockMap::Coord here = block_of(x); here != block) {
+      insert_around(low, high);
+      block = here;
+      low = high = x;
+    }
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  insert_around(low, high);
+  blocks_.number();
+}
+
+void SurfaceField::find_near(std::uint32_t block, Near& near) const {
+  const Eigen::Vector3d corner =
+      frame_.origin + frame_.voxel_size * k_block_side * blocks_.blocks()[block].cast<double>();
+  particles_.find_near(corner, frame_.voxel_size * (k_block_side - 1), near);
+  if (surface_kind_ == SurfaceKind::anisotropic) drop_out_of_reach(near);
+}
+
+/// Leaves the particles whose own kernels reach into the block, with these kernels.
+void SurfaceField::drop_out_of_reach(Near& near) const {
+  const float side = static_cast<float>(k_block_side - 1) * shape_.voxel_size;
+  near.shapes.resize(std::max(near.shapes.size(), near.count));
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < near.count; ++k) {
+    const KernelShape& shape = kernels_.shapes()[near.places[k]];
+    const float x[3] = {near.x[k], near.y[k], near.z[k]};
+    bool reaches = true;
+    for (int a = 0; a < 3; ++a)
+      reaches = reaches && x[a] + shape.reach[a] >= 0 && x[a] - shape.reach[a] <= side;
+    if (!reaches) continue;
+    near.places[kept] = near.places[k];
+    near.x[kept] = x[0];
+    near.y[kept] = x[1];
+    near.z[kept] = x[2];
+    near.shapes[kept++] = shape;
+  }
+  near.count = kept;
+}
+
+/// Distances at points about a block. sums: room for k_sums of each.
+void SurfaceField::find_distances(const VoxelLattice& points, const Near& near, float* sums,
+                                  float* distances) const {
+  const std::size_t n = points.x.size();
+  switch (surface_kind_) {
+    case SurfaceKind::blended:
+      kernels().sum_at_points(points.points(), n, near.positions(), near.count, sums);
+      kernels().distances(shape_, sums, n, distances);
+      break;
+    case SurfaceKind::anisotropic:
+      kernels().density_at_points(points.points(), n, near.positions(), near.shapes.data(), near.count, sums);
+      kernels().density_distances(shape_, sums, n, distances);
+      break;
+    case SurfaceKind::spheres:
+      kernels().sphere_distances(shape_, points.points(), n, near.positions(), near.count, distances);
+      break;
+  }
+}
+
+/// Distances at the nodes of the probes' lattice in every block.
+void SurfaceField::probe(const Threads& threads) {
+  const std::size_t n = lattice_count(probe_step_);
+  const VoxelLattice points(probe_step_, shape_.voxel_size);
+  probes_.resize(n * blocks_.size());
+  const bool keep = node_step_ == probe_step_ && node_step_ > 1;
+  if (keep) node_sums_.resize(k_sums * n * blocks_.size());
+  parallel_for(
+      threads, blocks_.size(),
+      [&](std::size_t begin, std::size_t end) {
+        thread_local Near near;
+        thread_local std::vector<float> scratch;
+        scratch.resize(k_sums * n);
+        for (std::size_t b = begin; b < end; ++b) {
+          find_near(static_cast<std::uint32_t>(b), near);
+          float* const distances = probes_.data() + n * b;
+          find_distances(points, near, keep ? node_sums_.data() + k_sums * n * b : scratch.data(), distances);
+          // Far from it, the density overestimates distances: only where there is none is outside for
+          // certain.
+          if (surface_kind_ == SurfaceKind::anisotropic && near.count > 0)
+            for (std::size_t k = 0; k < n; ++k) distances[k] = std::min(distances[k], 0.5f * k_background);
+        }
+      },
+      k_blocks_at_once);
+}
+
+/// Whether the probes in and around a block leave open that the surface is in it; `kind` says where it is
+/// otherwise.
+bool SurfaceField::cuts(std::uint32_t block, BlockKind& kind) const {
+  const int side = k_block_side / probe_step_;
+  const std::size_t n = lattice_count(probe_step_);
+  bool outside = true, inside = true;
+  for (int x = 0; x <= side; ++x) {
+    for (int y = 0; y <= side; ++y) {
+      for (int z = 0; z <= side; ++z) {
+        const std::uint32_t at = neighbors_[block][neighbor_slot(x / side, y / side, z / side)];
+        const auto node = static_cast<std::size_t>((x % side * side + y % side) * side + z % side);
+        const float distance = at == k_no_block ? k_background : probes_[n * at + node];
+        outside = outside && distance >= k_background;
+        inside = inside && distance <= deep_;
+        if (!outside && !inside) return true;
+      }
+    }
+  }
+  kind = outside ? BlockKind::outside : BlockKind::inside;
+  return false;
+}
+
+void SurfaceField::classify(const Threads& threads) {
+  const std::size_t n = blocks_.size();
+  kind_.assign(n, BlockKind::surface);
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) cuts(static_cast<std::uint32_t>(b), kind_[b]);
+  });
+  // No block inside may touch one outside: then every sign that changes does so at a surface block.
+  needs_nodes_.assign(n, 0);
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      if (kind_[b] != BlockKind::inside) continue;
+      for (const std::uint32_t other : neighbors_[b])
+        if (other == k_no_block || kind_[other] == BlockKind::outside) needs_nodes_[b] = 1;
+    }
+  });
+  std::size_t stored = 0;
+  place_.resize(n);
+  for (std::size_t b = 0; b < n; ++b) {
+    if (needs_nodes_[b]) kind_[b] = BlockKind::surface;
+    place_[b] = stored;
+    if (kind_[b] == BlockKind::surface) stored += k_block_voxels;
+  }
+  distances_.resize_unset(stored);
+}
+
+/// Sums at the nodes of all blocks that interpolation reads.
+void SurfaceField::sum_at_nodes(const Threads& threads) {
+  const std::size_t n = lattice_count(node_step_);
+  node_place_.resize(blocks_.size());
+  if (node_step_ == probe_step_) {
+    for (std::size_t b = 0; b < blocks_.size(); ++b) node_place_[b] = k_sums * n * b;
+    return;
+  }
+  std::fill(needs_nodes_.begin(), needs_nodes_.end(), std::uint8_t{0});
+  std::size_t stored = 0;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (kind_[b] != BlockKind::surface) continue;
+    for (int x = 0; x <= 1; ++x)
+      for (int y = 0; y <= 1; ++y)
+        for (int z = 0; z <= 1; ++z)
+          if (const std::uint32_t at = neighbors_[b][neighbor_slot(x, y, z)]; at != k_no_block)
+            needs_nodes_[at] = 1;
+  }
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    node_place_[b] = stored;
+    if (needs_nodes_[b]) stored += k_sums * n;
+  }
+  node_sums_.resize(stored);
+  const VoxelLattice points(node_step_, shape_.voxel_size);
+  parallel_for(
+      threads, blocks_.size(),
+      [&](std::size_t begin, std::size_t end) {
+        thread_local Near near;
+        for (std::size_t b = begin; b < end; ++b) {
+          if (!needs_nodes_[b]) continue;
+          find_near(static_cast<std::uint32_t>(b), near);
+          kernels().sum_at_points(points.points(), n, near.positions(), near.count,
+                                  node_sums_.data() + node_place_[b]);
+        }
+      },
+      k_blocks_at_once);
+}
+
+/// The sums at the 5 × 5 × 5 nodes in and around a block, as fill_block takes them.
+void SurfaceField::collect_nodes(std::uint32_t block, float* nodes) const {
+  const int side = k_block_side / node_step_, before = node_step_ == 4 ? 1 : 0;
+  const std::size_t n = lattice_count(node_step_);
+  constexpr std::size_t k_all = k_nodes * k_nodes * k_nodes;
+  static constexpr float k_none[k_sums * k_block_voxels / 8] = {};  // of blocks that no particle reaches
+  const float* sums[27];
+  for (std::size_t slot = 0; slot < 27; ++slot) {
+    const std::uint32_t at = neighbors_[block][slot];
+    const int z = static_cast<int>(slot % 3) - 1, y = static_cast<int>(slot / 3 % 3) - 1,
+              x = static_cast<int>(slot / 9) - 1;
+    const bool read = std::min({x, y, z}) >= -before;
+    sums[slot] = at == k_no_block || !read ? k_none : node_sums_.data() + node_place_[at];
+  }
+  // The block that a node is in along an axis, and which of its nodes it is.
+  int in_block[k_nodes], in_nodes[k_nodes];
+  for (int k = 0; k < static_cast<int>(k_nodes); ++k) {
+    const int node = k - before;
+    in_block[k] = node < 0 ? -1 : node / side;
+    in_nodes[k] = node - in_block[k] * side;
+  }
+  std::size_t to = 0;
+  for (std::size_t x = 0; x < k_nodes; ++x) {
+    for (std::size_t y = 0; y < k_nodes; ++y) {
+      for (std::size_t z = 0; z < k_nodes; ++z, ++to) {
+        const float* const from = sums[neighbor_slot(in_block[x], in_block[y], in_block[z])] +
+                                  (in_nodes[x] * side + in_nodes[y]) * side + in_nodes[z];
+        for (std::size_t s = 0; s < k_sums; ++s) nodes[s * k_all + to] = from[s * n];
+      }
+    }
+  }
+}
+
+void SurfaceField::fill(const Threads& threads) {
+  const VoxelLattice points(1, shape_.voxel_size);
+  parallel_for(
+      threads, blocks_.size(),
+      [&](std::size_t begin, std::size_t end) {
+        thread_local Near near;
+        float sums[k_sums * k_block_voxels];
+        for (std::size_t b = begin; b < end; ++b) {
+          if (kind_[b] != BlockKind::surface) continue;
+          float* const to = distances_.data() + place_[b];
+          if (node_step_ > 1) {
+            collect_nodes(static_cast<std::uint32_t>(b), sums);
+            kernels().fill_block(shape_, weights_, sums, to);
+            continue;
+          }
+          find_near(static_cast<std::uint32_t>(b), near);
+          find_distances(points, near, sums, to);
+        }
+      },
+      k_blocks_at_once);
+}
+
+void SurfaceField::mean_at(std::uint32_t block, ConstVectors points, std::size_t n,
+                           const PickedVectors& values, Vectors means) const {
+  thread_local Near near;
+  thread_local std::vector<float> scaled[3], near_values[3];
+  find_near(block, near);
+  const float* const from[3] = {points.x, points.y, points.z};
+  for (std::size_t a = 0; a < 3; ++a) {
+    scaled[a].resize(n);
+    for (std::size_t k = 0; k < n; ++k) scaled[a][k] = from[a][k] * shape_.voxel_size;
+    near_values[a].resize(near.count);
+  }
+  for (std::size_t k = 0; k < near.count; ++k) {
+    const Vec3 value = values[particles_.particle(near.places[k])];
+    for (std::size_t a = 0; a < 3; ++a) near_values[a][k] = value[static_cast<Eigen::Index>(a)];
+  }
+  const auto raw = [](const std::vector<float>(&axes)[3]) {
+    return ConstVectors{axes[0].data(), axes[1].data(), axes[2].data()};
+  };
+  kernels().mean_at_points(raw(scaled), n, near.positions(), raw(near_values), near.count, means);
+}
+
+std::size_t SurfaceField::bytes() const {
+  return particles_.bytes() + kernels_.bytes() + blocks_.bytes() + distances_.bytes() +
+         neighbors_.capacity() * sizeof neighbors_[0] +
+         (probes_.capacity() + node_sums_.capacity()) * sizeof(float) +
+         (place_.capacity() + node_place_.capacity()) * sizeof(std::size_t) + kind_.capacity() +
+         needs_nodes_.capacity();
+}
+
+}  // namespace mallow

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/column.h"
+#include "core/threads.h"
+#include "mallow/surface_config.h"
+#include "surface/anisotropic_kernels.h"
+#include "surface/block_map.h"
+#include "surface/particle_cells.h"
+#include "surface/picked_vectors.h"
+#include "surface/surface_kernel.h"
+#include "surface/voxel_frame.h"
+#include "surface/voxel_lattice.h"
+
+namespace mallow {
+
+enum class BlockKind : std::uint8_t { outside, inside, surface };
+
+/// Number among a block's 27 neighbours, itself included, of the one `offset` away (each of −1, 0, 1).
+inline std::size_t neighbor_slot(int dx, int dy, int dz) {
+  return static_cast<std::size_t>((dx + 1) * 9 + (dy + 1) * 3 + dz + 1);
+}
+/// The level set of the surface around particles: signed distances [voxels], negative inside, in the blocks
+/// that the surface passes through; all other blocks are wholly inside or outside. Keeps its memory from one
+/// frame to the next.
+///
+/// The sums that give a distance are smooth over a kernel radius. Where that is many voxels they are taken at
+/// every second or fourth voxel and interpolated; sums about the voxels themselves would cost 8 or 64 times
+/// as much and be a few hundredths of a voxel more exact.
+class SurfaceField {
+ public:
+  /// Nothing is inside.
+  void clear();
+  /// positions: finite. spacing: their h [m]. Throws ConfigError where the blocks would take
+  /// more than config.memory_limit.
+  void build(const PickedVectors& positions, float spacing, const SurfaceConfig& config,
+             const VoxelFrame& frame, const Threads& threads);
+
+  const VoxelFrame& frame() const { return frame_; }
+  const BlockMap& blocks() const { return blocks_; }
+  /// The blocks around a block, by neighbor_slot(); k_no_block, which is outside, where there is none.
+  const std::array<std::uint32_t, 27>& neighbors(std::uint32_t block) const { return neighbors_[block]; }
+  BlockKind kind(std::uint32_t block) const { return kind_[block]; }
+  /// The 512 distances of a surface block, z fastest.
+  const float* distances(std::uint32_t block) const { return distances_.data() + place_[block]; }
+  /// Kernel-weighted means of the particles' values at points near a block. points: a whole number of eights,
+  /// [voxels] from the block's first voxel. values: by particle, as they were given to build().
+  void mean_at(std::uint32_t block, ConstVectors points, std::size_t n, const PickedVectors& values,
+               Vectors means) const;
+  std::size_t bytes() const;
+
+  /// Distances are cut here [voxels].
+  static constexpr float k_background = 3.0f;
+
+ private:
+  /// The particles near a block, and their kernels where each has its own.
+  struct Near : NearParticles {
+    std::vector<KernelShape> shapes;
+  };
+
+  void find_blocks(double reach, const SurfaceConfig& config);
+  void find_near(std::uint32_t block, Near& near) const;
+  void drop_out_of_reach(Near& near) const;
+  void find_distances(const VoxelLattice& points, const Near& near, float* sums, float* distances) const;
+  void probe(const Threads& threads);
+  void classify(const Threads& threads);
+  void sum_at_nodes(const Threads& threads);
+  void fill(const Threads& threads);
+  bool cuts(std::uint32_t block, BlockKind& kind) const;
+  void collect_nodes(std::uint32_t block, float* nodes) const;
+
+  VoxelFrame frame_;
+  SurfaceShape shape_{};
+  float radius_ = 0;  ///< of the kernel [m]
+  SurfaceKind surface_kind_ = SurfaceKind::blended;
+  int node_step_ = 1;   ///< voxels between the nodes that sums are taken at: 1, 2 or 4
+  int probe_step_ = 1;  ///< voxels between the nodes that tell whether the surface is in a block
+  float deep_ = 0;      ///< distances at or below this are inside of a body for certain [voxels]
+  NodeWeights weights_{};
+
+  ParticleCells particles_;
+  AnisotropicKernels kernels_;
+  BlockMap blocks_;
+  std::vector<std::array<std::uint32_t, 27>> neighbors_;
+  std::vector<BlockKind> kind_;
+  std::vector<std::uint8_t> needs_nodes_;
+  std::vector<float> probes_;     ///< distances at the probes, block by block
+  std::vector<float> node_sums_;  ///< of the blocks that need them
+  std::vector<std::size_t> node_place_, place_;
+  Column<float> distances_;
+};
+
+}  // namespace mallow

@@ -1,0 +1,231 @@
+// The surface around particles of Zhu & Bridson 2005, "Animating sand as a fluid", section 5:
+//   φ(x) = |x − x̄| − r,   x̄ = Σ w_i x_i / Σ w_i,   w_i = max(0, 1 − |x − x_i|²/R²)³
+// symbol | here           | unit
+// x_i    | particles      | offsets from the block's first voxel, divided by R
+// R      | 1              | kernel radius
+// r      | offset + ...   | grows with the weight, see SurfaceShape::extra_offset
+// Departs: |x − x̄|² grows by half of what the variance Σ w_i |x_i − x̄|² / Σ w_i is above that of one part of
+// a body. Between two parts x̄ jumps from one to the other and passes x on its way, which would make φ
+// negative in the empty middle. Solenthaler et al. 2007 see that in the eigenvalues of ∇x̄, ten sums more; the
+// variance is one sum more. The distance to the nearest particle tells it less well: it ripples, and leaves
+// crumbs in gaps of two spacings.
+#include "surface/surface_kernel.h"
+
+#include "core/cluster_lanes.h"
+
+namespace mallow::MALLOW_LEVEL {
+namespace {
+
+static_assert(k_cluster == k_block_side, "a row of voxels is a row of lanes");
+
+/// Weights below this are no part of a body: a particle's is so far out at 0.85 of its radius. Interpolated
+/// sums are wrong by a fifth of it at the most.
+constexpr float k_least_weight = 0.02f;
+
+/// Densities, and slopes of them [per kernel radius], below this are none.
+constexpr float k_least_density = 1e-6f, k_least_slope = 1e-6f;
+
+struct Sums {
+  Floats weight, x, y, z, square;
+};
+
+MALLOW_INLINE void store(const Floats& value, float* to) {
+  __builtin_memcpy(to, &value, sizeof value);
+}
+
+/// 1 − |x_i − x|², at least 0, of eight points and one particle.
+MALLOW_INLINE Floats nearness(const Floats& square) {
+  return larger(1.0f - square, Floats{});
+}
+
+void sum_at_points(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
+                   float* sums) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    Sums s = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
+      const Floats square = dx * dx + dy * dy + dz * dz;
+      const Floats t = nearness(square);
+      const Floats w = t * t * t;
+      s.weight += w;
+      s.x += w * dx;
+      s.y += w * dy;
+      s.z += w * dz;
+      s.square += w * square;
+    }
+    store(s.weight, sums + k);
+    store(s.x, sums + n + k);
+    store(s.y, sums + 2 * n + k);
+    store(s.z, sums + 3 * n + k);
+    store(s.square, sums + 4 * n + k);
+  }
+}
+
+MALLOW_INLINE Floats cut(const SurfaceShape& shape, const Floats& distance) {
+  return smaller(larger(distance, all(-shape.background)), all(shape.background));
+}
+
+MALLOW_INLINE Floats distance_of(const SurfaceShape& shape, const Sums& s) {
+  const Floats full = smaller(2.0f / shape.full_weight * s.weight, all(1.0f));
+  const Floats per_weight = 1.0f / larger(s.weight, all(k_least_weight));
+  const Floats mx = s.x * per_weight, my = s.y * per_weight, mz = s.z * per_weight;
+  const Floats from_mean = mx * mx + my * my + mz * mz;
+  const Floats excess = s.square * per_weight - from_mean - (shape.spread + shape.extra_spread * full);
+  const Floats r = shape.offset + shape.extra_offset * full;
+  const Floats distance = square_root(from_mean + k_excess_share * larger(excess, Floats{})) - r;
+  const Ints body = is_larger(s.weight, all(k_least_weight));
+  const Floats outside = where(~body, all(shape.background));
+  return where(body, cut(shape, distance * (1.0f / shape.voxel_size))) + outside;
+}
+
+void distances(const SurfaceShape& shape, const float* sums, std::size_t n, float* to) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster)
+    store(distance_of(shape, {load(sums + k), load(sums + n + k), load(sums + 2 * n + k),
+                              load(sums + 3 * n + k), load(sums + 4 * n + k)}),
+          to + k);
+}
+
+/// A row of voxels from a row of nodes: Σ_n w[·][n] node_n, `step` rows of lanes apart.
+MALLOW_INLINE Floats blend(const float* weights, const Floats* nodes, std::size_t step) {
+  Floats sum = weights[0] * nodes[0];
+  for (std::size_t n = 1; n < k_nodes; ++n) sum += weights[n] * nodes[n * step];
+  return sum;
+}
+
+void fill_block(const SurfaceShape& shape, const NodeWeights& weights, const float* nodes,
+                float* to) noexcept {
+  constexpr std::size_t k_side = k_block_side, k_plane = k_nodes * k_nodes, k_all = k_nodes * k_plane;
+  // Weights along z, a lane a voxel.
+  Floats along_z[k_nodes];
+  for (std::size_t n = 0; n < k_nodes; ++n)
+    for (std::size_t v = 0; v < k_side; ++v) along_z[n][v] = weights.w[v][n];
+  // sums[sum][node x][voxel y], each a row along z.
+  Floats by_plane[k_sums][k_nodes][k_side];
+  for (std::size_t s = 0; s < k_sums; ++s) {
+    for (std::size_t x = 0; x < k_nodes; ++x) {
+      Floats rows[k_nodes];
+      for (std::size_t y = 0; y < k_nodes; ++y) {
+        const float* const from = nodes + s * k_all + x * k_plane + y * k_nodes;
+        rows[y] = from[0] * along_z[0];
+        for (std::size_t n = 1; n < k_nodes; ++n) rows[y] += from[n] * along_z[n];
+      }
+      for (std::size_t y = 0; y < k_side; ++y) by_plane[s][x][y] = blend(weights.w[y], rows, 1);
+    }
+  }
+  for (std::size_t x = 0; x < k_side; ++x) {
+    for (std::size_t y = 0; y < k_side; ++y) {
+      const auto at = [&](std::size_t s) { return blend(weights.w[x], &by_plane[s][0][y], k_side); };
+      store(distance_of(shape, {at(0), at(1), at(2), at(3), at(4)}), to + (x * k_side + y) * k_side);
+    }
+  }
+}
+
+void sphere_distances(const SurfaceShape& shape, ConstVectors points, std::size_t n, ConstVectors particles,
+                      std::size_t count, float* to) noexcept {
+  const float farthest = shape.offset + shape.background * shape.voxel_size;
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    Floats least = all(farthest * farthest);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
+      least = smaller(least, dx * dx + dy * dy + dz * dz);
+    }
+    store(cut(shape, (square_root(least) - shape.offset) * (1.0f / shape.voxel_size)), to + k);
+  }
+}
+
+void mean_at_points(ConstVectors points, std::size_t n, ConstVectors particles, ConstVectors values,
+                    std::size_t count, Vectors means) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    Floats weight = {}, x = {}, y = {}, z = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
+      const Floats t = nearness(dx * dx + dy * dy + dz * dz);
+      const Floats w = t * t * t;
+      weight += w;
+      x += w * values.x[i];
+      y += w * values.y[i];
+      z += w * values.z[i];
+    }
+    const Floats per_weight = where(is_larger(weight, Floats{}), 1.0f / weight);
+    store(x * per_weight, means.x + k);
+    store(y * per_weight, means.y + k);
+    store(z * per_weight, means.z + k);
+  }
+}
+
+void moments_at_points(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
+                       float* moments) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    Floats m[k_moments] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
+      const Floats square = dx * dx + dy * dy + dz * dz;
+      const Floats w = larger(1.0f - square * square_root(square), Floats{});
+      const Floats wx = w * dx, wy = w * dy, wz = w * dz;
+      m[0] += w;
+      m[1] += wx;
+      m[2] += wy;
+      m[3] += wz;
+      m[4] += wx * dx;
+      m[5] += wx * dy;
+      m[6] += wx * dz;
+      m[7] += wy * dy;
+      m[8] += wy * dz;
+      m[9] += wz * dz;
+    }
+    for (std::size_t s = 0; s < k_moments; ++s) store(m[s], moments + s * n + k);
+  }
+}
+
+// Yu & Turk 2013, eq. 6 and 7: φ(x) = Σ V_i W(|G_i (x_i − x)|), with the weights of above.
+void density_at_points(ConstVectors points, std::size_t n, ConstVectors particles, const KernelShape* shapes,
+                       std::size_t count, float* sums) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    Floats density = {}, x = {}, y = {}, z = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const KernelShape& g = shapes[i];
+      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
+      const Floats qx = g.xx * dx + g.xy * dy + g.xz * dz, qy = g.xy * dx + g.yy * dy + g.yz * dz,
+                   qz = g.xz * dx + g.yz * dy + g.zz * dz;
+      const Floats t = nearness(qx * qx + qy * qy + qz * qz);
+      const Floats slope = g.weight * (t * t);
+      density += slope * t;
+      // ∇(1 − |G d|²)³ = 6 t² G (G d)
+      x += slope * (g.xx * qx + g.xy * qy + g.xz * qz);
+      y += slope * (g.xy * qx + g.yy * qy + g.yz * qz);
+      z += slope * (g.xz * qx + g.yz * qy + g.zz * qz);
+    }
+    store(density, sums + k);
+    store(6.0f * x, sums + n + k);
+    store(6.0f * y, sums + 2 * n + k);
+    store(6.0f * z, sums + 3 * n + k);
+  }
+}
+
+// The first order is taken of the fourth root, as the kernel's integral over a face is (1 − z²)⁴: its root is
+// nearly straight where the density itself has a long tail.
+void density_distances(const SurfaceShape& shape, const float* sums, std::size_t n, float* to) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats density = load(sums + k);
+    const Floats x = load(sums + n + k), y = load(sums + 2 * n + k), z = load(sums + 3 * n + k);
+    const Floats slope = larger(square_root(x * x + y * y + z * z), all(k_least_slope));
+    const Floats root = square_root(square_root(density));
+    const Floats distance = (shape.threshold - root) * (4.0f / shape.voxel_size) * root * root * root / slope;
+    const Ints body = is_larger(density, all(k_least_density));
+    store(where(body, cut(shape, distance)) + where(~body, all(shape.background)), to + k);
+  }
+}
+
+}  // namespace
+
+extern const SurfaceKernels surface_kernels;
+const SurfaceKernels surface_kernels = {sum_at_points,     distances,         fill_block,
+                                        sphere_distances,  moments_at_points, density_at_points,
+                                        density_distances, mean_at_points};
+
+}  // namespace mallow::MALLOW_LEVEL

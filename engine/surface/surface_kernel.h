@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+
+#include "core/isa.h"
+#include "core/raw_columns.h"
+#include "surface/voxel_frame.h"
+
+namespace mallow {
+
+/// Share of the variance that is too much for one part of a body, see SurfaceShape::spread, in the squared
+/// distance.
+inline constexpr float k_excess_share = 0.5f;
+
+/// What shapes the surface. Lengths in kernel radii. Fullness is Σ w relative to that inside of a body, at
+/// most 1/2.
+struct SurfaceShape {
+  float voxel_size;
+  float offset;  ///< from x̄ to the surface where there is little weight: radius of a lone particle's sphere
+  float extra_offset;  ///< added to it at fullness 1/2, a flat face of a body, where x̄ lies deeper
+  float spread;        ///< variance of the x_i about x̄ that is taken for one part of a body at fullness 0
+  float extra_spread;  ///< added to it at fullness 1/2
+  float full_weight;   ///< Σ w in the middle of a body
+  float threshold;     ///< fourth root of the density at the surface, where kernels are anisotropic
+  float background;    ///< distances are cut here [voxels]
+};
+
+/// The kernel of one particle, w(|G (x_i − x)|) with a symmetric G; lengths in kernel radii.
+struct KernelShape {
+  float xx, xy, xz, yy, yz, zz;  ///< G
+  float weight;                  ///< density in its middle, relative to that inside of a body
+  float reach[3];                ///< half of the box it fills
+};
+
+/// Sums over the particles about a point: Σ w, Σ w (x_i − x) and Σ w |x_i − x|².
+inline constexpr std::size_t k_sums = 5;
+/// Density and its gradient at a point.
+inline constexpr std::size_t k_density_sums = 4;
+/// Σ w, Σ w d and Σ w d dᵀ (xx xy xz yy yz zz) of d = x_i − x.
+inline constexpr std::size_t k_moments = 10;
+/// Nodes along a side of what a block's sums are interpolated from.
+inline constexpr std::size_t k_nodes = 5;
+
+/// w[v][n]: share of node n in voxel v, along one axis.
+struct NodeWeights {
+  float w[k_block_side][k_nodes];
+};
+
+/// Points come in eights, as three arrays [kernel radii]; particles are those within reach of them, and may
+/// be read to the next whole eight. Sums of n points are five arrays of n.
+struct SurfaceKernels {
+  void (*sum_at_points)(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
+                        float* sums) noexcept;
+  /// Signed distances [voxels] from sums.
+  void (*distances)(const SurfaceShape&, const float* sums, std::size_t n, float* distances) noexcept;
+  /// Distances of a block's voxels, z fastest, from the sums at its 5 × 5 × 5 nodes (five arrays of 125, z
+  /// fastest): sums are interpolated, as they are smooth where distances have creases.
+  void (*fill_block)(const SurfaceShape&, const NodeWeights&, const float* nodes, float* distances) noexcept;
+  /// Distances to the nearest of the spheres of radius `offset` around the particles [voxels], cut at the
+  /// background.
+  void (*sphere_distances)(const SurfaceShape&, ConstVectors points, std::size_t n, ConstVectors particles,
+                           std::size_t count, float* distances) noexcept;
+  /// Moments with w = 1 − |d|³, n of each.
+  void (*moments_at_points)(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
+                            float* moments) noexcept;
+  /// Σ weight (1 − |G d|²)³ over particles with kernels of their own, and its gradient, n of each.
+  void (*density_at_points)(ConstVectors points, std::size_t n, ConstVectors particles,
+                            const KernelShape* shapes, std::size_t count, float* sums) noexcept;
+  /// Signed distances [voxels] from the surface where the density is at its threshold, to first order.
+  void (*density_distances)(const SurfaceShape&, const float* sums, std::size_t n, float* distances) noexcept;
+  /// Σ w value / Σ w at points, for three values a particle; zero where there is no particle.
+  void (*mean_at_points)(ConstVectors points, std::size_t n, ConstVectors particles, ConstVectors values,
+                         std::size_t count, Vectors means) noexcept;
+};
+MALLOW_DECLARE_LEVELS(SurfaceKernels, surface_kernels)
+
+}  // namespace mallow

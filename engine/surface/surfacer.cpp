@@ -1,0 +1,223 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "core/parallel.h"
+#include "mallow/errors.h"
+#include "mallow/surface.h"
+#include "surface/dual_mesher.h"
+#include "surface/mesh_smoothing.h"
+#include "surface/particle_order.h"
+#include "surface/surface_checks.h"
+#include "surface/surface_field.h"
+#include "surface/surfacer_access.h"
+
+namespace mallow {
+namespace {
+
+/// Voxels along an axis: keeps the numbers of blocks within 21 bits and offsets within a block exact.
+constexpr int k_max_side = 1 << 22;
+
+/// The box of all particles and of the surface around them.
+struct Extent {
+  Eigen::Vector3d low;      ///< of the particles [m]
+  double longest_side = 0;  ///< with the surface [m]
+};
+
+Extent extent_of(const SurfaceParticles& particles, double margin) {
+  constexpr float k_far = std::numeric_limits<float>::max();
+  Vec3 low = Vec3::Constant(k_far), high = -low;
+  for (const SurfaceBody& body : particles.bodies) {
+    const Simulation::Rows rows = rows_of(body, particles.positions.size());
+    for (std::size_t row = rows.begin; row < rows.end; ++row) {
+      const Vec3 x = particles.positions[row];
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+  }
+  const Eigen::Vector3d corner = low.cast<double>();
+  return {corner, (high.cast<double>() - corner).maxCoeff() + 2 * margin};
+}
+
+/// The widest spacing of the bodies of a surface.
+float widest_spacing(const SurfaceParticles& particles, std::size_t surface, bool joined) {
+  float widest = 0;
+  for (const SurfaceBody& body : particles.bodies)
+    if (joined || body.group == surface) widest = std::max(widest, body.spacing);
+  return widest;
+}
+
+/// Side of the voxels of a surface [m]. A float, where it does not follow the box: a whole number of such
+/// sides is exact in double, and so are places on the grid wherever its origin is.
+double voxel_size(const SurfaceConfig& config, float spacing, const Extent& extent) {
+  if (config.voxel_size) return static_cast<double>(*config.voxel_size);
+  if (config.voxels) return extent.longest_side / *config.voxels;
+  return static_cast<double>(spacing / config.voxels_per_spacing);
+}
+
+/// The grid of a surface. Its origin is a corner of a fixed lattice, a cube of BlockMap wide: voxels, blocks
+/// and the order of blocks stay where they are while particles come and go.
+VoxelFrame make_frame(const SurfaceConfig& config, float spacing, const Extent& extent) {
+  constexpr int k_lattice = BlockMap::k_cube_side * k_block_side;
+  VoxelFrame frame;
+  frame.voxel_size = voxel_size(config, spacing, extent);
+  const double side = k_lattice * frame.voxel_size;
+  frame.origin = (extent.low / side).array().floor() * side;
+  if (extent.longest_side / frame.voxel_size > k_max_side) {
+    std::ostringstream text;
+    text << "voxels of " << frame.voxel_size << " m are too small for these particles: the grid would be "
+         << extent.longest_side / frame.voxel_size << " voxels long, and " << k_max_side << " are allowed";
+    throw ConfigError("surface.voxel_size", text.str());
+  }
+  return frame;
+}
+
+}  // namespace
+
+struct Surfacer::Work {
+  SurfaceConfig config;
+  std::shared_ptr<Executor> executor;  ///< that `threads` points to
+  Threads threads = 1;
+  ParticleOrder order;
+  std::vector<SurfaceField> fields;  ///< one for each surface
+  DualMesher mesher;
+  Mesh mesh;
+  MeshCounts counts;
+  std::vector<Vec3> shares;  ///< of three groups in each particle, by row: 0 or 1
+  MeshSmoother smoother;
+
+  void draw(const SurfaceParticles& particles);
+  void draw_one(const SurfaceParticles& all, std::size_t surface, const Extent& extent);
+  template <class Write>
+  void at_vertices(const SurfaceField& field, const PickedVectors& values, const Write& write);
+  void find_materials(const SurfaceField& field, const SurfaceParticles& all);
+};
+
+/// Calls write(vertex, mean) for the vertices of the surface drawn last, with the mean of the particles'
+/// values there.
+template <class Write>
+void Surfacer::Work::at_vertices(const SurfaceField& field, const PickedVectors& values, const Write& write) {
+  const auto& runs = mesher.block_vertices();
+  parallel_for(
+      threads, runs.size(),
+      [&](std::size_t begin, std::size_t end) {
+        thread_local std::vector<float> points[3], means[3];
+        for (std::size_t r = begin; r < end; ++r) {
+          const std::size_t n = padded(runs[r].count);
+          for (std::size_t a = 0; a < 3; ++a) {
+            points[a].assign(n, 0.0f);
+            means[a].resize(n);
+            for (std::uint32_t v = 0; v < runs[r].count; ++v)
+              points[a][v] = mesher.local(runs[r].first + v)[static_cast<Eigen::Index>(a)];
+          }
+          field.mean_at(runs[r].block, {points[0].data(), points[1].data(), points[2].data()}, n, values,
+                        {means[0].data(), means[1].data(), means[2].data()});
+          for (std::uint32_t v = 0; v < runs[r].count; ++v)
+            write(runs[r].first + v, Vec3(means[0][v], means[1][v], means[2][v]));
+        }
+      },
+      4);
+}
+
+/// Each vertex of a joined surface belongs to the group that has the largest share of the weight there.
+void Surfacer::Work::find_materials(const SurfaceField& field, const SurfaceParticles& all) {
+  std::size_t groups = 0;
+  for (const SurfaceBody& body : all.bodies) groups = std::max(groups, std::size_t{body.group} + 1);
+  if (groups == 1) return;
+  std::vector<float> largest(mesh.vertices.size(), 0.0f);
+  for (std::size_t first = 0; first < groups; first += 3) {
+    shares.assign(all.positions.size(), Vec3(0, 0, 0));
+    for (const SurfaceBody& body : all.bodies) {
+      if (body.group < first || body.group >= first + 3) continue;
+      const Simulation::Rows rows = rows_of(body, shares.size());
+      for (std::size_t row = rows.begin; row < rows.end; ++row)
+        shares[row][static_cast<Eigen::Index>(body.group - first)] = 1;
+    }
+    at_vertices(field, {shares, order.rows(0)}, [&](std::uint32_t vertex, const Vec3& share) {
+      Eigen::Index which = 0;
+      if (!(share.maxCoeff(&which) > largest[vertex])) return;
+      largest[vertex] = share[which];
+      mesh.material_ids[vertex] = static_cast<std::uint8_t>(first + static_cast<std::size_t>(which));
+    });
+  }
+}
+
+/// Appends the surface around the particles of a group, or of all where they are joined.
+void Surfacer::Work::draw_one(const SurfaceParticles& all, std::size_t surface, const Extent& extent) {
+  const std::span<const std::uint32_t> rows = order.rows(surface);
+  if (rows.empty()) return;
+  SurfaceField& field = fields[surface];
+  const std::size_t first = counts.vertices;
+  const float spacing = widest_spacing(all, surface, config.joined);
+  field.build({all.positions, rows}, spacing, config, make_frame(config, spacing, extent), threads);
+  mesher.append(field, config.adaptivity, threads, counts, mesh);
+  mesh.material_ids.resize(mesh.vertices.size(), static_cast<std::uint8_t>(surface));
+  if (config.joined) find_materials(field, all);
+  if (!all.velocities.empty()) {
+    mesh.velocities.resize(mesh.vertices.size());
+    at_vertices(field, {all.velocities, rows},
+                [&](std::uint32_t vertex, const Vec3& mean) { mesh.velocities[vertex] = mean; });
+  }
+  if (config.smoothing > 0) smoother.smooth(config.smoothing, first, threads, mesh);
+}
+
+void Surfacer::Work::draw(const SurfaceParticles& particles) {
+  check(particles);
+  counts = {};
+  mesh.velocities.clear();
+  mesh.material_ids.clear();
+  order.sort(particles, config.joined);
+  fields.resize(order.surfaces());
+  for (SurfaceField& field : fields) field.clear();
+  if (order.count() == 0) {
+    mesh = {};
+    return;
+  }
+  float widest = 0;
+  for (const SurfaceBody& body : particles.bodies) widest = std::max(widest, body.spacing);
+  const Extent extent = extent_of(particles, static_cast<double>(config.particle_radius * widest));
+  for (std::size_t s = 0; s < fields.size(); ++s) draw_one(particles, s, extent);
+}
+
+Surfacer::Surfacer(const SurfaceConfig& config, int threads, std::shared_ptr<Executor> executor) {
+  check(config, threads);
+  work_ = std::make_unique<Work>();
+  work_->config = config;
+  work_->executor = std::move(executor);
+  work_->threads = Threads(threads, work_->executor);
+}
+Surfacer::~Surfacer() = default;
+Surfacer::Surfacer(Surfacer&&) noexcept = default;
+Surfacer& Surfacer::operator=(Surfacer&&) noexcept = default;
+
+const Mesh& Surfacer::draw(const SurfaceParticles& particles) {
+  work_->draw(particles);
+  return work_->mesh;
+}
+
+std::size_t Surfacer::surface_count() const {
+  return work_->fields.size();
+}
+
+std::size_t Surfacer::bytes() const {
+  std::size_t bytes =
+      work_->order.bytes() + work_->mesher.bytes() + work_->mesh.vertices.capacity() * 4 * sizeof(Vec3);
+  for (const SurfaceField& field : work_->fields) bytes += field.bytes();
+  return bytes;
+}
+
+std::span<const SurfaceField> SurfacerAccess::fields(const Surfacer& surfacer) {
+  return surfacer.work_->fields;
+}
+const Threads& SurfacerAccess::threads(const Surfacer& surfacer) {
+  return surfacer.work_->threads;
+}
+
+Mesh surface(StridedVectors positions, float spacing, const SurfaceConfig& config, int threads) {
+  Surfacer surfacer(config, threads);
+  return surfacer.draw({.positions = positions, .bodies = {{.spacing = spacing}}});
+}
+
+}  // namespace mallow

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "mallow/vec3.h"
+
+namespace mallow {
+
+/// Voxels along a side of the blocks that level sets are kept in, those of an OpenVDB leaf.
+inline constexpr int k_block_side = 8;
+inline constexpr std::size_t k_block_voxels = 512;
+
+/// Where the voxels of a grid lie: voxel (i, j, k) is the point origin + voxel_size · (i, j, k).
+struct VoxelFrame {
+  Eigen::Vector3d origin{0, 0, 0};  ///< [m], on a lattice that is whole in blocks: frames of a film share it
+  double voxel_size = 1;            ///< [m]
+
+  Vec3 point(const Eigen::Vector3d& voxel) const { return (origin + voxel_size * voxel).cast<float>(); }
+};
+
+}  // namespace mallow
