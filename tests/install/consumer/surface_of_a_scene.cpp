@@ -1,4 +1,4 @@
-#include <mallow/level_set.h>
+#include <mallow/openvdb.h>
 #include <mallow/scene.h>
 
 #include <iostream>
@@ -7,7 +7,8 @@ int main(int, char** argv) {
   const mallow::Scene scene = mallow::read_scene(argv[1]);
   mallow::Simulation simulation = mallow::build(scene);
   simulation.step();
-  const mallow::Mesh mesh =
-      mallow::surface(simulation.positions_by_id(), simulation.info().bodies[0].spacing, scene.surface);
-  std::cout << mesh.triangles.size() << " triangles\n";
+  mallow::Surfacer surfacer(scene.surface);
+  const mallow::Mesh& mesh = surfacer.draw(surface_particles(simulation));
+  const openvdb::FloatGrid::Ptr grid = mallow::level_set(surfacer);
+  std::cout << mesh.triangles.size() << " triangles, " << grid->activeVoxelCount() << " voxels\n";
 }
