@@ -5,7 +5,7 @@
 namespace mallow {
 
 template <>
-struct ShapeTraits<Box> {
+struct MALLOW_EXPORT ShapeTraits<Box> {
   static constexpr const char* k_key = "box";
 
   template <class Self, class Visit>

@@ -5,7 +5,7 @@
 namespace mallow {
 
 template <>
-struct ShapeTraits<Plane> {
+struct MALLOW_EXPORT ShapeTraits<Plane> {
   static constexpr const char* k_key = "plane";
 
   template <class Self, class Visit>

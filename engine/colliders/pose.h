@@ -8,9 +8,9 @@
 namespace mallow {
 
 /// R of a pose: from its frame to the world.
-Eigen::Matrix3d rotation_of(const Pose& pose);
+MALLOW_EXPORT Eigen::Matrix3d rotation_of(const Pose& pose);
 /// One that is turned about x, then y, then z by these degrees, and then moved.
-Pose pose_of(const Vec3& translation, const Vec3& degrees);
+MALLOW_EXPORT Pose pose_of(const Vec3& translation, const Vec3& degrees);
 /// Whether the frame does not stand along the axes of the world, or will not.
 bool turns(const Collider& collider);
 /// (exp(Δt [ω]) − 1)/Δt, which is [ω] as Δt goes to 0: with it a point of the collider moves in a step to

@@ -37,7 +37,7 @@ struct Crossing {
 using Crossings = std::array<Crossing, 2>;
 
 /// What a shape is to the rest of the engine, specialised in its own header. What it does to particles is in
-/// its kernels.
+/// its kernels. Exported, as the scene reader and the renderer use it.
 template <class Shape>
 struct ShapeTraits;
 

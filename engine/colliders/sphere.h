@@ -5,7 +5,7 @@
 namespace mallow {
 
 template <>
-struct ShapeTraits<Sphere> {
+struct MALLOW_EXPORT ShapeTraits<Sphere> {
   static constexpr const char* k_key = "sphere";
 
   template <class Self, class Visit>

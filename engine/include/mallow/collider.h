@@ -65,7 +65,7 @@ struct ColliderLoad {
 };
 
 /// The pose after some seconds of its velocities.
-Pose pose_after(const Collider& collider, double seconds);
+MALLOW_EXPORT Pose pose_after(const Collider& collider, double seconds);
 
 /// Calls visit(part) with each primitive of a collider as what it is.
 template <class Visit>
