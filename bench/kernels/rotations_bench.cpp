@@ -28,6 +28,7 @@ struct MatrixRegions {
   std::vector<RegionMatrix> matrices;
   VectorColumn x;  ///< is not read
   ShapeMatching shape;
+  MatchedBodies matched;  ///< this one
 
   explicit MatrixRegions(const std::string& kind) : matrices(make_matrices(kind, k_matrices)), x(k_matrices) {
     shape.reference.resize(k_matrices);
@@ -42,7 +43,11 @@ struct MatrixRegions {
     shape.sums.resize(k_matrices * k_row);
     shape.undecided.resize(k_matrices);
     restore();
+    matched.large.push_back({&shape, 0, shape_input(x, 0, shape)});
+    matched.regions.add(k_matrices);
   }
+  MatrixRegions(const MatrixRegions&) = delete;
+  MatrixRegions& operator=(const MatrixRegions&) = delete;
   /// The sums, and the rotations of the step before.
   void restore() {
     for (std::size_t j = 0; j < k_matrices; ++j) {
@@ -54,7 +59,7 @@ struct MatrixRegions {
     }
   }
   void solve(int threads, InstructionLevel level) {
-    solve_rotations(x, 0, k_enough_iterations, threads, level, shape);
+    solve_rotations(k_enough_iterations, threads, level, matched);
   }
   /// As goal positions use them: R − R_g, to which the frame is added here.
   std::vector<Eigen::Matrix3d> rotations() const {
