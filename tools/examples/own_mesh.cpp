@@ -34,17 +34,17 @@ mallow::Mesh torus(float ring, float tube, std::uint32_t around = 48, std::uint3
 int main() {
   const mallow::ImplicitShape shape =
       place(mallow::mesh_shape(torus(6, 2)), {.rotate = {90, 0, 0}, .center = mallow::Vec3{0, 0, 12}});
-  const mallow::Body body = sample(shape, {.spacing = 1.0f});
+  const mallow::Body body = sample(shape, {.spacing = 0.5f});
   for (const std::string& note : body.notes) std::cout << "note: " << note << '\n';
 
-  mallow::Simulation simulation({.support_radius = 2.0f});
+  mallow::Simulation simulation({.support_radius = 1.0f});
   simulation.add_collider({.shape = mallow::Plane{}, .friction = 0.5f});
   simulation.add_body(body, {.alpha = 0.2f});
   simulation.advance(10);
 
-  const float volume = static_cast<float>(body.positions.size());  // a cube of side 1 for each
+  const float volume = 0.125f * static_cast<float>(body.positions.size());  // a cube of side 0.5 for each
   const float exact = 2 * std::numbers::pi_v<float> * std::numbers::pi_v<float> * 6 * 2 * 2;
-  std::cout << "a torus of " << volume << " particles, " << exact << " by volume, is now "
-            << simulation.positions().eigen().col(2).maxCoeff() << " high\n";
+  std::cout << "a torus of " << body.positions.size() << " particles, " << volume / exact
+            << " of its volume, is now " << simulation.positions().eigen().col(2).maxCoeff() << " high\n";
   return std::abs(volume / exact - 1) < 0.05f ? 0 : 1;
 }
