@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "mallow/collider.h"
 #include "shapes/random_points.h"
 
 namespace mallow {
