@@ -18,7 +18,7 @@ int main() {
   const openvdb::FloatGrid::Ptr grid = mallow::level_set(surfacer);
   const double rough = openvdb::tools::levelSetArea(*grid), before = openvdb::tools::levelSetVolume(*grid);
 
-  openvdb::tools::LevelSetFilter<openvdb::FloatGrid>(*grid).gaussian(2);
+  openvdb::tools::LevelSetFilter<openvdb::FloatGrid>(*grid).gaussian(1);
   const double smooth = openvdb::tools::levelSetArea(*grid), after = openvdb::tools::levelSetVolume(*grid);
 
   std::cout << "area " << rough << " before and " << smooth << " after the filter, volume " << before
