@@ -4,11 +4,6 @@
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
-/// What of x is beyond a range, on either side.
-Lanes beyond(const Lanes& x, float low, float high) {
-  return larger(larger(low - x, x - high), Lanes{});
-}
-
 struct BoxLanes {
   const float *min, *max;
   bool inside;
@@ -19,23 +14,19 @@ struct BoxLanes {
   Meets meets() const { return Meets::on_the_way; }
 
   Surface nearest(const LaneVec3& x) const {
-    const Lanes zero = {};
-    const LaneVec3 below = minus(constant(min), x), above = minus(x, constant(max));
-    const LaneVec3 outside = {larger(above.x, zero) - larger(below.x, zero),
-                              larger(above.y, zero) - larger(below.y, zero),
-                              larger(above.z, zero) - larger(below.z, zero)};
+    const LaneVec3 zero = {}, below = all_lanes(min) - x, above = x - all_lanes(max);
+    const LaneVec3 outside = larger(above, zero) - larger(below, zero);
     const Lanes length = norm(outside);
     const LaneMask is_outside = length > k_no_length;
     const Surface face = nearest_face(below, above);
     const Surface s = {is_outside ? length : face.distance,
-                       select(is_outside, over(outside, length), face.normal)};
-    return inside ? Surface{-s.distance, opposite(s.normal)} : s;
+                       select(is_outside, outside / length, face.normal)};
+    return inside ? Surface{-s.distance, -s.normal} : s;
   }
 
   /// Squares are compared, so that there is no root; "not farther" holds for what is not a number, too.
   LaneMask is_near(const LaneVec3& x, const Lanes& reach) const {
-    const LaneVec3 outside = {beyond(x.x, min[0], max[0]), beyond(x.y, min[1], max[1]),
-                              beyond(x.z, min[2], max[2])};
+    const LaneVec3 zero = {}, outside = larger(larger(all_lanes(min) - x, x - all_lanes(max)), zero);
     return ~(squared(outside) > reach * reach);
   }
 

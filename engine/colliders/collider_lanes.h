@@ -47,31 +47,6 @@ constexpr float k_near_enough = 1.0f / 64;
 /// The least length that has a direction.
 constexpr float k_no_length = __FLT_MIN__;
 
-inline Lanes dot(const LaneVec3& a, const LaneVec3& b) {
-  return a.x * b.x + (a.y * b.y + a.z * b.z);
-}
-inline LaneVec3 constant(const float* v) {
-  return {all_lanes(v[0]), all_lanes(v[1]), all_lanes(v[2])};
-}
-inline LaneVec3 plus(const LaneVec3& a, const LaneVec3& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-inline LaneVec3 minus(const LaneVec3& a, const LaneVec3& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline LaneVec3 times(const Lanes& factor, const LaneVec3& v) {
-  return {factor * v.x, factor * v.y, factor * v.z};
-}
-inline LaneVec3 over(const LaneVec3& v, const Lanes& divisor) {
-  return {v.x / divisor, v.y / divisor, v.z / divisor};
-}
-inline LaneVec3 opposite(const LaneVec3& v) {
-  return {-v.x, -v.y, -v.z};
-}
-inline LaneVec3 select(const LaneMask& mask, const LaneVec3& a, const LaneVec3& b) {
-  return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
-}
-
 /// M v, and Mᵀ v, of a matrix that lies row by row.
 inline LaneVec3 product(const float* m, const LaneVec3& v) {
   return {m[0] * v.x + (m[1] * v.y + m[2] * v.z), m[3] * v.x + (m[4] * v.y + m[5] * v.z),
@@ -89,14 +64,14 @@ inline Lanes norm(const LaneVec3& v) {
   if (!any(odd)) return length;
   const Lanes largest = larger(larger(larger(v.x, -v.x), larger(v.y, -v.y)), larger(v.z, -v.z));
   const LaneMask scales = odd & (largest > 0.0f) & (largest < __builtin_inff());
-  return scales ? largest * square_root(squared(over(v, largest))) : length;
+  return scales ? largest * square_root(squared(v / largest)) : length;
 }
 
 /// A collider that stays upright: its shapes are given where they are.
 struct Upright {
   const ContactSurface& surface;
   LaneVec3 to_shape(const LaneVec3& x) const { return x; }
-  LaneVec3 velocity(const LaneVec3&) const { return constant(surface.velocity); }
+  LaneVec3 velocity(const LaneVec3&) const { return all_lanes(surface.velocity); }
   LaneVec3 turned_back(const LaneVec3& way) const { return way; }
   Surface seen(const Surface& met) const { return met; }
   LaneVec3 velocity_under(const LaneVec3& u, const Surface&) const { return u; }
@@ -106,11 +81,11 @@ struct Upright {
 struct Turning {
   const ContactSurface& surface;
   LaneVec3 to_shape(const LaneVec3& x) const {
-    return transposed_product(surface.rotation, minus(x, constant(surface.translation)));
+    return transposed_product(surface.rotation, x - all_lanes(surface.translation));
   }
   /// Of the collider's point at x.
   LaneVec3 velocity(const LaneVec3& x) const {
-    return plus(constant(surface.velocity), product(surface.spin, minus(x, constant(surface.translation))));
+    return all_lanes(surface.velocity) + product(surface.spin, x - all_lanes(surface.translation));
   }
   LaneVec3 turned_back(const LaneVec3& way) const { return transposed_product(surface.rotation, way); }
   Surface seen(const Surface& met) const { return {met.distance, product(surface.rotation, met.normal)}; }
@@ -119,7 +94,7 @@ struct Turning {
   LaneVec3 velocity_under(const LaneVec3& u, const Surface& met) const {
     const Lanes distance = met.distance < __builtin_inff() ? met.distance : Lanes{};
     const LaneVec3 change = product(surface.spin, met.normal);
-    return minus(u, times(distance, minus(change, times(dot(change, met.normal), met.normal))));
+    return u - distance * (change - dot(change, met.normal) * met.normal);
   }
 };
 
@@ -127,7 +102,7 @@ template <class Shape>
 Surface meet(const Shape& shape, float offset, const LaneVec3& x, const LaneVec3& way) {
   if (shape.meets() == Meets::here) return shape.nearest(x);
   if (shape.meets() == Meets::at_the_end) {
-    const Surface end = shape.nearest(plus(x, way));
+    const Surface end = shape.nearest(x + way);
     return {end.distance - dot(way, end.normal), end.normal};
   }
   const Lanes length = square_root(squared(way));
@@ -142,7 +117,7 @@ Surface meet(const Shape& shape, float offset, const LaneVec3& x, const LaneVec3
     const LaneMask passes = going & ~(t < 1.0f);
     apart |= passes;
     going &= ~passes;
-    const Surface next = shape.nearest(plus(x, times(t, way)));
+    const Surface next = shape.nearest(x + t * way);
     met = {going ? next.distance : met.distance, select(going, next.normal, met.normal)};
   }
   return {apart ? all_lanes(__builtin_inff()) : met.distance - t * dot(way, met.normal), met.normal};
@@ -155,7 +130,7 @@ inline Lanes bounce(float restitution, const Lanes& approach, const Lanes& gap, 
   const Lanes none = all_lanes(-__builtin_inff()), zero = {};
   const LaneMask bounces = approach < -step.least_bounce;
   if (!(restitution > 0) || !any(bounces)) return none;
-  const Lanes gravity = larger(zero, dot(constant(step.gravity), normal) * -1.0f);
+  const Lanes gravity = larger(zero, dot(all_lanes(step.gravity), normal) * -1.0f);
   const Lanes half_kick = 0.5f * gravity * step.time_step, speed = half_kick - approach;
   const float kept = restitution * restitution;
   const Lanes square = kept * (speed * speed) - 2.0f * (1.0f - kept) * gravity * larger(gap, zero);
@@ -168,12 +143,12 @@ inline LaneVec3 resolve_contact(const ContactSurface& surface, const LaneVec3& u
                                 const ContactStep& step, const LaneVec3& before, const LaneVec3& v) {
   const LaneVec3& n = met.normal;
   const Lanes gap = met.distance - step.contact_offset, zero = {};
-  const LaneVec3 relative = minus(v, u);
+  const LaneVec3 relative = v - u;
   const Lanes normal_velocity = dot(relative, n);
   const LaneMask apart = gap + step.time_step * normal_velocity >= 0.0f;
   if (!any(~apart)) return v;
 
-  const LaneVec3 relative_before = minus(before, u);
+  const LaneVec3 relative_before = before - u;
   const Lanes approach = dot(relative_before, n);
   const Lanes reach = -gap / step.time_step;  // just touches at the end of the step
   const Lanes target = larger(gap >= 0.0f ? reach : smaller(reach, all_lanes(step.max_push)),
@@ -181,13 +156,13 @@ inline LaneVec3 resolve_contact(const ContactSurface& surface, const LaneVec3& u
   const Lanes change = target - normal_velocity;
 
   // Coulomb's friction takes at most what slides, and leaves what the step has turned round already.
-  const LaneVec3 tangential = minus(relative, times(normal_velocity, n));
+  const LaneVec3 tangential = relative - normal_velocity * n;
   const Lanes square = squared(tangential), speed = square_root(square), one = all_lanes(1.0f);
   Lanes taken = speed > 0.0f ? smaller(one, surface.friction * change / speed) : one;
-  const Lanes along = dot(tangential, minus(relative_before, times(approach, n)));
+  const Lanes along = dot(tangential, relative_before - approach * n);
   taken = along < 0.0f ? smaller(taken, larger(zero, 1.0f + along / square)) : taken;
   const Lanes kept = 1.0f - taken;
-  return select(apart, v, plus(plus(u, times(target, n)), times(kept, tangential)));
+  return select(apart, v, (u + target * n) + kept * tangential);
 }
 
 template <class Shape>
@@ -197,9 +172,7 @@ void nearest(const ShapeNumbers& numbers, ConstVectors position, std::size_t beg
   for_rows(begin, end, [&](auto rows) {
     const Surface s = shape.nearest(get(rows, position));
     rows.put(s.distance, distance);
-    rows.put(s.normal.x, normal.x);
-    rows.put(s.normal.y, normal.y);
-    rows.put(s.normal.z, normal.z);
+    put(rows, s.normal, normal);
   });
 }
 
@@ -209,7 +182,7 @@ void mark_in(const Shape& shape, const Frame& frame, const ContactStep& step, Co
              std::uint8_t* flags) noexcept {
   for_rows(begin, end, [&](auto rows) {
     const LaneVec3 x = get(rows, position);
-    const LaneVec3 w = minus(get(rows, velocity), frame.velocity(x));
+    const LaneVec3 w = get(rows, velocity) - frame.velocity(x);
     const Lanes reach = step.contact_offset + step.time_step * square_root(squared(w));
     unsigned near = rows.valid(bits(shape.is_near(frame.to_shape(x), reach + slack)));
     for (; near != 0; near &= near - 1)
@@ -251,14 +224,12 @@ void resolve_in(const Shape& shape, const Frame& frame, const ContactStep& step,
     const LaneVec3 x = get(listed, position);
     const LaneVec3 free = get(listed, {velocity.x, velocity.y, velocity.z});
     const LaneVec3 u = frame.velocity(x);
-    const LaneVec3 way = times(all_lanes(step.time_step), minus(free, u));
+    const LaneVec3 way = step.time_step * (free - u);
     const Surface met =
         frame.seen(meet(shape, step.contact_offset, frame.to_shape(x), frame.turned_back(way)));
     const LaneVec3 v =
         resolve_contact(frame.surface, frame.velocity_under(u, met), met, step, get(listed, before), free);
-    listed.put(v.x, velocity.x);
-    listed.put(v.y, velocity.y);
-    listed.put(v.z, velocity.z);
+    put(listed, v, velocity);
     const Lanes squares = squared(v);
     for (std::size_t l = 0; l < listed.count; ++l) fastest = fastest < squares[l] ? squares[l] : fastest;
   }

@@ -12,7 +12,7 @@ struct PlaneLanes {
 
   Meets meets() const { return Meets::here; }
   Surface nearest(const LaneVec3& x) const {
-    const LaneVec3 n = constant(normal);
+    const LaneVec3 n = all_lanes(normal);
     return {dot(n, x) - offset, n};
   }
   LaneMask is_near(const LaneVec3& x, const Lanes& reach) const { return ~(nearest(x).distance > reach); }

@@ -13,15 +13,15 @@ struct SphereLanes {
 
   Meets meets() const { return inside ? Meets::at_the_end : Meets::on_the_way; }
   Surface nearest(const LaneVec3& x) const {
-    const LaneVec3 offset = minus(x, constant(center));
+    const LaneVec3 offset = x - all_lanes(center);
     const Lanes length = norm(offset), zero = {};
     const LaneVec3 any_direction = {zero, zero, all_lanes(1.0f)};
-    const Surface s = {length - radius, select(length > k_no_length, over(offset, length), any_direction)};
-    return inside ? Surface{-s.distance, opposite(s.normal)} : s;
+    const Surface s = {length - radius, select(length > k_no_length, offset / length, any_direction)};
+    return inside ? Surface{-s.distance, -s.normal} : s;
   }
   /// Squares are compared, so that there is no root; "not farther" holds for what is not a number, too.
   LaneMask is_near(const LaneVec3& x, const Lanes& reach) const {
-    const Lanes distance = squared(minus(x, constant(center)));
+    const Lanes distance = squared(x - all_lanes(center));
     const Lanes limit = inside ? radius - reach : radius + reach;
     return inside ? ~((distance < limit * limit) & (limit > 0.0f)) : ~(distance > limit * limit);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/isa.h"
+#include "core/lane_vec3.h"
 #include "core/raw_columns.h"
 
 #ifdef __SSE__
@@ -15,8 +16,7 @@ namespace mallow::MALLOW_LEVEL {
 
 using Floats = float __attribute__((vector_size(k_cluster * sizeof(float))));
 using Ints = int __attribute__((vector_size(k_cluster * sizeof(int))));
-
-#define MALLOW_INLINE [[gnu::always_inline]] static inline
+using ClusterVec3 = Vec3Of<Floats>;
 
 MALLOW_INLINE Floats load(const float* from) {
   Floats value;
@@ -27,6 +27,9 @@ MALLOW_INLINE Ints load(const std::uint32_t* from) {
   Ints values;
   __builtin_memcpy(&values, from, sizeof values);
   return values;
+}
+MALLOW_INLINE ClusterVec3 load(const ConstVectors& from, std::size_t first) {
+  return {load(from.x + first), load(from.y + first), load(from.z + first)};
 }
 MALLOW_INLINE void store(const Ints& values, std::uint32_t* to) {
   __builtin_memcpy(to, &values, sizeof values);
@@ -107,6 +110,9 @@ MALLOW_INLINE Ints is_equal(const Ints& a, int b) {
 /// Zero where the mask is.
 MALLOW_INLINE Floats where(const Ints& mask, const Floats& value) {
   return reinterpret_cast<Floats>(reinterpret_cast<Ints>(value) & mask);
+}
+MALLOW_INLINE ClusterVec3 where(const Ints& mask, const ClusterVec3& v) {
+  return {where(mask, v.x), where(mask, v.y), where(mask, v.z)};
 }
 /// Bit l is that of lane l.
 MALLOW_INLINE unsigned bits(const Ints& mask) {

@@ -13,6 +13,7 @@
 // Everything here is in an anonymous namespace of the level, so that no level's code can stand in for
 // another's (core/isa.h).
 #include "core/isa.h"
+#include "core/lane_vec3.h"
 #include "core/raw_columns.h"
 
 namespace mallow::MALLOW_LEVEL {
@@ -34,9 +35,7 @@ using LaneMask = int __attribute__((vector_size(k_width * sizeof(int))));
 using LaneBytes = std::uint8_t __attribute__((vector_size(k_width)));
 using Quad = float __attribute__((vector_size(16)));
 
-struct LaneVec3 {
-  Lanes x, y, z;
-};
+using LaneVec3 = Vec3Of<Lanes>;
 
 inline Lanes smaller(const Lanes& a, const Lanes& b) {
   return b < a ? b : a;
@@ -44,9 +43,11 @@ inline Lanes smaller(const Lanes& a, const Lanes& b) {
 inline Lanes larger(const Lanes& a, const Lanes& b) {
   return b > a ? b : a;
 }
-/// Sums of three are taken as x + (y + z), as Eigen takes them.
-inline Lanes squared(const LaneVec3& v) {
-  return v.x * v.x + (v.y * v.y + v.z * v.z);
+inline LaneVec3 smaller(const LaneVec3& a, const LaneVec3& b) {
+  return {smaller(a.x, b.x), smaller(a.y, b.y), smaller(a.z, b.z)};
+}
+inline LaneVec3 larger(const LaneVec3& a, const LaneVec3& b) {
+  return {larger(a.x, b.x), larger(a.y, b.y), larger(a.z, b.z)};
 }
 
 inline Lanes load(const float* from) {
@@ -68,6 +69,10 @@ inline void store_some(const Lanes& lanes, std::size_t count, float* to) {
 }
 inline Lanes all_lanes(float value) {
   return Lanes{} + value;
+}
+/// Of three floats.
+inline LaneVec3 all_lanes(const float* v) {
+  return {all_lanes(v[0]), all_lanes(v[1]), all_lanes(v[2])};
 }
 
 /// The square root of each lane; a loop that compilers make one instruction.
@@ -215,6 +220,12 @@ void for_rows(std::size_t begin, std::size_t end, const Body& body) {
 template <class Rows>
 LaneVec3 get(const Rows& rows, const ConstVectors& columns) {
   return {rows.get(columns.x), rows.get(columns.y), rows.get(columns.z)};
+}
+template <class Rows>
+void put(const Rows& rows, const LaneVec3& v, const Vectors& columns) {
+  rows.put(v.x, columns.x);
+  rows.put(v.y, columns.y);
+  rows.put(v.z, columns.z);
 }
 }  // namespace
 }  // namespace mallow::MALLOW_LEVEL

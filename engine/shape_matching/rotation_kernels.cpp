@@ -28,10 +28,6 @@ struct Step {
   LaneMask last;      // what is left after the step is below single precision
 };
 
-Lanes dot(const LaneVec3& a, const LaneVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 // Where A is round, ω is the tangent of the turn exactly. Taken for half the turn's quaternion instead, it
 // left θ³/4, and one iteration a step spun a tumbling cube up by a quarter in 600 steps of 0.08 rad.
 //
@@ -59,22 +55,18 @@ Step newton_step(const Lanes* r, const Lanes* a, const Lanes& scale) {
                             (det > k_definite * minors) & (cxx > 0.0f) & (cyy > 0.0f);
   const Lanes inverse = definite ? 1.0f / det : Lanes{};
   const auto solve = [&](const LaneVec3& v) {
-    return LaneVec3{inverse * (cxx * v.x + cxy * v.y + cxz * v.z),
-                    inverse * (cxy * v.x + cyy * v.y + cyz * v.z),
-                    inverse * (cxz * v.x + cyz * v.y + czz * v.z)};
+    return inverse * LaneVec3{cxx * v.x + cxy * v.y + cxz * v.z, cxy * v.x + cyy * v.y + cyz * v.z,
+                              cxz * v.x + cyz * v.y + czz * v.z};
   };
   const LaneVec3 omega = solve(b);
   const LaneVec3 again = solve(omega);
-  const Lanes squared = dot(omega, omega), gain = 0.25f * dot(omega, b), share = 0.25f * squared;
-  const LaneVec3 c = {gain * again.x - share * omega.x, gain * again.y - share * omega.y,
-                      gain * again.z - share * omega.z};
-  const Lanes correction = dot(c, c);
+  const Lanes squared = dot_from_left(omega, omega), gain = 0.25f * dot_from_left(omega, b);
+  const LaneVec3 c = gain * again - (0.25f * squared) * omega;
+  const Lanes correction = dot_from_left(c, c);
   // Far from the maximum the expansion says nothing.
   const Lanes near = correction < 0.0625f * squared ? all_lanes(1.0f) : Lanes{};
   const Lanes growth = minors * inverse * (1.0f / 9.0f) * squared;
-  return {{omega.x - near * c.x, omega.y - near * c.y, omega.z - near * c.z},
-          definite,
-          correction * growth * growth < k_squared_error};
+  return {omega - near * c, definite, correction * growth * growth < k_squared_error};
 }
 
 // q ← q turned by an angle whose tangent is given, normalised: (1 + √(1 + t²), t) is the half angle's
@@ -82,7 +74,7 @@ Step newton_step(const Lanes* r, const Lanes* a, const Lanes& scale) {
 void turn(const LaneVec3& tangent, const LaneMask& active, Lanes* q) {
   const Lanes x = q[0], y = q[1], z = q[2], w = q[3];
   const Lanes tx = tangent.x, ty = tangent.y, tz = tangent.z;
-  const Lanes secant = square_root(1.0f + dot(tangent, tangent)), tw = 1.0f + secant;
+  const Lanes secant = square_root(1.0f + dot_from_left(tangent, tangent)), tw = 1.0f + secant;
   const Lanes norm = 1.0f / square_root(2.0f * secant * tw * (x * x + y * y + z * z + w * w));
   const Lanes nx = tw * x + w * tx + y * tz - z * ty;
   const Lanes ny = tw * y + w * ty + z * tx - x * tz;
@@ -132,7 +124,7 @@ LaneBytes solve_lanes(const ShapeInput& in, std::size_t j, int iterations, float
                       float* const* rotation) {
   Lanes sums[12], a[12], moment[6], q[4], r[9];
   load_columns(rows, k_row, 12, sums);
-  const LaneVec3 center = {load(in.center.x + j), load(in.center.y + j), load(in.center.z + j)};
+  const LaneVec3 center = get(WholeRows{j}, in.center);
   for (int k = 0; k < 6; ++k) moment[k] = load(in.moment[k] + j);
   for (int k = 0; k < 4; ++k) q[k] = load(rotation[k] + j);
   region_matrices(in.frame_rotation, sums, center, moment, a);

@@ -10,11 +10,10 @@ namespace {
 /// u_i: what is left of a position when the group's rigid motion is taken out.
 inline LaneVec3 displacement(const ShapeInput& in, const LaneVec3& position, const LaneVec3& reference) {
   const float* const r = in.frame_rotation;
-  const float* const t = in.frame_translation;
   const Lanes x = reference.x, y = reference.y, z = reference.z;
-  return {(position.x - t[0]) - (r[0] * x + r[1] * y + r[2] * z),
-          (position.y - t[1]) - (r[3] * x + r[4] * y + r[5] * z),
-          (position.z - t[2]) - (r[6] * x + r[7] * y + r[8] * z)};
+  const LaneVec3 turned = {r[0] * x + r[1] * y + r[2] * z, r[3] * x + r[4] * y + r[5] * z,
+                           r[6] * x + r[7] * y + r[8] * z};
+  return (position - all_lanes(in.frame_translation)) - turned;
 }
 
 void write_rows(const ShapeInput& in, std::size_t begin, std::size_t end, float* rows) noexcept {
@@ -100,10 +99,10 @@ void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float
     load_columns(rows, k_row, k_row_sums, s);
     const LaneVec3 reference = get(part, in.reference);
     const LaneVec3 u = displacement(in, get(part, in.position), reference);
-    const Lanes x = reference.x, y = reference.y, z = reference.z, w = part.get(in.weight);
-    part.put(w * (s[0] * x + s[1] * y + s[2] * z + s[9]) - u.x, pull.x);
-    part.put(w * (s[3] * x + s[4] * y + s[5] * z + s[10]) - u.y, pull.y);
-    part.put(w * (s[6] * x + s[7] * y + s[8] * z + s[11]) - u.z, pull.z);
+    const Lanes x = reference.x, y = reference.y, z = reference.z;
+    const LaneVec3 sum = {s[0] * x + s[1] * y + s[2] * z + s[9], s[3] * x + s[4] * y + s[5] * z + s[10],
+                          s[6] * x + s[7] * y + s[8] * z + s[11]};
+    put(part, part.get(in.weight) * sum - u, pull);
   });
 }
 

@@ -8,20 +8,12 @@
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
-/// Three components of eight particles.
-struct Floats3 {
-  Floats x, y, z;
-};
-
-MALLOW_INLINE Floats3 load_vectors(const ConstVectors& from, std::size_t first) {
-  return {load(from.x + first), load(from.y + first), load(from.z + first)};
-}
 /// x_j − x_i of eight i: this way round, what a register has no room for is subtracted from memory.
-MALLOW_INLINE Floats3 difference(const ConstVectors& of, std::size_t j, const Floats3& i) {
+MALLOW_INLINE ClusterVec3 difference(const ConstVectors& of, std::size_t j, const ClusterVec3& i) {
   return {of.x[j] - i.x, of.y[j] - i.y, of.z[j] - i.z};
 }
-MALLOW_INLINE Floats squared_length(const Floats3& d) {
-  return d.x * d.x + d.y * d.y + d.z * d.z;
+MALLOW_INLINE Floats squared_length(const ClusterVec3& d) {
+  return dot_from_left(d, d);
 }
 MALLOW_INLINE Floats not_negative(const Floats& value) {
   return larger(value, Floats{});
@@ -33,7 +25,7 @@ template <bool grouped, bool listed>
 Floats sum_density(const SphInput& in, std::size_t cluster, std::uint32_t* near, std::uint32_t& count) {
   const std::uint32_t* const list = in.indices + in.list_begin[cluster];
   const std::uint32_t n = in.list_count[cluster];
-  const Floats3 x = load_vectors(in.position, in.cluster_start[cluster]);
+  const ClusterVec3 x = load(in.position, in.cluster_start[cluster]);
   const float inverse_square = in.inverse_radius * in.inverse_radius;
   Floats sum = {};
   std::uint32_t found = 0;
@@ -80,7 +72,7 @@ struct Sides {
   Floats viscosity;        ///< μ_i + μ_j, twice their mean
   /// Volume of j in the viscous term of Conservative, times the share of each i there, see sum_pairs().
   Floats viscous_volume;
-  Floats3 velocity;  ///< v_j − v_i, or v_j
+  ClusterVec3 velocity;  ///< v_j − v_i, or v_j
 };
 
 /// What squared distances are at least when something is divided by them: far below those of particles that
@@ -89,7 +81,7 @@ constexpr float k_least = 1e-30f;
 
 /// x_j − x_i of eight i, and what takes long to find from it.
 struct Separation {
-  Floats3 d;
+  ClusterVec3 d;
   Floats r, inverse_square;
 };
 
@@ -103,7 +95,7 @@ struct Conservative {
     return 0.5f * in.spiky_gradient * in.inverse_radius * in.inverse_radius;
   }
 
-  MALLOW_INLINE Separation separate(const Floats3& d) {
+  MALLOW_INLINE Separation separate(const ClusterVec3& d) {
     const Floats r2 = squared_length(d);
     // 1/r as r/r², which need not wait for the root; 0 for coincident particles, which have no direction to
     // push in.
@@ -112,16 +104,16 @@ struct Conservative {
 
   /// What both terms share is taken last: t/r² times (x_i − x_j).
   template <bool viscous>
-  MALLOW_INLINE Floats3 acceleration(const SphInput& in, const Separation& apart, const Sides& sides) {
-    const Floats3& d = apart.d;
+  MALLOW_INLINE ClusterVec3 acceleration(const SphInput& in, const Separation& apart, const Sides& sides) {
+    const ClusterVec3& d = apart.d;
     const Floats t = not_negative(in.radius - apart.r);
     Floats push = (sides.volume * (sides.own_pressure + sides.pressure)) * (t * apart.r);
     if (viscous) {
-      const Floats3& w = sides.velocity;
-      push -= sides.viscous_volume * (5.0f * sides.viscosity) * (w.x * d.x + w.y * d.y + w.z * d.z);
+      const ClusterVec3& w = sides.velocity;
+      push -= sides.viscous_volume * (5.0f * sides.viscosity) * dot_from_left(w, d);
     }
     push *= t * apart.inverse_square;
-    return {-(push * d.x), -(push * d.y), -(push * d.z)};
+    return -(push * d);
   }
 };
 
@@ -130,37 +122,31 @@ struct Printed {
   static constexpr bool central = false;
   static float factor(const SphInput& in) { return in.poly6_gradient; }
 
-  MALLOW_INLINE Separation separate(const Floats3& d) { return {d, Floats{}, Floats{}}; }
+  MALLOW_INLINE Separation separate(const ClusterVec3& d) { return {d, Floats{}, Floats{}}; }
 
   template <bool viscous>
-  MALLOW_INLINE Floats3 acceleration(const SphInput& in, const Separation& apart, const Sides& sides) {
-    const Floats3 &d = apart.d, &w = sides.velocity;
+  MALLOW_INLINE ClusterVec3 acceleration(const SphInput& in, const Separation& apart, const Sides& sides) {
+    const ClusterVec3 &d = apart.d, &w = sides.velocity;
     const Floats q2 = squared_length(d) * (in.inverse_radius * in.inverse_radius);
     const Floats t = not_negative(1.0f - q2), weight = sides.volume * t, push = weight * (sides.pressure * t);
-    if (!viscous) return {-(push * d.x), -(push * d.y), -(push * d.z)};
+    if (!viscous) return -(push * d);
     const Floats drag = weight * (-0.5f * sides.viscosity * (3.0f - 7.0f * q2));
-    return {drag * w.x - push * d.x, drag * w.y - push * d.y, drag * w.z - push * d.z};
+    return drag * w - push * d;
   }
 };
-
-MALLOW_INLINE void add(const Ints& mask, const Floats3& value, Floats3& sum) {
-  sum.x += where(mask, value.x);
-  sum.y += where(mask, value.y);
-  sum.z += where(mask, value.z);
-}
 
 /// Σ_j of a cluster's pairs within their groups and with others, without F/ρ.
 template <class Formula, bool viscous, bool grouped>
 void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, const float* volumes,
-               Floats3& same, Floats3& cross) {
+               ClusterVec3& same, ClusterVec3& cross) {
   const std::size_t first = in.cluster_start[cluster];
   const std::uint32_t* const list = in.indices + in.list_begin[cluster];
   const std::uint32_t n = in.list_count[cluster];
   if (n == 0) return;  // not even themselves: their positions are no numbers
-  const Floats3 x = load_vectors(in.position, first);
+  const ClusterVec3 x = load(in.position, first);
   const Floats own_pressure = load(pressures + first);
-  Floats3 v = {};
-  if (viscous && Formula::central) v = load_vectors(in.velocity, first);
+  ClusterVec3 v = {};
+  if (viscous && Formula::central) v = load(in.velocity, first);
   Ints own = Ints{} + (grouped ? static_cast<int>(in.group[first]) : 0);  // lanes without a particle too
   Floats own_viscosity = all(in.groups[0].viscosity), own_rest = all(in.groups[0].rest_volume);
   Floats touching_pressure = {};
@@ -184,16 +170,16 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
     if (viscous) sides.velocity = difference(in.velocity, j, v);
     if (viscous && Formula::central)
       sides.viscous_volume = own_share * (volumes[j] < group.rest_volume ? volumes[j] : group.rest_volume);
-    const Floats3 a = Formula::template acceleration<viscous>(in, apart, sides);
+    const ClusterVec3 a = Formula::template acceleration<viscous>(in, apart, sides);
     // Where groups do not touch, which is nearly everywhere, the branch is foreseen.
     const Ints alike = is_equal(own, number);
     if (grouped && any(~alike)) {
-      add(alike, a, same);
+      same += where(alike, a);
       sides.own_pressure = touching_pressure;
       sides.pressure *= group.contact_share;
-      add(~alike, Formula::template acceleration<viscous>(in, apart, sides), cross);
+      cross += where(~alike, Formula::template acceleration<viscous>(in, apart, sides));
     } else {
-      same = {same.x + a.x, same.y + a.y, same.z + a.z};
+      same += a;
     }
   };
   // The root and the quotient of the next pair are under way while this one's are used: left in one piece,
@@ -209,9 +195,9 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
   add_pairs(list[n - 1], apart);
 }
 
-void write_by_row(const SphInput& in, std::size_t cluster, const Floats& scale, const Floats3& sum,
+void write_by_row(const SphInput& in, std::size_t cluster, const Floats& scale, const ClusterVec3& sum,
                   const Vectors& to) {
-  const Floats3 a = {scale * sum.x, scale * sum.y, scale * sum.z};
+  const ClusterVec3 a = scale * sum;
   const std::size_t first = in.cluster_start[cluster];
   for (std::size_t i = first; i < in.cluster_start[cluster + 1]; ++i) {
     const std::uint32_t row = in.row_of[i];
@@ -225,7 +211,7 @@ template <class Formula, bool viscous, bool grouped>
 void sum_clusters(const SphInput& in, std::size_t begin, std::size_t end, const float* rho,
                   const float* pressure, const float* volume, const Vectors& same, const Vectors& cross) {
   for (std::size_t cluster = begin; cluster < end; ++cluster) {
-    Floats3 own = {}, other = {};
+    ClusterVec3 own = {}, other = {};
     sum_pairs<Formula, viscous, grouped>(in, cluster, pressure, volume, own, other);
     const Floats density = load(rho + in.cluster_start[cluster]);
     // Plus 0, or what is not a number where the density is infinite and the quotient would hide it.
