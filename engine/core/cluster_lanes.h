@@ -31,6 +31,22 @@ MALLOW_INLINE Ints load(const std::uint32_t* from) {
 MALLOW_INLINE ClusterVec3 load(const ConstVectors& from, std::size_t first) {
   return {load(from.x + first), load(from.y + first), load(from.z + first)};
 }
+/// x_j − x_i of eight i: this way round, what a register has no room for is subtracted from memory.
+MALLOW_INLINE ClusterVec3 difference(const ConstVectors& of, std::size_t j, const ClusterVec3& i) {
+  return {of.x[j] - i.x, of.y[j] - i.y, of.z[j] - i.z};
+}
+/// Components `stride` floats apart.
+MALLOW_INLINE ClusterVec3 load(const float* from, std::size_t stride) {
+  return {load(from), load(from + stride), load(from + 2 * stride)};
+}
+MALLOW_INLINE void store(const Floats& value, float* to) {
+  __builtin_memcpy(to, &value, sizeof value);
+}
+MALLOW_INLINE void store(const ClusterVec3& v, float* to, std::size_t stride) {
+  store(v.x, to);
+  store(v.y, to + stride);
+  store(v.z, to + 2 * stride);
+}
 MALLOW_INLINE void store(const Ints& values, std::uint32_t* to) {
   __builtin_memcpy(to, &values, sizeof values);
 }

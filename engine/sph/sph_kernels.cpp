@@ -8,10 +8,6 @@
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
-/// x_j − x_i of eight i: this way round, what a register has no room for is subtracted from memory.
-MALLOW_INLINE ClusterVec3 difference(const ConstVectors& of, std::size_t j, const ClusterVec3& i) {
-  return {of.x[j] - i.x, of.y[j] - i.y, of.z[j] - i.z};
-}
 MALLOW_INLINE Floats squared_length(const ClusterVec3& d) {
   return dot_from_left(d, d);
 }

@@ -26,12 +26,10 @@ constexpr float k_least_weight = 0.02f;
 constexpr float k_least_density = 1e-6f, k_least_slope = 1e-6f;
 
 struct Sums {
-  Floats weight, x, y, z, square;
+  Floats weight;
+  ClusterVec3 offset;
+  Floats square;
 };
-
-MALLOW_INLINE void store(const Floats& value, float* to) {
-  __builtin_memcpy(to, &value, sizeof value);
-}
 
 /// 1 − |x_i − x|², at least 0, of eight points and one particle.
 MALLOW_INLINE Floats nearness(const Floats& square) {
@@ -41,23 +39,19 @@ MALLOW_INLINE Floats nearness(const Floats& square) {
 void sum_at_points(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
                    float* sums) noexcept {
   for (std::size_t k = 0; k < n; k += k_cluster) {
-    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    const ClusterVec3 x = load(points, k);
     Sums s = {};
     for (std::size_t i = 0; i < count; ++i) {
-      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
-      const Floats square = dx * dx + dy * dy + dz * dz;
+      const ClusterVec3 d = difference(particles, i, x);
+      const Floats square = dot_from_left(d, d);
       const Floats t = nearness(square);
       const Floats w = t * t * t;
       s.weight += w;
-      s.x += w * dx;
-      s.y += w * dy;
-      s.z += w * dz;
+      s.offset += w * d;
       s.square += w * square;
     }
     store(s.weight, sums + k);
-    store(s.x, sums + n + k);
-    store(s.y, sums + 2 * n + k);
-    store(s.z, sums + 3 * n + k);
+    store(s.offset, sums + n + k, n);
     store(s.square, sums + 4 * n + k);
   }
 }
@@ -69,8 +63,8 @@ MALLOW_INLINE Floats cut(const SurfaceShape& shape, const Floats& distance) {
 MALLOW_INLINE Floats distance_of(const SurfaceShape& shape, const Sums& s) {
   const Floats full = smaller(2.0f / shape.full_weight * s.weight, all(1.0f));
   const Floats per_weight = 1.0f / larger(s.weight, all(k_least_weight));
-  const Floats mx = s.x * per_weight, my = s.y * per_weight, mz = s.z * per_weight;
-  const Floats from_mean = mx * mx + my * my + mz * mz;
+  const ClusterVec3 mean = per_weight * s.offset;
+  const Floats from_mean = dot_from_left(mean, mean);
   const Floats excess = s.square * per_weight - from_mean - (shape.spread + shape.extra_spread * full);
   const Floats r = shape.offset + shape.extra_offset * full;
   const Floats distance = square_root(from_mean + k_excess_share * larger(excess, Floats{})) - r;
@@ -81,9 +75,7 @@ MALLOW_INLINE Floats distance_of(const SurfaceShape& shape, const Sums& s) {
 
 void distances(const SurfaceShape& shape, const float* sums, std::size_t n, float* to) noexcept {
   for (std::size_t k = 0; k < n; k += k_cluster)
-    store(distance_of(shape, {load(sums + k), load(sums + n + k), load(sums + 2 * n + k),
-                              load(sums + 3 * n + k), load(sums + 4 * n + k)}),
-          to + k);
+    store(distance_of(shape, {load(sums + k), load(sums + n + k, n), load(sums + 4 * n + k)}), to + k);
 }
 
 /// A row of voxels from a row of nodes: Σ_n w[·][n] node_n, `step` rows of lanes apart.
@@ -116,7 +108,7 @@ void fill_block(const SurfaceShape& shape, const NodeWeights& weights, const flo
   for (std::size_t x = 0; x < k_side; ++x) {
     for (std::size_t y = 0; y < k_side; ++y) {
       const auto at = [&](std::size_t s) { return blend(weights.w[x], &by_plane[s][0][y], k_side); };
-      store(distance_of(shape, {at(0), at(1), at(2), at(3), at(4)}), to + (x * k_side + y) * k_side);
+      store(distance_of(shape, {at(0), {at(1), at(2), at(3)}, at(4)}), to + (x * k_side + y) * k_side);
     }
   }
 }
@@ -125,11 +117,11 @@ void sphere_distances(const SurfaceShape& shape, ConstVectors points, std::size_
                       std::size_t count, float* to) noexcept {
   const float farthest = shape.offset + shape.background * shape.voxel_size;
   for (std::size_t k = 0; k < n; k += k_cluster) {
-    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    const ClusterVec3 x = load(points, k);
     Floats least = all(farthest * farthest);
     for (std::size_t i = 0; i < count; ++i) {
-      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
-      least = smaller(least, dx * dx + dy * dy + dz * dz);
+      const ClusterVec3 d = difference(particles, i, x);
+      least = smaller(least, dot_from_left(d, d));
     }
     store(cut(shape, (square_root(least) - shape.offset) * (1.0f / shape.voxel_size)), to + k);
   }
@@ -138,72 +130,74 @@ void sphere_distances(const SurfaceShape& shape, ConstVectors points, std::size_
 void mean_at_points(ConstVectors points, std::size_t n, ConstVectors particles, ConstVectors values,
                     std::size_t count, Vectors means) noexcept {
   for (std::size_t k = 0; k < n; k += k_cluster) {
-    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
-    Floats weight = {}, x = {}, y = {}, z = {};
+    const ClusterVec3 x = load(points, k);
+    Floats weight = {};
+    ClusterVec3 sum = {};
     for (std::size_t i = 0; i < count; ++i) {
-      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
-      const Floats t = nearness(dx * dx + dy * dy + dz * dz);
+      const ClusterVec3 d = difference(particles, i, x);
+      const Floats t = nearness(dot_from_left(d, d));
       const Floats w = t * t * t;
       weight += w;
-      x += w * values.x[i];
-      y += w * values.y[i];
-      z += w * values.z[i];
+      sum += ClusterVec3{w * values.x[i], w * values.y[i], w * values.z[i]};
     }
     const Floats per_weight = where(is_larger(weight, Floats{}), 1.0f / weight);
-    store(x * per_weight, means.x + k);
-    store(y * per_weight, means.y + k);
-    store(z * per_weight, means.z + k);
+    const ClusterVec3 mean = per_weight * sum;
+    store(mean.x, means.x + k);
+    store(mean.y, means.y + k);
+    store(mean.z, means.z + k);
   }
 }
 
 void moments_at_points(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
                        float* moments) noexcept {
   for (std::size_t k = 0; k < n; k += k_cluster) {
-    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
+    const ClusterVec3 x = load(points, k);
     Floats m[k_moments] = {};
     for (std::size_t i = 0; i < count; ++i) {
-      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
-      const Floats square = dx * dx + dy * dy + dz * dz;
+      const ClusterVec3 d = difference(particles, i, x);
+      const Floats square = dot_from_left(d, d);
       const Floats w = larger(1.0f - square * square_root(square), Floats{});
-      const Floats wx = w * dx, wy = w * dy, wz = w * dz;
+      const ClusterVec3 wd = w * d;
       m[0] += w;
-      m[1] += wx;
-      m[2] += wy;
-      m[3] += wz;
-      m[4] += wx * dx;
-      m[5] += wx * dy;
-      m[6] += wx * dz;
-      m[7] += wy * dy;
-      m[8] += wy * dz;
-      m[9] += wz * dz;
+      m[1] += wd.x;
+      m[2] += wd.y;
+      m[3] += wd.z;
+      m[4] += wd.x * d.x;
+      m[5] += wd.x * d.y;
+      m[6] += wd.x * d.z;
+      m[7] += wd.y * d.y;
+      m[8] += wd.y * d.z;
+      m[9] += wd.z * d.z;
     }
     for (std::size_t s = 0; s < k_moments; ++s) store(m[s], moments + s * n + k);
   }
+}
+
+/// G v
+MALLOW_INLINE ClusterVec3 product(const KernelShape& g, const ClusterVec3& v) {
+  return {g.xx * v.x + g.xy * v.y + g.xz * v.z, g.xy * v.x + g.yy * v.y + g.yz * v.z,
+          g.xz * v.x + g.yz * v.y + g.zz * v.z};
 }
 
 // Yu & Turk 2013, eq. 6 and 7: φ(x) = Σ V_i W(|G_i (x_i − x)|), with the weights of above.
 void density_at_points(ConstVectors points, std::size_t n, ConstVectors particles, const KernelShape* shapes,
                        std::size_t count, float* sums) noexcept {
   for (std::size_t k = 0; k < n; k += k_cluster) {
-    const Floats px = load(points.x + k), py = load(points.y + k), pz = load(points.z + k);
-    Floats density = {}, x = {}, y = {}, z = {};
+    const ClusterVec3 x = load(points, k);
+    Floats density = {};
+    ClusterVec3 gradient = {};
     for (std::size_t i = 0; i < count; ++i) {
       const KernelShape& g = shapes[i];
-      const Floats dx = particles.x[i] - px, dy = particles.y[i] - py, dz = particles.z[i] - pz;
-      const Floats qx = g.xx * dx + g.xy * dy + g.xz * dz, qy = g.xy * dx + g.yy * dy + g.yz * dz,
-                   qz = g.xz * dx + g.yz * dy + g.zz * dz;
-      const Floats t = nearness(qx * qx + qy * qy + qz * qz);
+      const ClusterVec3 d = difference(particles, i, x);
+      const ClusterVec3 q = product(g, d);
+      const Floats t = nearness(dot_from_left(q, q));
       const Floats slope = g.weight * (t * t);
       density += slope * t;
       // ∇(1 − |G d|²)³ = 6 t² G (G d)
-      x += slope * (g.xx * qx + g.xy * qy + g.xz * qz);
-      y += slope * (g.xy * qx + g.yy * qy + g.yz * qz);
-      z += slope * (g.xz * qx + g.yz * qy + g.zz * qz);
+      gradient += slope * product(g, q);
     }
     store(density, sums + k);
-    store(6.0f * x, sums + n + k);
-    store(6.0f * y, sums + 2 * n + k);
-    store(6.0f * z, sums + 3 * n + k);
+    store(6.0f * gradient, sums + n + k, n);
   }
 }
 
@@ -212,8 +206,8 @@ void density_at_points(ConstVectors points, std::size_t n, ConstVectors particle
 void density_distances(const SurfaceShape& shape, const float* sums, std::size_t n, float* to) noexcept {
   for (std::size_t k = 0; k < n; k += k_cluster) {
     const Floats density = load(sums + k);
-    const Floats x = load(sums + n + k), y = load(sums + 2 * n + k), z = load(sums + 3 * n + k);
-    const Floats slope = larger(square_root(x * x + y * y + z * z), all(k_least_slope));
+    const ClusterVec3 gradient = load(sums + n + k, n);
+    const Floats slope = larger(square_root(dot_from_left(gradient, gradient)), all(k_least_slope));
     const Floats root = square_root(square_root(density));
     const Floats distance = (shape.threshold - root) * (4.0f / shape.voxel_size) * root * root * root / slope;
     const Ints body = is_larger(density, all(k_least_density));
