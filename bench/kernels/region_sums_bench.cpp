@@ -28,7 +28,7 @@ struct RegionScene {
     shape.region_radius = scene.radius;
     shape.spacing = scene.spacing;
     update_reference(x, 0, x.size(), 1, scratch, shape);
-    sort_reference(1, scratch.columns, shape);
+    sort_reference(1, best_instruction_level(), scratch.columns, shape);
     x = reordered(x, scratch.columns.order.span());
     build_regions(1, level, scratch, shape);
     x = bent(x);

@@ -15,12 +15,8 @@ constexpr double k_min_cells = 32768.0;
 /// Edges of a cell in spacings.
 constexpr double k_across = 2.0;
 constexpr double k_along = 0.5;
-/// Cells, and columns, that one thread handles at a time, and cells that it handles alone.
-constexpr std::size_t k_cell_block = 8192;
-constexpr std::size_t k_few_cells = 16 * k_cell_block;
+/// Columns that one thread handles at a time.
 constexpr std::size_t k_column_block = 512;
-/// Points that one thread counts in less time than several take to hand each other their counts.
-constexpr std::size_t k_least_chunk = 16384;
 
 /// The box of the points that are finite, or no room at 0. Others are for the caller to refuse; no box around
 /// them would have an end.
@@ -74,38 +70,6 @@ void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, flo
   for (int a = 0; a < 3; ++a) grid.dims[static_cast<std::size_t>(a)] = static_cast<int>(cells(a));
 }
 
-/// Counts of chunk after chunk become places.
-void scan_counts(std::size_t cells, std::size_t chunks, const Threads& threads, const GridKernels& kernels,
-                 CellGrid& grid) {
-  std::uint32_t* const counts = grid.counts.data();
-  std::uint32_t* const starts = grid.cell_start.data();
-  if (chunks == 1 && cells <= k_few_cells) {
-    starts[cells] = kernels.counts_to_places(counts, chunks, cells, 0, cells, 0, starts);
-    return;
-  }
-  const std::size_t blocks = (cells + k_cell_block - 1) / k_cell_block;
-  grid.block_sums.resize(blocks);
-  parallel_for(
-      threads, cells,
-      [&](std::size_t first, std::size_t last) {
-        std::uint32_t sum = 0;
-        for (std::size_t c = 0; c < chunks; ++c)
-          for (std::size_t cell = first; cell < last; ++cell) sum += counts[c * cells + cell];
-        grid.block_sums[first / k_cell_block] = sum;
-      },
-      k_cell_block);
-  std::uint32_t start = 0;
-  for (std::uint32_t& sum : grid.block_sums) start += std::exchange(sum, start);
-  starts[cells] = start;
-  parallel_for(
-      threads, cells,
-      [&](std::size_t first, std::size_t last) {
-        kernels.counts_to_places(counts, chunks, cells, first, last, grid.block_sums[first / k_cell_block],
-                                 starts);
-      },
-      k_cell_block);
-}
-
 /// Cuts every column into clusters, the last of a column short.
 void cut_clusters(const Threads& threads, CellGrid& grid) {
   const std::size_t columns = grid.columns(), nx = static_cast<std::size_t>(grid.dims[0]);
@@ -145,9 +109,7 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
   choose_cells(positions, begin, end, radius, threads, grid);
   const std::size_t cells = static_cast<std::size_t>(grid.dims[0]) * grid.columns();
   grid.cell_of.resize(n);
-  grid.order.resize(n);
   grid.sorted.resize(n);
-  grid.cell_start.resize(cells + 1);
   const ConstVectors x{positions.x() + begin, positions.y() + begin, positions.z() + begin};
 
   const SearchInput input = search_input(grid, radius);
@@ -156,30 +118,7 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
     kernels.cells_of(input, x, first, last, grid.cell_of.data());
   });
 
-  // A thread counts and sorts a chunk of the points, in order: the sort is stable whatever the chunks are.
-  // More chunks than these would count more cells than points.
-  const std::size_t chunks = std::clamp<std::size_t>(std::min(4 * n / cells, n / k_least_chunk), 1,
-                                                     static_cast<std::size_t>(threads.count()));
-  const std::size_t chunk = (n + chunks - 1) / chunks;
-  grid.counts.resize(chunks * cells);
-  const auto counts_of = [&](std::size_t point) { return grid.counts.data() + point / chunk * cells; };
-  parallel_for(
-      threads, n,
-      [&](std::size_t first, std::size_t last) {
-        std::uint32_t* const counts = counts_of(first);
-        std::fill_n(counts, cells, 0u);
-        for (std::size_t i = first; i < last; ++i) ++counts[grid.cell_of[i]];
-      },
-      chunk);
-  scan_counts(cells, (n + chunk - 1) / chunk, threads, kernels, grid);
-  parallel_for(
-      threads, n,
-      [&](std::size_t first, std::size_t last) {
-        std::uint32_t* const next = counts_of(first);
-        for (std::size_t i = first; i < last; ++i)
-          grid.order[next[grid.cell_of[i]]++] = static_cast<std::uint32_t>(i);
-      },
-      chunk);
+  sort_by_key(grid.cell_of, cells, threads, level, grid.sort, grid.cell_start, grid.order);
   const Vectors sorted = raw(grid.sorted);
   const std::uint32_t* const order = grid.order.data();
   parallel_for(threads, n, [&](std::size_t first, std::size_t last) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/counting_sort.h"
 #include "core/isa.h"
 #include "core/threads.h"
 #include "mallow/export.h"
@@ -31,9 +32,9 @@ struct CellGrid {
   VectorColumn sorted;                  ///< positions in sorted order [m]
   Column<std::uint32_t> cluster_start;  ///< clusters + 1: first sorted point of each cluster
 
-  // Scratch of the sort.
+  // Scratch.
   Column<std::uint32_t> cell_of;
-  Column<std::uint32_t> counts;
+  CountingSort sort;
   std::vector<std::uint32_t> block_sums;
   std::vector<Aabb> partial_bounds;
 
@@ -43,7 +44,7 @@ struct CellGrid {
   std::size_t clusters() const { return cluster_start.size() - 1; }
   std::size_t bytes() const {
     return cell_start.bytes() + order.bytes() + sorted.bytes() + cluster_start.bytes() + cell_of.bytes() +
-           counts.bytes();
+           sort.bytes();
   }
 };
 

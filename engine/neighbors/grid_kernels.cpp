@@ -1,4 +1,4 @@
-// The cells of points, and their sort.
+// The cells of points.
 #include "neighbors/grid_kernels.h"
 
 #include "core/cluster_lanes.h"
@@ -35,45 +35,9 @@ void cells_of(const SearchInput& in, ConstVectors points, std::size_t begin, std
   for (std::size_t l = 0; i + l < end; ++l) cells[i + l] = rest[l];
 }
 
-/// Lane l: the sum of the lanes up to it.
-MALLOW_INLINE Ints running_sums(Ints v) {
-  const Ints none = {};
-  v += __builtin_shufflevector(none, v, 0, 8, 9, 10, 11, 12, 13, 14);
-  v += __builtin_shufflevector(none, v, 0, 0, 8, 9, 10, 11, 12, 13);
-  return v + __builtin_shufflevector(none, v, 0, 0, 0, 0, 8, 9, 10, 11);
-}
-
-std::uint32_t counts_to_places(std::uint32_t* counts, std::size_t chunks, std::size_t cells,
-                               std::size_t first, std::size_t last, std::uint32_t place,
-                               std::uint32_t* starts) noexcept {
-  std::size_t cell = first;
-  for (; cell + k_cluster <= last; cell += k_cluster) {
-    Ints total = {};
-    for (std::size_t c = 0; c < chunks; ++c) total += load(counts + c * cells + cell);
-    const Ints behind = running_sums(total) + static_cast<int>(place);
-    Ints next = behind - total;
-    store(next, starts + cell);
-    for (std::size_t c = 0; c < chunks; ++c) {
-      const Ints here = load(counts + c * cells + cell);
-      store(next, counts + c * cells + cell);
-      next += here;
-    }
-    place = static_cast<std::uint32_t>(behind[k_cluster - 1]);
-  }
-  for (; cell < last; ++cell) {
-    starts[cell] = place;
-    for (std::size_t c = 0; c < chunks; ++c) {
-      const std::uint32_t here = counts[c * cells + cell];
-      counts[c * cells + cell] = place;
-      place += here;
-    }
-  }
-  return place;
-}
-
 }  // namespace
 
 extern const GridKernels grid_kernels;
-const GridKernels grid_kernels = {cells_of, counts_to_places};
+const GridKernels grid_kernels = {cells_of};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -58,10 +58,9 @@ void choose_columns(const VectorColumn& x, std::size_t begin, std::size_t end, f
   }
 }
 
-/// Counts and scatters the points; each thread one chunk of them, in order: stable whatever the chunks are.
-void scatter(const VectorColumn& positions, std::size_t begin, std::size_t n, const Threads& threads,
-             ColumnOrder& columns) {
-  const std::size_t count = columns.columns();
+/// The column that each point lies in.
+void find_columns(const VectorColumn& positions, std::size_t begin, std::size_t n, const Threads& threads,
+                  ColumnOrder& columns) {
   const float* x[2];
   for (std::size_t k = 0; k < 2; ++k)
     x[k] = positions.axis(static_cast<std::size_t>(columns.across[k])) + begin;
@@ -69,40 +68,11 @@ void scatter(const VectorColumn& positions, std::size_t begin, std::size_t n, co
     const float at = std::floor((value - columns.origin[k]) * columns.inverse_width);
     return static_cast<int>(std::clamp(at, 0.0f, static_cast<float>(columns.dims[k] - 1)));
   };
-  const auto chunks = static_cast<std::size_t>(threads.count());
-  const std::size_t chunk = std::max<std::size_t>(1, (n + chunks - 1) / chunks);
-  columns.counts.resize(0);
-  columns.counts.resize(chunks * count);
-  parallel_for(
-      threads, n,
-      [&](std::size_t first, std::size_t last) {
-        std::uint32_t* const counts = columns.counts.data() + first / chunk * count;
-        for (std::size_t i = first; i < last; ++i) {
-          const std::size_t column = columns.column(place(x[0][i], 0), place(x[1][i], 1));
-          columns.column_of[i] = static_cast<std::uint32_t>(column);
-          ++counts[column];
-        }
-      },
-      chunk);
-  std::uint32_t start = 0;
-  for (std::size_t column = 0; column < count; ++column) {
-    columns.start[column] = start;
-    for (std::size_t c = 0; c < chunks; ++c) {
-      std::uint32_t& here = columns.counts[c * count + column];
-      const std::uint32_t many = here;
-      here = start;
-      start += many;
-    }
-  }
-  columns.start[count] = start;
-  parallel_for(
-      threads, n,
-      [&](std::size_t first, std::size_t last) {
-        std::uint32_t* const next = columns.counts.data() + first / chunk * count;
-        for (std::size_t i = first; i < last; ++i)
-          columns.order[next[columns.column_of[i]]++] = static_cast<std::uint32_t>(i);
-      },
-      chunk);
+  columns.column_of.resize_unset(n);
+  parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i)
+      columns.column_of[i] = static_cast<std::uint32_t>(columns.column(place(x[0][i], 0), place(x[1][i], 1)));
+  });
 }
 
 /// Sorts the points [first, last) of the order, one column, along it.
@@ -118,17 +88,15 @@ void sort_column(const float* along, std::uint32_t* first, std::uint32_t* last,
 }  // namespace
 
 void order_by_columns(const VectorColumn& positions, std::size_t begin, std::size_t end, float width,
-                      const Threads& threads, ColumnOrder& columns) {
+                      const Threads& threads, InstructionLevel level, ColumnOrder& columns) {
   const std::size_t n = end - begin;
   choose_columns(positions, begin, end, width, threads, columns);
   const auto strips =
       static_cast<std::size_t>((columns.dims[0] + ColumnOrder::k_strip - 1) / ColumnOrder::k_strip);
   const std::size_t count = strips * ColumnOrder::k_strip * static_cast<std::size_t>(columns.dims[1]);
-  columns.column_of.resize_unset(n);
-  columns.order.resize_unset(n);
+  find_columns(positions, begin, n, threads, columns);
+  sort_by_key(columns.column_of, count, threads, level, columns.sort, columns.start, columns.order);
   columns.sorted.resize_unset(n);
-  columns.start.resize_unset(count + 1);
-  scatter(positions, begin, n, threads, columns);
   const float* const along = positions.axis(static_cast<std::size_t>(columns.along)) + begin;
   std::atomic<bool> already = true;
   parallel_for(

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/counting_sort.h"
 #include "core/threads.h"
 #include "mallow/vec3.h"
 
@@ -32,7 +33,7 @@ struct ColumnOrder {
 
   // Scratch.
   Column<std::uint32_t> column_of;
-  Column<std::uint32_t> counts;
+  CountingSort sort;
   std::vector<Aabb> partial_bounds;
 
   std::size_t columns() const { return start.size() - 1; }
@@ -43,13 +44,13 @@ struct ColumnOrder {
     return (strip * static_cast<std::size_t>(dims[1]) + static_cast<std::size_t>(b)) * k_strip + in_strip;
   }
   std::size_t bytes() const {
-    return start.bytes() + order.bytes() + sorted.bytes() + column_of.bytes() + counts.bytes();
+    return start.bytes() + order.bytes() + sorted.bytes() + column_of.bytes() + sort.bytes();
   }
 };
 
 /// The same order for any number of threads; points at one place keep theirs. positions: finite. width: > 0
 /// [m].
 void order_by_columns(const VectorColumn& positions, std::size_t begin, std::size_t end, float width,
-                      const Threads& threads, ColumnOrder& columns);
+                      const Threads& threads, InstructionLevel level, ColumnOrder& columns);
 
 }  // namespace mallow

@@ -210,8 +210,9 @@ void update_reference(const VectorColumn& positions, std::size_t begin, std::siz
   shape.built = false;
 }
 
-void sort_reference(const Threads& threads, ColumnOrder& columns, ShapeMatching& shape) {
-  order_by_columns(shape.reference, 0, shape.reference.size(), column_width(shape), threads, columns);
+void sort_reference(const Threads& threads, InstructionLevel level, ColumnOrder& columns,
+                    ShapeMatching& shape) {
+  order_by_columns(shape.reference, 0, shape.reference.size(), column_width(shape), threads, level, columns);
   shape.reference.swap(columns.sorted);
 }
 
@@ -220,7 +221,7 @@ void build_regions(const Threads& threads, InstructionLevel level, RegionScratch
   const std::size_t n = shape.reference.size();
   const bool every = shape.region_stride == 1;
   const MomentKernels& kernels = MALLOW_SELECT(level, moment_kernels);
-  order_by_columns(shape.reference, 0, n, column_width(shape), threads, scratch.columns);
+  order_by_columns(shape.reference, 0, n, column_width(shape), threads, level, scratch.columns);
   find_runs(scratch.columns, shape.region_radius, threads, level, scratch.near);
   scratch.owners.resize(0);
   if (!every) choose_owners(static_cast<std::uint32_t>(shape.region_stride), threads, scratch);

@@ -33,7 +33,8 @@ void update_reference(const VectorColumn& positions, std::size_t begin, std::siz
                       const Threads& threads, RegionScratch& scratch, ShapeMatching& shape);
 /// Puts the rows of a reference shape in the order in which regions are fast: row k becomes what row
 /// columns.order[k] was. The other columns of the particles have to follow.
-void sort_reference(const Threads& threads, ColumnOrder& columns, ShapeMatching& shape);
+void sort_reference(const Threads& threads, InstructionLevel level, ColumnOrder& columns,
+                    ShapeMatching& shape);
 /// Regions of the reference shape: owners, lists, weights, centres, moments. One of every region_stride
 /// particles owns a region, and so does every particle that is in none of theirs. Right for any order of the
 /// particles, fast after sort_reference, and owners are spread evenly then.

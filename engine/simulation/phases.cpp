@@ -27,7 +27,8 @@ float viscous_time(const SolverConfig& config, const BodyState& body) {
 TimeStepLimits::Pressure acting_pressure(const Simulation::State& state, const BodyState& body) {
   // Other bodies feel the whole pressure, whatever this one's alpha, unless it follows alpha.
   const bool follows = !body.material->settings.pressure_coefficient;
-  const float push = state.bodies.size() > 1 ? (follows ? contact_share(body.material->alpha) : 1.0f) : body.material->alpha;
+  const float push =
+      state.bodies.size() > 1 ? (follows ? contact_share(body.material->alpha) : 1.0f) : body.material->alpha;
   const float drag = state.bodies.size() > 1 ? 1.0f : body.material->alpha;
   return {.coefficient = push * pressure_coefficient(state, *body.material),
           .kinematic_viscosity = drag * body.viscosity / body.rest_density,
@@ -124,8 +125,9 @@ void read_alphas(Simulation::State& state) {
 void take_reference(Simulation::State& state, BodyState& body) {
   ColumnOrder& columns = state.region_scratch.columns;
   body.shape.spacing = body.spacing;
-  update_reference(state.store.position, body.begin, body.end, state.threads, state.region_scratch, body.shape);
-  sort_reference(state.threads, columns, body.shape);
+  update_reference(state.store.position, body.begin, body.end, state.threads, state.region_scratch,
+                   body.shape);
+  sort_reference(state.threads, state.level, columns, body.shape);
   state.store.permute(body.begin, columns.order.span(), state.threads);
   state.rows_moved();
 }

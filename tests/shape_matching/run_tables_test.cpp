@@ -83,16 +83,16 @@ TEST(column_order, sorts_columns_and_along_them_and_keeps_what_is_sorted) {
   for (const Points& points : bodies()) {
     ColumnOrder columns, again, threaded;
     const std::size_t n = points.x.size();
-    order_by_columns(points.x, 0, n, points.spacing, 1, columns);
+    order_by_columns(points.x, 0, n, points.spacing, 1, best_instruction_level(), columns);
     std::vector<std::uint32_t> order(columns.order.begin(), columns.order.end());
     for (std::size_t c = 0; c < columns.columns(); ++c) {
       const float* const along = columns.sorted.axis(static_cast<std::size_t>(columns.along));
       EXPECT_TRUE(std::is_sorted(along + columns.start[c], along + columns.start[c + 1]));
     }
     for (std::size_t s = 0; s < n; ++s) EXPECT_EQ(columns.sorted.get(s), points.x.get(order[s]));
-    order_by_columns(points.x, 0, n, points.spacing, 3, threaded);
+    order_by_columns(points.x, 0, n, points.spacing, 3, best_instruction_level(), threaded);
     EXPECT_TRUE(std::equal(order.begin(), order.end(), threaded.order.begin()));
-    order_by_columns(columns.sorted, 0, n, points.spacing, 2, again);
+    order_by_columns(columns.sorted, 0, n, points.spacing, 2, best_instruction_level(), again);
     EXPECT_TRUE(again.already);
     std::sort(order.begin(), order.end());
     for (std::size_t s = 0; s < n; ++s) EXPECT_EQ(order[s], s);
@@ -102,11 +102,11 @@ TEST(column_order, sorts_columns_and_along_them_and_keeps_what_is_sorted) {
 TEST(run_lists, equal_brute_force_in_any_order_of_rows) {
   for (const Points& points : bodies()) {
     ColumnOrder columns;
-    order_by_columns(points.x, 0, points.x.size(), points.spacing, 2, columns);
+    order_by_columns(points.x, 0, points.x.size(), points.spacing, 2, best_instruction_level(), columns);
     const VectorColumn sorted = std::move(columns.sorted);
     for (const VectorColumn* x : {&points.x, &sorted}) {
       ColumnOrder order;
-      order_by_columns(*x, 0, x->size(), points.spacing, 2, order);
+      order_by_columns(*x, 0, x->size(), points.spacing, 2, best_instruction_level(), order);
       for (const InstructionLevel level : levels()) {
         RunLists lists;
         find_runs(order, points.radius, 2, level, lists);
@@ -123,9 +123,9 @@ TEST(run_lists, equal_brute_force_in_any_order_of_rows) {
 /// Lists of points whose rows are in the order of columns, as the engine keeps them.
 RunLists lists_in_column_order(const Points& points, int threads) {
   ColumnOrder columns;
-  order_by_columns(points.x, 0, points.x.size(), points.spacing, threads, columns);
+  order_by_columns(points.x, 0, points.x.size(), points.spacing, threads, best_instruction_level(), columns);
   const VectorColumn x = std::move(columns.sorted);
-  order_by_columns(x, 0, x.size(), points.spacing, threads, columns);
+  order_by_columns(x, 0, x.size(), points.spacing, threads, best_instruction_level(), columns);
   RunLists lists;
   find_runs(columns, points.radius, threads, best_instruction_level(), lists);
   return lists;
@@ -173,7 +173,7 @@ struct Matched {
     shape.spacing = points.spacing;
     shape.region_stride = stride;
     update_reference(points.x, 0, points.x.size(), threads, scratch, shape);
-    sort_reference(threads, scratch.columns, shape);
+    sort_reference(threads, best_instruction_level(), scratch.columns, shape);
     x.resize(points.x.size());
     for (std::size_t i = 0; i < x.size(); ++i)
       x.set(i, deform(points.x.get(scratch.columns.order[i]).cast<double>()).template cast<float>());
