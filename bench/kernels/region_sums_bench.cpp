@@ -28,8 +28,8 @@ struct RegionScene {
     shape.region_radius = scene.radius;
     shape.spacing = scene.spacing;
     update_reference(x, 0, x.size(), 1, scratch, shape);
-    sort_reference(1, best_instruction_level(), scratch.columns, shape);
-    x = reordered(x, scratch.columns.order.span());
+    sort_reference(1, best_instruction_level(), scratch.pillars, shape);
+    x = reordered(x, scratch.pillars.order.span());
     build_regions(1, level, scratch, shape);
     x = bent(x);
     matched.add(shape, 0);
@@ -43,7 +43,7 @@ struct RegionScene {
     input = shape_input(x, 0, shape);
   }
   const float* region_table() const {
-    return shape.regions.lengths.levels > 1 ? shape.table.data() : shape.sums.data();
+    return shape.regions.lengths.count > 1 ? shape.table.data() : shape.sums.data();
   }
   std::size_t size() const { return x.size(); }
   double neighbors() const { return static_cast<double>(shape.regions.members); }
@@ -51,21 +51,21 @@ struct RegionScene {
     return {{"particles", size()},
             {"average_neighbors", shape.average_neighbors},
             {"average_entries", static_cast<double>(shape.regions.total) / static_cast<double>(size())},
-            {"table_levels", shape.regions.lengths.levels}};
+            {"table_levels", shape.regions.lengths.count}};
   }
 };
 
 /// A kernel of the table on the rows of a scene.
-using OnRows = void (*)(const ShapeKernels&, RegionScene&, std::size_t begin, std::size_t end);
+using OnRows = void (*)(const ShapeLanes&, RegionScene&, std::size_t begin, std::size_t end);
 
 Timed on_rows(const LatticeScene& lattice, int threads, InstructionLevel level, bool per_neighbor,
               OnRows run) {
   const auto scene = std::make_shared<RegionScene>(lattice, level);
-  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
+  const ShapeLanes& lanes = MALLOW_SELECT(level, shape_lanes);
   return {.run =
-              [=, &kernels] {
+              [=, &lanes] {
                 parallel_for(threads, scene->size(),
-                             [&](std::size_t begin, std::size_t end) { run(kernels, *scene, begin, end); });
+                             [&](std::size_t begin, std::size_t end) { run(lanes, *scene, begin, end); });
               },
           .items = per_neighbor ? scene->neighbors() : static_cast<double>(scene->size()),
           .about = scene->about()};
@@ -87,13 +87,13 @@ Timed additions(const LatticeScene& lattice, std::size_t rows, int threads, Inst
   const auto table = std::make_shared<Column<float>>(rows * k_row);
   std::fill(table->begin(), table->end(), 1e-3f);
   const auto sums = std::make_shared<Column<float>>(sweeps * k_row);
-  const RowAdditions& kernels = MALLOW_SELECT(level, row_additions);
+  const RowAdditions& lanes = MALLOW_SELECT(level, row_additions);
   return {.run =
-              [=, &kernels] {
+              [=, &lanes] {
                 parallel_for(
                     threads, sweeps,
                     [&](std::size_t begin, std::size_t) {
-                      kernels.add(table->data(), rows, sums->data() + begin * k_row);
+                      lanes.add(table->data(), rows, sums->data() + begin * k_row);
                     },
                     1);
               },
@@ -115,13 +115,13 @@ void add_level(const LatticeScene& scene, int threads, InstructionLevel level, K
   set.add(about("row_additions", "row"), [=] { return additions(scene, 0, threads, level); });
   set.add(about("write_rows", "particle"), [=] {
     return on_rows(scene, threads, level, false,
-                   [](const ShapeKernels& k, RegionScene& s, std::size_t begin, std::size_t end) {
+                   [](const ShapeLanes& k, RegionScene& s, std::size_t begin, std::size_t end) {
                      k.write_rows(s.input, begin, end, s.sums.data() + begin * k_row);
                    });
   });
   set.add(compared("region_sums"), [=] {
     return on_rows(scene, threads, level, true,
-                   [](const ShapeKernels& k, RegionScene& s, std::size_t begin, std::size_t end) {
+                   [](const ShapeLanes& k, RegionScene& s, std::size_t begin, std::size_t end) {
                      k.sum_regions(s.input, begin, end, s.particle_table.data(), s.sums.data());
                    });
   });
@@ -131,7 +131,7 @@ void add_level(const LatticeScene& scene, int threads, InstructionLevel level, K
   });
   set.add(compared("goals"), [=] {
     return on_rows(scene, threads, level, true,
-                   [](const ShapeKernels& k, RegionScene& s, std::size_t begin, std::size_t end) {
+                   [](const ShapeLanes& k, RegionScene& s, std::size_t begin, std::size_t end) {
                      k.goals(s.input, begin, end, s.region_table(), raw(s.shape.pull));
                    });
   });

@@ -1,4 +1,4 @@
-// Compiled once per instruction level, as the engine's kernels are (core/isa.h).
+// Compiled once per instruction level, as all lanes are (core/isa.h).
 #include "row_additions.h"
 
 #include "core/lanes.h"

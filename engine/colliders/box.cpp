@@ -5,10 +5,10 @@
 
 namespace mallow {
 
-MALLOW_DECLARE_LEVELS(ColliderKernels, box_kernels)
+MALLOW_DECLARE_LEVELS(ColliderLanes, box_lanes)
 
-const ColliderKernels& ShapeTraits<Box>::kernels(InstructionLevel level) {
-  return MALLOW_SELECT(level, box_kernels);
+const ColliderLanes& ShapeTraits<Box>::lanes(InstructionLevel level) {
+  return MALLOW_SELECT(level, box_lanes);
 }
 
 std::optional<ShapeProblem> ShapeTraits<Box>::problem(const Box& box) {

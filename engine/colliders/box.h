@@ -27,7 +27,7 @@ struct MALLOW_EXPORT ShapeTraits<Box> {
     }
   }
   static ShapeNumbers numbers(const Box& box, const Eigen::Vector3d& by);
-  static const ColliderKernels& kernels(InstructionLevel level);
+  static const ColliderLanes& lanes(InstructionLevel level);
   static Crossings cross(const Box& box, const Vec3& origin, const Vec3& direction);
   static float edge_distance(const Box& box, const Vec3& x);
 };

@@ -1,5 +1,5 @@
 // The outside of a box along the axes, or its inside. Numbers: least corner, greatest corner.
-#include "colliders/collider_lanes.h"
+#include "colliders/contact_lanes.h"
 
 namespace mallow::MALLOW_LEVEL {
 namespace {
@@ -61,7 +61,7 @@ struct BoxLanes {
 
 }  // namespace
 
-extern const ColliderKernels box_kernels;
-const ColliderKernels box_kernels = kernels_of<BoxLanes>();
+extern const ColliderLanes box_lanes;
+const ColliderLanes box_lanes = lanes_of<BoxLanes>();
 
 }  // namespace mallow::MALLOW_LEVEL

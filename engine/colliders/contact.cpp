@@ -15,7 +15,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>;
 
-/// Distances here and those of kernels are rounded differently, by a few 1e-7 of the coordinates.
+/// Distances here and those in lanes are rounded differently, by a few 1e-7 of the coordinates.
 constexpr float k_rounding = 1e-5f;
 
 void place(const Collider& collider, const Vec3& origin, float time_step, InstructionLevel level,
@@ -36,7 +36,7 @@ void place(const Collider& collider, const Vec3& origin, float time_step, Instru
   placed.parts.clear();
   visit_parts(collider, [&]<class Shape>(const Shape& shape) {
     ShapeTraits<Shape>::visit_met(shape, [&]<class Met>(const Met& met) {
-      placed.parts.push_back({ShapeTraits<Met>::numbers(met, by), &ShapeTraits<Met>::kernels(level)});
+      placed.parts.push_back({ShapeTraits<Met>::numbers(met, by), &ShapeTraits<Met>::lanes(level)});
     });
   });
 }
@@ -88,12 +88,11 @@ class BlockMeeting {
     for (const float number : part.numbers.at) largest = std::max(largest, std::abs(number));
     const float slack = k_rounding * (largest + reach);
     // What is not a number is not far, either.
-    if (part.kernels->least_distance(part.numbers, seen_.min.data(), seen_.max.data()) > reach + slack)
-      return;
+    if (part.lanes->least_distance(part.numbers, seen_.min.data(), seen_.max.data()) > reach + slack) return;
     const std::size_t count = find_near_rows(part, slack);
     if (load_) remember(count);
-    part.kernels->resolve(part.numbers, surface_, step_, raw(block_.position), raw(block_.before),
-                          rows_.data(), count, raw(velocity_), block_.bounds.squared_speed);
+    part.lanes->resolve(part.numbers, surface_, step_, raw(block_.position), raw(block_.before), rows_.data(),
+                        count, raw(velocity_), block_.bounds.squared_speed);
     if (load_) add_load(count);
   }
 
@@ -102,8 +101,8 @@ class BlockMeeting {
   std::size_t find_near_rows(const PlacedCollider::Part& part, float slack) {
     std::array<std::uint8_t, k_block> flags;
     std::fill_n(flags.begin(), block_.end - block_.begin, std::uint8_t{0});
-    part.kernels->mark(part.numbers, surface_, step_, raw(block_.position), raw(std::as_const(velocity_)),
-                       slack, block_.begin, block_.end, flags.data());
+    part.lanes->mark(part.numbers, surface_, step_, raw(block_.position), raw(std::as_const(velocity_)),
+                     slack, block_.begin, block_.end, flags.data());
     std::size_t count = 0;
     for (std::size_t i = block_.begin; i < block_.end; ++i) {
       // Always written, kept only if near: no branch to predict.

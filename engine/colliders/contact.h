@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "colliders/collider_kernels.h"
+#include "colliders/collider_lanes.h"
 #include "core/column.h"
 #include "mallow/collider.h"
 #include "mallow/instruction_level.h"
@@ -15,7 +15,7 @@ namespace mallow {
 struct PlacedCollider {
   struct Part {
     ShapeNumbers numbers;
-    const ColliderKernels* kernels;
+    const ColliderLanes* lanes;
   };
   ContactSurface surface;
   std::vector<Part> parts;

@@ -4,12 +4,12 @@
 namespace mallow {
 namespace {
 
-/// By the kernels, which know no other way for one point than for many.
+/// By the lanes, which know no other way for one point than for many.
 template <class Shape>
 SurfacePoint nearest_of_one(const Shape& shape, const Vec3& x) {
   SurfacePoint point;
   const ShapeNumbers numbers = ShapeTraits<Shape>::numbers(shape, {0, 0, 0});
-  ShapeTraits<Shape>::kernels(InstructionLevel::baseline)
+  ShapeTraits<Shape>::lanes(InstructionLevel::baseline)
       .nearest(numbers, {&x[0], &x[1], &x[2]}, 0, 1, &point.distance,
                {&point.normal[0], &point.normal[1], &point.normal[2]});
   return point;

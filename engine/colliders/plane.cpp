@@ -4,7 +4,7 @@
 
 namespace mallow {
 
-MALLOW_DECLARE_LEVELS(ColliderKernels, plane_kernels)
+MALLOW_DECLARE_LEVELS(ColliderLanes, plane_lanes)
 
 namespace {
 
@@ -15,8 +15,8 @@ Plane normalized(const Plane& plane) {
 
 }  // namespace
 
-const ColliderKernels& ShapeTraits<Plane>::kernels(InstructionLevel level) {
-  return MALLOW_SELECT(level, plane_kernels);
+const ColliderLanes& ShapeTraits<Plane>::lanes(InstructionLevel level) {
+  return MALLOW_SELECT(level, plane_lanes);
 }
 
 std::optional<ShapeProblem> ShapeTraits<Plane>::problem(const Plane& plane) {

@@ -20,7 +20,7 @@ struct MALLOW_EXPORT ShapeTraits<Plane> {
     visit(plane);
   }
   static ShapeNumbers numbers(const Plane& plane, const Eigen::Vector3d& by);
-  static const ColliderKernels& kernels(InstructionLevel level);
+  static const ColliderLanes& lanes(InstructionLevel level);
   static Crossings cross(const Plane& plane, const Vec3& origin, const Vec3& direction);
   static float edge_distance(const Plane&, const Vec3&) { return std::numeric_limits<float>::infinity(); }
 };

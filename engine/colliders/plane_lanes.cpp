@@ -1,5 +1,5 @@
 // The half space that a plane leaves free. Numbers: unit normal, offset.
-#include "colliders/collider_lanes.h"
+#include "colliders/contact_lanes.h"
 
 namespace mallow::MALLOW_LEVEL {
 namespace {
@@ -25,7 +25,7 @@ struct PlaneLanes {
 
 }  // namespace
 
-extern const ColliderKernels plane_kernels;
-const ColliderKernels plane_kernels = kernels_of<PlaneLanes>();
+extern const ColliderLanes plane_lanes;
+const ColliderLanes plane_lanes = lanes_of<PlaneLanes>();
 
 }  // namespace mallow::MALLOW_LEVEL

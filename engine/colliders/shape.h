@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "colliders/collider_kernels.h"
+#include "colliders/collider_lanes.h"
 #include "mallow/collider.h"
 #include "mallow/instruction_level.h"
 
@@ -37,7 +37,7 @@ struct Crossing {
 using Crossings = std::array<Crossing, 2>;
 
 /// What a shape is to the rest of the engine, specialised in its own header. What it does to particles is in
-/// its kernels. Exported, as the scene reader and the renderer use it.
+/// its lanes. Exported, as the scene reader and the renderer use it.
 template <class Shape>
 struct ShapeTraits;
 
@@ -53,9 +53,9 @@ concept ColliderShape = requires(const Shape& shape, const Vec3& x, const Eigen:
   /// Whether particles are kept in.
   { ShapeTraits<Shape>::keeps_in(shape) } -> std::same_as<bool>;
   /// visit_met(shape, visit) calls visit(part) with each shape that a particle meets one after the other.
-  /// The shape `by` farther on, as its kernels read it; and them.
+  /// The shape `by` farther on, as its lanes read it; and them.
   { ShapeTraits<Shape>::numbers(shape, by) } -> std::same_as<ShapeNumbers>;
-  { ShapeTraits<Shape>::kernels(InstructionLevel::baseline) } -> std::same_as<const ColliderKernels&>;
+  { ShapeTraits<Shape>::lanes(InstructionLevel::baseline) } -> std::same_as<const ColliderLanes&>;
   /// Where the line origin + t direction passes the surface; t may be below 0.
   { ShapeTraits<Shape>::cross(shape, x, x) } -> std::same_as<Crossings>;
   /// Of a point of the surface, from the nearest edge; infinite where there are none. Pictures show edges.

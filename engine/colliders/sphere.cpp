@@ -4,10 +4,10 @@
 
 namespace mallow {
 
-MALLOW_DECLARE_LEVELS(ColliderKernels, sphere_kernels)
+MALLOW_DECLARE_LEVELS(ColliderLanes, sphere_lanes)
 
-const ColliderKernels& ShapeTraits<Sphere>::kernels(InstructionLevel level) {
-  return MALLOW_SELECT(level, sphere_kernels);
+const ColliderLanes& ShapeTraits<Sphere>::lanes(InstructionLevel level) {
+  return MALLOW_SELECT(level, sphere_lanes);
 }
 
 ShapeNumbers ShapeTraits<Sphere>::numbers(const Sphere& sphere, const Eigen::Vector3d& by) {

@@ -22,7 +22,7 @@ struct MALLOW_EXPORT ShapeTraits<Sphere> {
     visit(sphere);
   }
   static ShapeNumbers numbers(const Sphere& sphere, const Eigen::Vector3d& by);
-  static const ColliderKernels& kernels(InstructionLevel level);
+  static const ColliderLanes& lanes(InstructionLevel level);
   static Crossings cross(const Sphere& sphere, const Vec3& origin, const Vec3& direction);
   static float edge_distance(const Sphere&, const Vec3&) { return std::numeric_limits<float>::infinity(); }
 };

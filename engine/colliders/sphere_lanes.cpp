@@ -1,5 +1,5 @@
 // The outside of a ball, or its inside. Numbers: centre, radius.
-#include "colliders/collider_lanes.h"
+#include "colliders/contact_lanes.h"
 
 namespace mallow::MALLOW_LEVEL {
 namespace {
@@ -41,7 +41,7 @@ struct SphereLanes {
 
 }  // namespace
 
-extern const ColliderKernels sphere_kernels;
-const ColliderKernels sphere_kernels = kernels_of<SphereLanes>();
+extern const ColliderLanes sphere_lanes;
+const ColliderLanes sphere_lanes = lanes_of<SphereLanes>();
 
 }  // namespace mallow::MALLOW_LEVEL

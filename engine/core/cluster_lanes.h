@@ -9,7 +9,7 @@
 #endif
 
 /// A cluster as one value, a lane a particle, at every level (core/lanes.h has what follows the registers).
-/// For kernel files only: everything here lives in the level's own namespace, so that the linker keeps each
+/// For files of lanes only: everything here lives in the level's own namespace, so that the linker keeps each
 /// level's copy apart. Arithmetic, comparisons and `?:` are the compiler's own on vector types; it splits
 /// them where registers are narrower. Each lane rounds like a float.
 namespace mallow::MALLOW_LEVEL {

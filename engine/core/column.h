@@ -34,7 +34,7 @@ void close_gaps(T* values, std::size_t size, std::span<const std::uint32_t> plac
 }
 
 /// One quantity of all particles: an array on cache line boundaries whose capacity is a whole number of lane
-/// blocks. What lies between size() and the end of its last block is zero, so that kernels need no tail; the
+/// blocks. What lies between size() and the end of its last block is zero, so that lanes need no tail; the
 /// cache line behind may be read, so that they may load lanes from any value on.
 template <class T>
 class Column {
@@ -67,8 +67,8 @@ class Column {
     if (size < size_) std::memset(static_cast<void*>(data_ + size), 0, (padded(size) - size) * sizeof(T));
     size_ = size;
   }
-  /// Keeps nothing: values are whatever they are, only the padding is zero. For columns that are written whole
-  /// next, so that the threads that write them touch them first.
+  /// Keeps nothing: values are whatever they are, only the padding is zero. For columns that are written
+  /// whole next, so that the threads that write them touch them first.
   void resize_unset(std::size_t size) {
     if (padded(size) > capacity_) {
       const std::size_t capacity = with_room(padded(size));

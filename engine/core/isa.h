@@ -3,9 +3,9 @@
 #include "mallow/export.h"
 #include "mallow/instruction_level.h"
 
-/// Kernel files are compiled once per level, each into a namespace of its own that this macro names (see
-/// mallow_add_kernels in core/kernels.cmake). All levels give the same bits: fixed lanes, no contraction.
-/// They include nothing with inline functions: the linker would keep one level's copy for all.
+/// Files of lanes, `*_lanes.cpp`, are compiled once per level, each into a namespace of its own that this
+/// macro names (see mallow_add_lanes in core/lanes.cmake). All levels give the same bits: fixed lanes, no
+/// contraction. They include nothing with inline functions: the linker would keep one level's copy for all.
 #ifndef MALLOW_LEVEL
 #define MALLOW_LEVEL level_baseline
 #endif

@@ -1,13 +1,13 @@
 #pragma once
 
-// Vectors of the widest registers of an instruction level, for kernel files. Whoever works lane by lane in
+// Vectors of the widest registers of an instruction level, for files of lanes. Whoever works lane by lane in
 // them, each lane on its own, gets the same bits at every level: the width only says how many lanes go at
 // once.
 //
-// This header and core/cluster_lanes.h are what a port of the kernels is: they name the vector types and all
+// This header and core/cluster_lanes.h are what a port of the lanes is: they name the vector types and all
 // intrinsics, and have plain C++ where a machine has none (tools/check_arm builds it so). The vector types
 // are those of GCC, which Clang and clang-cl have too; a compiler without them takes classes with these
-// operators here. Two files declare one more for themselves: shape_matching/moment_kernels.cpp, of doubles,
+// operators here. Two files declare one more for themselves: shape_matching/moment_lanes.cpp, of doubles,
 // and core/bounds.cpp.
 //
 // Everything here is in an anonymous namespace of the level, so that no level's code can stand in for
@@ -178,18 +178,18 @@ inline void store_quads(const Lanes& v, float* to, [[maybe_unused]] std::size_t 
 #endif
 }
 
-/// columns[c]: number c of k_width rows that lie `stride` floats apart. Columns come in fours.
-inline void load_columns(const float* rows, std::size_t stride, std::size_t count, Lanes* columns) {
+/// numbers[c]: number c of k_width rows that lie `stride` floats apart. Numbers come in fours.
+inline void load_transposed(const float* rows, std::size_t stride, std::size_t count, Lanes* numbers) {
   for (std::size_t c = 0; c < count; c += 4) {
-    for (std::size_t t = 0; t < 4; ++t) columns[c + t] = load_quads(rows + t * stride + c, stride);
-    transpose_fours(columns + c);
+    for (std::size_t t = 0; t < 4; ++t) numbers[c + t] = load_quads(rows + t * stride + c, stride);
+    transpose_fours(numbers + c);
   }
 }
-/// The reverse; spoils the columns.
-inline void store_columns(Lanes* columns, std::size_t count, std::size_t stride, float* rows) {
+/// The reverse; spoils the numbers.
+inline void store_transposed(Lanes* numbers, std::size_t count, std::size_t stride, float* rows) {
   for (std::size_t c = 0; c < count; c += 4) {
-    transpose_fours(columns + c);
-    for (std::size_t t = 0; t < 4; ++t) store_quads(columns[c + t], rows + t * stride + c, stride);
+    transpose_fours(numbers + c);
+    for (std::size_t t = 0; t < 4; ++t) store_quads(numbers[c + t], rows + t * stride + c, stride);
   }
 }
 

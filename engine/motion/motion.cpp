@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "motion/motion_kernels.h"
+#include "motion/motion_lanes.h"
 
 namespace mallow {
 namespace {
@@ -36,10 +36,10 @@ bool is_pinned(const ForcesInput& forces, std::size_t row) {
 }
 
 /// Σ |a_ext| over the unpinned of a block, row by row.
-double sum_external(const ForcesInput& forces, const MotionKernels& kernels, std::size_t begin,
-                    std::size_t end, ConstVectors free, ConstVectors velocity) {
+double sum_external(const ForcesInput& forces, const MotionLanes& lanes, std::size_t begin, std::size_t end,
+                    ConstVectors free, ConstVectors velocity) {
   std::array<float, k_block> external;
-  kernels.external(forces, begin, end, free, velocity, external.data());
+  lanes.external(forces, begin, end, free, velocity, external.data());
   double sum = 0;
   for (std::size_t i = begin; i < end; ++i)
     if (!is_pinned(forces, i)) sum += static_cast<double>(external[i - begin]);
@@ -59,21 +59,21 @@ class MovingBlock {
               ParticleStore& store)
       : in_(in),
         forces_(forces(in, store)),
-        kernels_(MALLOW_SELECT(level, motion_kernels)),
+        lanes_(MALLOW_SELECT(level, motion_lanes)),
         begin_(begin),
         end_(end),
         store_(store) {}
 
   /// Returns what it says of the rows, pins left out.
   BlockBounds predict() {
-    const BlockBounds bounds = kernels_.blend(forces_, begin_, end_, raw(store_.next_velocity));
+    const BlockBounds bounds = lanes_.blend(forces_, begin_, end_, raw(store_.next_velocity));
     if (!forces_.pin) return bounds;
     for (std::size_t i = begin_; i < end_; ++i)
       if (is_pinned(forces_, i)) store_.next_velocity.set(i, in_.pin_velocities[forces_.pin[i] - 1u]);
     return bounds;
   }
   BlockBounds bounds() const {
-    return kernels_.bounds(forces_, begin_, end_, raw(std::as_const(store_.next_velocity)));
+    return lanes_.bounds(forces_, begin_, end_, raw(std::as_const(store_.next_velocity)));
   }
   void collide(const BlockBounds& bounds, std::span<ColliderLoad> loads) {
     if (in_.colliders.empty()) return;
@@ -86,17 +86,17 @@ class MovingBlock {
     if (forces_.pin)
       for (std::size_t i = begin_; i < end_; ++i) sums.unpinned -= is_pinned(forces_, i);
     if (in_.measure_external)
-      sums.external = sum_external(forces_, kernels_, begin_, end_, predicted,
-                                   raw(std::as_const(store_.next_velocity)));
+      sums.external =
+          sum_external(forces_, lanes_, begin_, end_, predicted, raw(std::as_const(store_.next_velocity)));
   }
   void advance(MotionSums& sums) {
-    if (!kernels_.advance(forces_, begin_, end_, raw(std::as_const(store_.next_velocity)),
-                          raw(store_.next_position)))
+    if (!lanes_.advance(forces_, begin_, end_, raw(std::as_const(store_.next_velocity)),
+                        raw(store_.next_position)))
       sums.bad_row = first_bad_row(store_, begin_, end_);
   }
 
-  /// The phases one after the other. predicted: where v' before contact goes in one loop and comes from in the
-  /// next; not used where one loop does both.
+  /// The phases one after the other. predicted: where v' before contact goes in one loop and comes from in
+  /// the next; not used where one loop does both.
   void move(const MotionPhases& phases, VectorColumn& predicted, std::span<ColliderLoad> loads,
             MotionSums& sums) {
     BlockBounds bounds{};
@@ -124,7 +124,7 @@ class MovingBlock {
 
   const MotionInput& in_;
   const ForcesInput forces_;
-  const MotionKernels& kernels_;
+  const MotionLanes& lanes_;
   const std::size_t begin_, end_;
   ParticleStore& store_;
 };

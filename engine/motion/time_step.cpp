@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "motion/motion_kernels.h"
+#include "motion/motion_lanes.h"
 
 namespace mallow {
 
@@ -13,11 +13,11 @@ namespace {
 
 /// The first row of [begin, end) that is as fast as the fastest of them: the first such stretch of rows, then
 /// the first in it.
-std::size_t row_of(float squared_velocity, const ForcesInput& forces, const MotionKernels& kernels,
+std::size_t row_of(float squared_velocity, const ForcesInput& forces, const MotionLanes& lanes,
                    std::size_t begin, std::size_t end) {
   for (const std::size_t stretch : {k_lanes, std::size_t{1}}) {
     const auto holds_it = [&](std::size_t i) {
-      const float here = kernels.fastest(forces, i, std::min(end, i + stretch));
+      const float here = lanes.fastest(forces, i, std::min(end, i + stretch));
       return here == squared_velocity || std::isnan(here);
     };
     while (begin + stretch < end && !holds_it(begin)) begin += stretch;
@@ -31,10 +31,10 @@ std::size_t row_of(float squared_velocity, const ForcesInput& forces, const Moti
 constexpr double k_viscous_share = 1.0 / 25;
 
 /// Pressure is a spring that a step must not overshoot, beside shape matching, which is one too. With
-/// x = α k Δt²/σ² and a = (1 − α) Δt²/(Δt0 Δt_SM), runs of 2,500 steps at α 0.3 and 0.7, a 0.3 to 2.5, kept
-/// their energy up to 2 x + a = 3.75 and gained it from 4; at x 1.4 beside any a up to 1, and in fluids up
-/// to 1.4 too. That takes viscosity: with none they gained from x = 0.2 on, and with α μ Δt/(ρ0 σ²) = y from
-/// 0.1 + 880 y. `mallow-bench stability` goes through them.
+/// x = α k Δt²/σ² and a = (1 − α) Δt²/(Δt0 Δt_SM), simulations of 2,500 steps at α 0.3 and 0.7, a 0.3 to 2.5,
+/// kept their energy up to 2 x + a = 3.75 and gained it from 4; at x 1.4 beside any a up to 1, and in fluids
+/// up to 1.4 too. That takes viscosity: with none they gained from x = 0.2 on, and with α μ Δt/(ρ0 σ²) = y
+/// from 0.1 + 880 y. `mallow-bench stability` goes through them.
 constexpr double k_most_pressure = 1.4, k_most_together = 3.4, k_least_pressure = 0.05,
                  k_pressure_by_viscosity = 800;
 
@@ -53,7 +53,7 @@ double pressure_limit(const TimeStepLimits::Pressure& pressure, double support_r
 
 Fastest fastest_particle(const ParticleStore& store, const Threads& threads, InstructionLevel level,
                          FastestInput& in) {
-  const MotionKernels& kernels = MALLOW_SELECT(level, motion_kernels);
+  const MotionLanes& lanes = MALLOW_SELECT(level, motion_lanes);
   const auto forces = [&](const FastestInput::Body& body) {
     return ForcesInput{.position = {},
                        .velocity = raw(store.velocity),
@@ -74,7 +74,7 @@ Fastest fastest_particle(const ParticleStore& store, const Threads& threads, Ins
   // Of each block the speed; only the winning block is searched for the row.
   parallel_for(threads, in.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     const FastestInput::Body& body = in.bodies[block.range];
-    in.partial[number] = {kernels.fastest(forces(body), body.begin + block.begin, body.begin + block.end), 0};
+    in.partial[number] = {lanes.fastest(forces(body), body.begin + block.begin, body.begin + block.end), 0};
   });
   Fastest fastest;
   std::size_t winner = 0;
@@ -88,7 +88,7 @@ Fastest fastest_particle(const ParticleStore& store, const Threads& threads, Ins
   if (in.partial.empty()) return fastest;
   const RangeBlocks::Block& block = in.blocks.blocks[winner];
   const FastestInput::Body& body = in.bodies[block.range];
-  fastest.row = static_cast<std::uint32_t>(row_of(fastest.squared_velocity, forces(body), kernels,
+  fastest.row = static_cast<std::uint32_t>(row_of(fastest.squared_velocity, forces(body), lanes,
                                                   body.begin + block.begin, body.begin + block.end));
   return fastest;
 }

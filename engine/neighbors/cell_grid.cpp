@@ -4,7 +4,7 @@
 
 #include "core/bounds.h"
 #include "core/parallel.h"
-#include "neighbors/grid_kernels.h"
+#include "neighbors/grid_lanes.h"
 
 namespace mallow {
 namespace {
@@ -15,8 +15,8 @@ constexpr double k_min_cells = 32768.0;
 /// Edges of a cell in spacings.
 constexpr double k_across = 2.0;
 constexpr double k_along = 0.5;
-/// Columns that one thread handles at a time.
-constexpr std::size_t k_column_block = 512;
+/// Pillars that one thread handles at a time.
+constexpr std::size_t k_pillar_block = 512;
 
 /// The box of the points that are finite, or no room at 0. Others are for the caller to refuse; no box around
 /// them would have an end.
@@ -70,35 +70,35 @@ void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, flo
   for (int a = 0; a < 3; ++a) grid.dims[static_cast<std::size_t>(a)] = static_cast<int>(cells(a));
 }
 
-/// Cuts every column into clusters, the last of a column short.
+/// Cuts every pillar into clusters, the last of a pillar short.
 void cut_clusters(const Threads& threads, CellGrid& grid) {
-  const std::size_t columns = grid.columns(), nx = static_cast<std::size_t>(grid.dims[0]);
-  const auto clusters_of = [&](std::size_t column) {
-    return (grid.cell_start[(column + 1) * nx] - grid.cell_start[column * nx] + k_cluster - 1) / k_cluster;
+  const std::size_t pillars = grid.pillars(), nx = static_cast<std::size_t>(grid.dims[0]);
+  const auto clusters_of = [&](std::size_t pillar) {
+    return (grid.cell_start[(pillar + 1) * nx] - grid.cell_start[pillar * nx] + k_cluster - 1) / k_cluster;
   };
-  grid.block_sums.resize((columns + k_column_block - 1) / k_column_block);
+  grid.block_sums.resize((pillars + k_pillar_block - 1) / k_pillar_block);
   parallel_for(
-      threads, columns,
+      threads, pillars,
       [&](std::size_t first, std::size_t last) {
         std::size_t sum = 0;
-        for (std::size_t column = first; column < last; ++column) sum += clusters_of(column);
-        grid.block_sums[first / k_column_block] = static_cast<std::uint32_t>(sum);
+        for (std::size_t pillar = first; pillar < last; ++pillar) sum += clusters_of(pillar);
+        grid.block_sums[first / k_pillar_block] = static_cast<std::uint32_t>(sum);
       },
-      k_column_block);
+      k_pillar_block);
   std::uint32_t clusters = 0;
   for (std::uint32_t& sum : grid.block_sums) clusters += std::exchange(sum, clusters);
   grid.cluster_start.resize(clusters + 1);
-  grid.cluster_start[clusters] = grid.cell_start[columns * nx];
+  grid.cluster_start[clusters] = grid.cell_start[pillars * nx];
   parallel_for(
-      threads, columns,
+      threads, pillars,
       [&](std::size_t first, std::size_t last) {
-        std::uint32_t* next = grid.cluster_start.data() + grid.block_sums[first / k_column_block];
-        for (std::size_t column = first; column < last; ++column)
-          for (std::size_t point = grid.cell_start[column * nx]; point < grid.cell_start[(column + 1) * nx];
+        std::uint32_t* next = grid.cluster_start.data() + grid.block_sums[first / k_pillar_block];
+        for (std::size_t pillar = first; pillar < last; ++pillar)
+          for (std::size_t point = grid.cell_start[pillar * nx]; point < grid.cell_start[(pillar + 1) * nx];
                point += k_cluster)
             *next++ = static_cast<std::uint32_t>(point);
       },
-      k_column_block);
+      k_pillar_block);
 }
 
 }  // namespace
@@ -107,15 +107,15 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
                      const Threads& threads, InstructionLevel level, CellGrid& grid) {
   const std::size_t n = end - begin;
   choose_cells(positions, begin, end, radius, threads, grid);
-  const std::size_t cells = static_cast<std::size_t>(grid.dims[0]) * grid.columns();
+  const std::size_t cells = static_cast<std::size_t>(grid.dims[0]) * grid.pillars();
   grid.cell_of.resize(n);
   grid.sorted.resize(n);
   const ConstVectors x{positions.x() + begin, positions.y() + begin, positions.z() + begin};
 
   const SearchInput input = search_input(grid, radius);
-  const GridKernels& kernels = MALLOW_SELECT(level, grid_kernels);
+  const GridLanes& lanes = MALLOW_SELECT(level, grid_lanes);
   parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
-    kernels.cells_of(input, x, first, last, grid.cell_of.data());
+    lanes.cells_of(input, x, first, last, grid.cell_of.data());
   });
 
   sort_by_key(grid.cell_of, cells, threads, level, grid.sort, grid.cell_start, grid.order);

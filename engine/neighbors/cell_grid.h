@@ -13,9 +13,9 @@
 
 namespace mallow {
 
-/// Points sorted into the cells of a box, x fastest: the cells of one y and z are a column of the grid, and
-/// its points from any x to any other are one run. Columns are two spacings wide and cells half a spacing
-/// long, so that eight consecutive points of a column, a cluster, lie in about a cube of two spacings. Points
+/// Points sorted into the cells of a box, x fastest: the cells of one y and z are a pillar of the grid, and
+/// its points from any x to any other are consecutive. Pillars are two spacings wide and cells half a spacing
+/// long, so that eight consecutive points of a pillar, a cluster, lie in about a cube of two spacings. Points
 /// outside of the covered box are counted to the nearest cell of its border, which keeps searches right
 /// however far a point strays, and memory bounded.
 struct CellGrid {
@@ -38,7 +38,7 @@ struct CellGrid {
   std::vector<std::uint32_t> block_sums;
   std::vector<Aabb> partial_bounds;
 
-  std::size_t columns() const {
+  std::size_t pillars() const {
     return static_cast<std::size_t>(dims[1]) * static_cast<std::size_t>(dims[2]);
   }
   std::size_t clusters() const { return cluster_start.size() - 1; }

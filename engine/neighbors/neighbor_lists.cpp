@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "mallow/errors.h"
-#include "neighbors/search_kernel.h"
+#include "neighbors/search_lanes.h"
 
 namespace mallow {
 namespace {
@@ -22,13 +22,13 @@ constexpr std::size_t k_max_entries = std::numeric_limits<std::uint32_t>::max() 
 
 /// What a thread needs for the lists of one block.
 struct Scratch {
-  std::vector<PlaceRun> runs;
+  std::vector<PlaceRange> ranges;
   std::vector<std::uint32_t> near_cluster;
   std::vector<float> x, y, z;
   std::vector<std::uint32_t> found;  ///< the lists of the block so far
   std::size_t size = 0;              ///< entries of them
 
-  /// Room for `count` more entries; what kernels write beyond the last is included.
+  /// Room for `count` more entries; what lanes write beyond the last is included.
   std::uint32_t* room(std::size_t count) {
     const std::size_t need = size + count + k_cluster;
     if (found.size() < need) found.resize(std::max({need, 2 * found.size(), k_block_entries}));
@@ -38,29 +38,29 @@ struct Scratch {
 
 struct Searcher {
   const CellGrid& grid;
-  const SearchKernels& kernels;
+  const SearchLanes& lanes;
   SearchInput input;
 
   Searcher(const CellGrid& cells, float radius, InstructionLevel level)
-      : grid(cells), kernels(MALLOW_SELECT(level, search_kernels)), input(search_input(cells, radius)) {}
+      : grid(cells), lanes(MALLOW_SELECT(level, search_lanes)), input(search_input(cells, radius)) {}
 
   /// Appends the list of a cluster.
   void find_near_cluster(std::size_t cluster, Scratch& scratch, std::uint32_t* count) const {
-    const Bounds box = kernels.box_of(input, cluster);
+    const Bounds box = lanes.box_of(input, cluster);
     std::size_t most = 0;
-    const std::size_t runs = find_runs(box, scratch, most);
+    const std::size_t ranges = find_ranges(box, scratch, most);
     count[cluster] = static_cast<std::uint32_t>(
-        kernels.near_cluster(input, box, scratch.runs.data(), runs, scratch.room(most)));
+        lanes.near_cluster(input, box, scratch.ranges.data(), ranges, scratch.room(most)));
     scratch.size += count[cluster];
   }
   /// Appends the lists of a cluster's points.
   void find_near_points(std::size_t cluster, Scratch& scratch, std::uint32_t* count) const {
-    const Bounds box = kernels.box_of(input, cluster);
+    const Bounds box = lanes.box_of(input, cluster);
     std::size_t most = 0;
-    const std::size_t runs = find_runs(box, scratch, most);
+    const std::size_t ranges = find_ranges(box, scratch, most);
     scratch.near_cluster.resize(std::max(scratch.near_cluster.size(), most + k_cluster));
     const std::size_t n =
-        kernels.near_cluster(input, box, scratch.runs.data(), runs, scratch.near_cluster.data());
+        lanes.near_cluster(input, box, scratch.ranges.data(), ranges, scratch.near_cluster.data());
     for (std::vector<float>* values : {&scratch.x, &scratch.y, &scratch.z})
       values->resize(std::max(values->size(), n + k_cluster));
     for (std::size_t k = 0; k < n; ++k) {
@@ -71,18 +71,18 @@ struct Searcher {
     }
     for (std::size_t i = input.cluster_start[cluster]; i < input.cluster_start[cluster + 1]; ++i) {
       count[i] = static_cast<std::uint32_t>(
-          kernels.near_point(input, i, n, scratch.near_cluster.data(),
-                             {scratch.x.data(), scratch.y.data(), scratch.z.data()}, scratch.room(n)));
+          lanes.near_point(input, i, n, scratch.near_cluster.data(),
+                           {scratch.x.data(), scratch.y.data(), scratch.z.data()}, scratch.room(n)));
       scratch.size += count[i];
     }
   }
 
  private:
-  std::size_t find_runs(const Bounds& box, Scratch& scratch, std::size_t& points) const {
-    if (scratch.runs.size() < grid.columns() + 1) scratch.runs.resize(2 * (grid.columns() + 1));
-    const std::size_t runs = kernels.find_runs(input, box, scratch.runs.data());
-    for (std::size_t r = 0; r < runs; ++r) points += scratch.runs[r].end - scratch.runs[r].begin;
-    return runs;
+  std::size_t find_ranges(const Bounds& box, Scratch& scratch, std::size_t& points) const {
+    if (scratch.ranges.size() < grid.pillars() + 1) scratch.ranges.resize(2 * (grid.pillars() + 1));
+    const std::size_t ranges = lanes.find_ranges(input, box, scratch.ranges.data());
+    for (std::size_t r = 0; r < ranges; ++r) points += scratch.ranges[r].end - scratch.ranges[r].begin;
+    return ranges;
   }
 };
 

@@ -13,8 +13,8 @@
 namespace mallow {
 
 /// Lists of sorted places of a grid, one a point or one a cluster, in an order that the points alone decide.
-/// Lists of one block of clusters lie together; where a block lies in `indices` may differ from run to run,
-/// what a list holds does not.
+/// Lists of one block of clusters lie together; where a block lies in `indices` may differ from search to
+/// search, what a list holds does not.
 struct NeighborLists {
   Column<std::uint32_t> begin;    ///< where each list starts in `indices`
   Column<std::uint32_t> count;    ///< how long it is

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "shape_matching/moment_kernels.h"
+#include "shape_matching/moment_lanes.h"
 #include "shape_matching/shape_matching.h"
 
 namespace mallow {
@@ -14,8 +14,8 @@ namespace {
 /// at one place.
 constexpr double k_no_extent = 1e-13;
 
-/// Width of columns: the spacing of the particles, or of as many spread evenly over their bounds.
-float column_width(const ShapeMatching& shape) {
+/// Width of pillars: the spacing of the particles, or of as many spread evenly over their bounds.
+float pillar_width(const ShapeMatching& shape) {
   if (shape.spacing > 0) return shape.spacing;
   const VectorColumn& x = shape.reference;
   double volume = 1;
@@ -119,12 +119,12 @@ std::size_t weigh_particles(bool every, const Threads& threads, RegionScratch& s
 }
 
 /// W_j, c̄_j and B_j of the regions [begin, end).
-void measure_regions(std::size_t begin, std::size_t end, const MomentKernels& kernels,
-                     const double* moment_rows, const RegionScratch& scratch, ShapeMatching& shape) {
+void measure_regions(std::size_t begin, std::size_t end, const MomentLanes& lanes, const double* moment_rows,
+                     const RegionScratch& scratch, ShapeMatching& shape) {
   for (std::size_t j = begin; j < end; ++j) {
     double s[k_moment_row];
     const std::span<const Run> runs = scratch.near.of(scratch.owners.empty() ? j : scratch.owners[j]);
-    kernels.sum_runs(moment_rows, runs.data(), runs.size(), s);
+    lanes.sum_runs(moment_rows, runs.data(), runs.size(), s);
     const double weight = s[0];
     // In double, what cancels here is less than what the single precision of positions has lost.
     const Eigen::Vector3d center = Eigen::Vector3d(s[1], s[2], s[3]) / weight;
@@ -151,9 +151,9 @@ void make_room(std::size_t n, std::size_t regions, const Threads& threads, Shape
   shape.sums.resize_unset((regions + k_longest_run) * k_row);
   std::fill(shape.sums.data() + regions * k_row, shape.sums.end(), 0.0f);
   shape.undecided.resize_unset(regions);
-  const std::size_t of_regions = shape.by_particle().lengths.levels;
+  const std::size_t of_regions = shape.by_particle().lengths.count;
   shape.table.resize_unset(
-      std::max(n * shape.regions.lengths.levels, of_regions > 1 ? regions * of_regions : 0) * k_row);
+      std::max(n * shape.regions.lengths.count, of_regions > 1 ? regions * of_regions : 0) * k_row);
   shape.pull.resize_unset(n);
 }
 
@@ -210,19 +210,19 @@ void update_reference(const VectorColumn& positions, std::size_t begin, std::siz
   shape.built = false;
 }
 
-void sort_reference(const Threads& threads, InstructionLevel level, ColumnOrder& columns,
+void sort_reference(const Threads& threads, InstructionLevel level, PillarOrder& pillars,
                     ShapeMatching& shape) {
-  order_by_columns(shape.reference, 0, shape.reference.size(), column_width(shape), threads, level, columns);
-  shape.reference.swap(columns.sorted);
+  order_by_pillars(shape.reference, 0, shape.reference.size(), pillar_width(shape), threads, level, pillars);
+  shape.reference.swap(pillars.sorted);
 }
 
 void build_regions(const Threads& threads, InstructionLevel level, RegionScratch& scratch,
                    ShapeMatching& shape) {
   const std::size_t n = shape.reference.size();
   const bool every = shape.region_stride == 1;
-  const MomentKernels& kernels = MALLOW_SELECT(level, moment_kernels);
-  order_by_columns(shape.reference, 0, n, column_width(shape), threads, level, scratch.columns);
-  find_runs(scratch.columns, shape.region_radius, threads, level, scratch.near);
+  const MomentLanes& lanes = MALLOW_SELECT(level, moment_lanes);
+  order_by_pillars(shape.reference, 0, n, pillar_width(shape), threads, level, scratch.pillars);
+  find_runs(scratch.pillars, shape.region_radius, threads, level, scratch.near);
   scratch.owners.resize(0);
   if (!every) choose_owners(static_cast<std::uint32_t>(shape.region_stride), threads, scratch);
   const std::size_t regions = every ? n : scratch.owners.size();
@@ -234,13 +234,13 @@ void build_regions(const Threads& threads, InstructionLevel level, RegionScratch
   shape.table.resize_unset(std::max(shape.table.size(), n * k_moment_row * sizeof(double) / sizeof(float)));
   auto* const moment_rows = reinterpret_cast<double*>(shape.table.data());
   parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
-    kernels.write_rows(raw(std::as_const(shape.reference)), shape.weight.data(), begin, end, moment_rows);
+    lanes.write_rows(raw(std::as_const(shape.reference)), shape.weight.data(), begin, end, moment_rows);
   });
   shape.region_weight.resize_unset(regions);
   shape.center.resize_unset(regions);
   for (Column<float>& column : shape.moment) column.resize_unset(regions);
   parallel_for(threads, regions, [&](std::size_t begin, std::size_t end) {
-    measure_regions(begin, end, kernels, moment_rows, scratch, shape);
+    measure_regions(begin, end, lanes, moment_rows, scratch, shape);
   });
   if (!every) {
     turn_around(threads, scratch);

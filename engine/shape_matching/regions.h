@@ -8,7 +8,7 @@
 #include "core/column.h"
 #include "core/isa.h"
 #include "core/threads.h"
-#include "particles/column_order.h"
+#include "particles/pillar_order.h"
 #include "shape_matching/run_lists.h"
 
 namespace mallow {
@@ -17,7 +17,7 @@ struct ShapeMatching;
 
 /// What building regions needs besides them; all bodies take turns with it.
 struct RegionScratch {
-  ColumnOrder columns;
+  PillarOrder pillars;
   RunLists near;                       ///< per particle: those within the region radius
   Column<std::uint32_t> owners;        ///< particles that own a region, ascending; with a stride above 1
   Column<std::uint32_t> first_region;  ///< per particle: regions of the particles before it
@@ -25,15 +25,15 @@ struct RegionScratch {
   std::vector<std::array<double, 3>> partial_sums;
   std::vector<std::size_t> partial_count;
 
-  std::size_t bytes() const { return columns.bytes() + near.bytes() + owners.bytes() + first_region.bytes(); }
+  std::size_t bytes() const { return pillars.bytes() + near.bytes() + owners.bytes() + first_region.bytes(); }
 };
 
 /// x̄ ← x of the rows [begin, end) of a store. Rotations start from none; regions are due to be built.
 void update_reference(const VectorColumn& positions, std::size_t begin, std::size_t end,
                       const Threads& threads, RegionScratch& scratch, ShapeMatching& shape);
 /// Puts the rows of a reference shape in the order in which regions are fast: row k becomes what row
-/// columns.order[k] was. The other columns of the particles have to follow.
-void sort_reference(const Threads& threads, InstructionLevel level, ColumnOrder& columns,
+/// pillars.order[k] was. The other columns of the particles have to follow.
+void sort_reference(const Threads& threads, InstructionLevel level, PillarOrder& pillars,
                     ShapeMatching& shape);
 /// Regions of the reference shape: owners, lists, weights, centres, moments. One of every region_stride
 /// particles owns a region, and so does every particle that is in none of theirs. Right for any order of the
@@ -41,7 +41,7 @@ void sort_reference(const Threads& threads, InstructionLevel level, ColumnOrder&
 void build_regions(const Threads& threads, InstructionLevel level, RegionScratch& scratch,
                    ShapeMatching& shape);
 /// Whether a row is drawn to own a region: of every `stride` in a row one is, at a scattered place. Every
-/// third row of a lattice of 12 is whole columns of it, and bent ten times as wrongly as every second or
+/// third row of a lattice of 12 is whole lines of it, and bent ten times as wrongly as every second or
 /// fourth.
 bool is_drawn(std::uint32_t row, std::uint32_t stride);
 

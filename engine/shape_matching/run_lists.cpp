@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "mallow/errors.h"
-#include "shape_matching/reach_kernel.h"
+#include "shape_matching/reach_lanes.h"
 
 namespace mallow {
 namespace {
@@ -18,14 +18,14 @@ constexpr float k_slack = 1e-5f;
 /// One of so many blocks is searched to learn how many runs there will be.
 constexpr std::size_t k_sampled = 64;
 
-/// Ends of a column's points across, so that lattice lines are searched as the lines they are.
-struct ColumnBounds {
+/// Ends of a pillar's points across, so that lattice lines are searched as the lines they are.
+struct PillarBounds {
   float low[2], high[2];
 };
 
 /// Where a block of points keeps what it finds until it has a place in the lists.
 struct Scratch {
-  std::vector<ReachColumn> near;
+  std::vector<ReachPillar> near;
   std::vector<Run> found;
   std::size_t runs = 0;  ///< of `found`, those of the block so far
   std::vector<std::uint32_t> rows;
@@ -38,22 +38,22 @@ struct Scratch {
 };
 
 struct Search {
-  const ColumnOrder& columns;
-  const ReachKernels& kernels;
+  const PillarOrder& pillars;
+  const ReachLanes& lanes;
   ReachInput input;
   float slack;  ///< of squared distances, for what is only narrowed down [m²]
   int reach[2];
-  std::vector<ColumnBounds> bounds;
+  std::vector<PillarBounds> bounds;
 
-  Search(const ColumnOrder& order, float radius, const Threads& threads, InstructionLevel level)
-      : columns(order),
-        kernels(MALLOW_SELECT(level, reach_kernels)),
+  Search(const PillarOrder& order, float radius, const Threads& threads, InstructionLevel level)
+      : pillars(order),
+        lanes(MALLOW_SELECT(level, reach_lanes)),
         input{order.sorted.axis(static_cast<std::size_t>(order.along)), {}, radius * radius},
         slack(k_slack * input.squared_radius),
-        bounds(order.columns()) {
+        bounds(order.pillars()) {
     for (std::size_t k = 0; k < 2; ++k) {
       input.across[k] = order.sorted.axis(static_cast<std::size_t>(order.across[k]));
-      // Two more than fit into the radius: for the part of a column, and for rounding.
+      // Two more than fit into the radius: for the part of a pillar, and for rounding.
       reach[k] =
           static_cast<int>(std::min(static_cast<float>(order.dims[k]), radius * order.inverse_width + 2.0f));
     }
@@ -69,25 +69,25 @@ struct Search {
     });
   }
 
-  /// Columns with points within the radius of a column, in the order of their points, and from what is in
+  /// Pillars with points within the radius of a pillar, in the order of their points, and from what is in
   /// reach of its point s on; returns how many points they hold.
-  std::size_t find_near(std::size_t column, std::size_t s, std::vector<ReachColumn>& near) const {
+  std::size_t find_near(std::size_t pillar, std::size_t s, std::vector<ReachPillar>& near) const {
     near.clear();
     std::size_t points = 0;
-    const auto in_strip = static_cast<int>(column % ColumnOrder::k_strip);
-    const std::size_t row = column / ColumnOrder::k_strip;
-    const int b = static_cast<int>(row % static_cast<std::size_t>(columns.dims[1]));
+    const auto in_strip = static_cast<int>(pillar % PillarOrder::k_strip);
+    const std::size_t row = pillar / PillarOrder::k_strip;
+    const int b = static_cast<int>(row % static_cast<std::size_t>(pillars.dims[1]));
     const int a =
-        static_cast<int>(row / static_cast<std::size_t>(columns.dims[1])) * ColumnOrder::k_strip + in_strip;
-    const int a0 = std::max(0, a - reach[0]), a1 = std::min(columns.dims[0] - 1, a + reach[0]);
-    const int b0 = std::max(0, b - reach[1]), b1 = std::min(columns.dims[1] - 1, b + reach[1]);
-    const ColumnBounds& mine = bounds[column];
-    for (int strip = a0; strip <= a1; strip = (strip / ColumnOrder::k_strip + 1) * ColumnOrder::k_strip) {
-      const int strip_end = std::min(a1, (strip / ColumnOrder::k_strip + 1) * ColumnOrder::k_strip - 1);
+        static_cast<int>(row / static_cast<std::size_t>(pillars.dims[1])) * PillarOrder::k_strip + in_strip;
+    const int a0 = std::max(0, a - reach[0]), a1 = std::min(pillars.dims[0] - 1, a + reach[0]);
+    const int b0 = std::max(0, b - reach[1]), b1 = std::min(pillars.dims[1] - 1, b + reach[1]);
+    const PillarBounds& mine = bounds[pillar];
+    for (int strip = a0; strip <= a1; strip = (strip / PillarOrder::k_strip + 1) * PillarOrder::k_strip) {
+      const int strip_end = std::min(a1, (strip / PillarOrder::k_strip + 1) * PillarOrder::k_strip - 1);
       for (int nb = b0; nb <= b1; ++nb)
         for (int na = strip; na <= strip_end; ++na) {
-          const std::size_t c = columns.column(na, nb);
-          const std::uint32_t start = columns.start[c], end = columns.start[c + 1];
+          const std::size_t c = pillars.pillar(na, nb);
+          const std::uint32_t start = pillars.start[c], end = pillars.start[c + 1];
           if (start == end) continue;
           float squared = 0;
           for (std::size_t k = 0; k < 2; ++k) {
@@ -114,7 +114,7 @@ struct Search {
     rows.clear();
     for (std::size_t r = from; r < scratch.runs; ++r)
       for (std::uint32_t k = 0; k < scratch.found[r].count; ++k)
-        rows.push_back(columns.order[scratch.found[r].first + k]);
+        rows.push_back(pillars.order[scratch.found[r].first + k]);
     std::sort(rows.begin(), rows.end());
     scratch.runs = from;
     Run* const runs = scratch.room(rows.size());
@@ -131,20 +131,20 @@ struct Search {
   /// Lists of the sorted points [begin, end), their places counted from 0.
   void search_block(std::size_t begin, std::size_t end, Scratch& scratch, RunLists& lists) const {
     scratch.runs = 0;
-    const std::uint32_t* const starts = columns.start.data();
-    std::size_t column =
-        static_cast<std::size_t>(std::upper_bound(starts, starts + columns.start.size(), begin) - starts) - 1;
-    for (std::size_t s = begin; s < end; ++column) {
-      const std::size_t column_end = std::min<std::size_t>(end, starts[column + 1]);
-      const std::size_t points = s < column_end ? find_near(column, s, scratch.near) : 0;
-      // Of a column every other point at the most begins a run.
+    const std::uint32_t* const starts = pillars.start.data();
+    std::size_t pillar =
+        static_cast<std::size_t>(std::upper_bound(starts, starts + pillars.start.size(), begin) - starts) - 1;
+    for (std::size_t s = begin; s < end; ++pillar) {
+      const std::size_t pillar_end = std::min<std::size_t>(end, starts[pillar + 1]);
+      const std::size_t points = s < pillar_end ? find_near(pillar, s, scratch.near) : 0;
+      // Of a pillar every other point at the most begins a run.
       const std::size_t most_runs = (points + scratch.near.size()) / 2 + 1;
-      for (; s < column_end; ++s) {
+      for (; s < pillar_end; ++s) {
         const std::size_t from = scratch.runs;
-        const std::uint32_t row = columns.order[s];
-        scratch.runs += kernels.runs_in_reach(input, s, scratch.near.data(), scratch.near.size(),
-                                              scratch.room(most_runs), lists.members[row]);
-        if (!columns.already) to_rows(from, scratch);
+        const std::uint32_t row = pillars.order[s];
+        scratch.runs += lanes.runs_in_reach(input, s, scratch.near.data(), scratch.near.size(),
+                                            scratch.room(most_runs), lists.members[row]);
+        if (!pillars.already) to_rows(from, scratch);
         lists.begin[row] = static_cast<std::uint32_t>(from);
         lists.count[row] = static_cast<std::uint32_t>(scratch.runs - from);
       }
@@ -173,13 +173,13 @@ std::size_t estimate_runs(const Search& search, const Threads& threads, RunLists
 
 }  // namespace
 
-void find_runs(const ColumnOrder& columns, float radius, const Threads& threads, InstructionLevel level,
+void find_runs(const PillarOrder& pillars, float radius, const Threads& threads, InstructionLevel level,
                RunLists& lists) {
-  const std::size_t n = columns.order.size();
+  const std::size_t n = pillars.order.size();
   lists.begin.resize_unset(n);
   lists.count.resize_unset(n);
   lists.members.resize_unset(n);
-  const Search search(columns, radius, threads, level);
+  const Search search(pillars, radius, threads, level);
   if (lists.runs.size() < n) lists.runs.resize_unset(estimate_runs(search, threads, lists));
   for (;;) {
     std::atomic<std::size_t> used = 0;
@@ -190,7 +190,7 @@ void find_runs(const ColumnOrder& columns, float radius, const Threads& threads,
       if (place + scratch.runs > lists.runs.size()) return;
       std::copy_n(scratch.found.data(), scratch.runs, lists.runs.data() + place);
       for (std::size_t s = begin; s < end; ++s)
-        lists.begin[columns.order[s]] += static_cast<std::uint32_t>(place);
+        lists.begin[pillars.order[s]] += static_cast<std::uint32_t>(place);
     });
     if (used > k_max_runs)
       throw ConfigError("support_radius", "the regions would need " + std::to_string(used) +

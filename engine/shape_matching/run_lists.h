@@ -8,8 +8,8 @@
 #include "core/column.h"
 #include "core/isa.h"
 #include "core/threads.h"
-#include "particles/column_order.h"
-#include "shape_matching/shape_kernels.h"
+#include "particles/pillar_order.h"
+#include "shape_matching/shape_lanes.h"
 
 namespace mallow {
 
@@ -28,7 +28,7 @@ struct RunLists {
 /// before the order sorted it. Where the lists of a block of points lie in `runs` may differ from call to
 /// call, what they hold does not. Of two points each is in the other's list, or none. Throws ConfigError
 /// where there would be 2^32 runs.
-void find_runs(const ColumnOrder& columns, float radius, const Threads& threads, InstructionLevel level,
+void find_runs(const PillarOrder& pillars, float radius, const Threads& threads, InstructionLevel level,
                RunLists& lists);
 
 }  // namespace mallow

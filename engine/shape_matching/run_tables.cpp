@@ -21,16 +21,16 @@ constexpr double k_cost_of_length = 4.0;
 /// How runs of up to k_longest_run rows are put together from the lengths of a table with fewest entries.
 struct Pieces {
   std::array<std::uint32_t, k_longest_run + 1> count{};
-  std::array<std::uint32_t, k_longest_run + 1> level{};  ///< of the first entry
+  std::array<std::uint32_t, k_longest_run + 1> longest{};  ///< which length the first entry has
 
   explicit Pieces(const RunLengths& lengths) {
     for (std::uint32_t n = 1; n <= k_longest_run; ++n) {
       count[n] = ~0u;
-      for (std::uint32_t l = lengths.levels; l-- > 0;) {
+      for (std::uint32_t l = lengths.count; l-- > 0;) {
         const std::uint32_t length = lengths.length[l];
         if (length > n || count[n - length] + 1 >= count[n]) continue;
         count[n] = count[n - length] + 1;
-        level[n] = l;
+        longest[n] = l;
       }
     }
   }
@@ -43,7 +43,7 @@ struct Pieces {
 };
 
 RunLengths with(RunLengths lengths, std::uint32_t length) {
-  std::uint32_t l = lengths.levels++;
+  std::uint32_t l = lengths.count++;
   for (; l > 0 && lengths.length[l - 1] > length; --l) lengths.length[l] = lengths.length[l - 1];
   lengths.length[l] = length;
   return lengths;
@@ -80,11 +80,11 @@ Histogram count_runs(const RunLists& lists, std::span<const std::uint32_t> owner
 RunLengths choose_lengths(const Histogram& runs, std::size_t rows) {
   RunLengths lengths;
   double cost = Pieces(lengths).entries(runs);
-  while (lengths.levels < k_max_levels) {
+  while (lengths.count < k_max_lengths) {
     double best_cost = cost;
     RunLengths best = lengths;
     for (std::uint32_t n = 2; n <= k_longest_run; ++n) {
-      if (std::find(lengths.length, lengths.length + lengths.levels, n) != lengths.length + lengths.levels)
+      if (std::find(lengths.length, lengths.length + lengths.count, n) != lengths.length + lengths.count)
         continue;
       const RunLengths longer = with(lengths, n);
       const double new_cost = Pieces(longer).entries(runs);
@@ -128,7 +128,7 @@ void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::s
     block = static_cast<std::uint32_t>(total);
     total += sum;
   }
-  if (std::max(total, rows * coded.lengths.levels) > k_max_entries)
+  if (std::max(total, rows * coded.lengths.count) > k_max_entries)
     throw ConfigError("support_radius", "the regions would need " + std::to_string(total) +
                                             " entries; at most 4294967295 fit: choose a smaller radius");
   coded.total = total;
@@ -142,10 +142,10 @@ void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::s
         std::uint32_t row = run.first;
         for_each_part(run.count, [&](std::uint32_t part) {
           while (part > 0) {
-            const std::uint32_t level = pieces.level[part];
-            coded.entries[next++] = level * all + row;
-            row += coded.lengths.length[level];
-            part -= coded.lengths.length[level];
+            const std::uint32_t l = pieces.longest[part];
+            coded.entries[next++] = l * all + row;
+            row += coded.lengths.length[l];
+            part -= coded.lengths.length[l];
           }
         });
       }

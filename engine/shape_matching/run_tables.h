@@ -8,7 +8,7 @@
 #include "core/column.h"
 #include "core/threads.h"
 #include "shape_matching/run_lists.h"
-#include "shape_matching/shape_kernels.h"
+#include "shape_matching/shape_lanes.h"
 
 namespace mallow {
 
@@ -17,6 +17,20 @@ namespace mallow {
 /// where the table has its length, for a part of it otherwise. Unlike differences of running totals the
 /// entries of a list only add, so no digit cancels. A table is worth its lengths only where enough lists use
 /// them; with none but 1 it is the rows themselves, and the lists are plain.
+///
+/// For example eight rows a to h, and the lengths 1, 2 and 4:
+///
+///   from row     |    0      1      2      3      4      5      6      7
+///   l = 0, one   | 0: a   1: b   2: c   3: d   4: e   5: f   6: g   7: h
+///   l = 1, two   | 8: ab  9: bc 10: cd 11: de 12: ef 13: fg 14: gh 15: h
+///   l = 2, four  | 16: abcd     18: cdef      20: efgh      22: gh         and those between
+///
+///   rows of a list |  a  |     |  c     d     e     f  |  g     h  |
+///   its entries    |  0  |     |          18           |    14     |
+///
+/// The list has seven rows in two runs. The run of one is entry 0. The run of six has no entry of its own: it
+/// is four rows from row 2 on, 2 * 8 + 2 = 18, and two from row 6 on, 1 * 8 + 6 = 14. Three additions do for
+/// seven. Behind the last row there is nothing to add: entry 15 is h alone.
 struct TableLists {
   Column<std::uint32_t> begin;    ///< per list: where it starts in `entries`
   Column<std::uint32_t> count;    ///< per list: entries

@@ -4,7 +4,7 @@
 
 #include "core/parallel.h"
 #include "core/polar_rotation.h"
-#include "shape_matching/moment_kernels.h"
+#include "shape_matching/moment_lanes.h"
 
 namespace mallow {
 namespace {
@@ -15,7 +15,7 @@ constexpr std::size_t k_near_caches = std::size_t{8} << 20;
 
 RegionLists raw(const TableLists& lists) {
   return {lists.begin.data(), lists.count.data(), lists.entries.data(),
-          lists.rows * lists.lengths.levels * k_row * sizeof(float) > k_near_caches};
+          lists.rows * lists.lengths.count * k_row * sizeof(float) > k_near_caches};
 }
 
 using Block = RangeBlocks::Block;
@@ -25,7 +25,7 @@ FrameSums sum_frame(const VectorColumn& positions, const MatchedBodies::Body& bo
                     InstructionLevel level) {
   const Eigen::Vector3d near_origin = positions.get(body.begin).cast<double>();
   FrameSums sums;
-  MALLOW_SELECT(level, moment_kernels)
+  MALLOW_SELECT(level, moment_lanes)
       .frame_sums({positions.x() + body.begin, positions.y() + body.begin, positions.z() + body.begin},
                   raw(std::as_const(body.shape->reference)), near_origin.data(), block.begin, block.end,
                   sums.data());
@@ -84,46 +84,47 @@ void solve_undecided(const ShapeInput& in, std::size_t begin, std::size_t end, S
 
 /// The rows of a block of particles and the sums of their runs: a block computes the rows behind it that its
 /// runs reach once more, rather than wait for them.
-void write_particle_table(const ShapeInput& in, const Block& block, const ShapeKernels& kernels,
+void write_particle_table(const ShapeInput& in, const Block& block, const ShapeLanes& lanes,
                           ShapeMatching& shape) {
   const std::size_t n = shape.reference.size(), first = block.begin, last = block.end;
   const RunLengths& lengths = shape.regions.lengths;
   float* const table = shape.table.data() + first * k_row;
-  if (lengths.levels == 1) {
-    kernels.write_rows(in, first, last, table);
+  if (lengths.count == 1) {
+    lanes.write_rows(in, first, last, table);
     return;
   }
   alignas(64) float rows[(k_block + k_longest_run) * k_row];
-  const std::size_t reach = last + lengths.length[lengths.levels - 1] - 1, end = std::min(n, reach);
-  kernels.write_rows(in, first, end, rows);
+  const std::size_t reach = last + lengths.length[lengths.count - 1] - 1, end = std::min(n, reach);
+  lanes.write_rows(in, first, end, rows);
   std::fill(rows + (end - first) * k_row, rows + (reach - first) * k_row, 0.0f);
-  kernels.sum_runs(rows, last - first, lengths, n, table);
+  lanes.sum_runs(rows, last - first, lengths, n, table);
 }
 
-void solve_block(int iterations, const Block& block, InstructionLevel level, const MatchedBodies::Body& body) {
+void solve_block(int iterations, const Block& block, InstructionLevel level,
+                 const MatchedBodies::Body& body) {
   ShapeMatching& shape = *body.shape;
   float* const rotation[4] = {shape.rotation[0].data(), shape.rotation[1].data(), shape.rotation[2].data(),
                               shape.rotation[3].data()};
-  MALLOW_SELECT(level, rotation_kernels)
+  MALLOW_SELECT(level, rotation_lanes)
       .solve(body.input, block.begin, block.end, iterations, shape.sums.data(), rotation,
              shape.undecided.data());
   solve_undecided(body.input, block.begin, block.end, shape);
 }
 
 bool has_region_table(const ShapeMatching& shape) {
-  return shape.by_particle().lengths.levels > 1;
+  return shape.by_particle().lengths.count > 1;
 }
 
-void write_region_table(const Block& block, const ShapeKernels& kernels, ShapeMatching& shape) {
+void write_region_table(const Block& block, const ShapeLanes& lanes, ShapeMatching& shape) {
   if (!has_region_table(shape)) return;
-  kernels.sum_runs(shape.sums.data() + block.begin * k_row, block.end - block.begin,
-                   shape.by_particle().lengths, shape.region_weight.size(),
-                   shape.table.data() + block.begin * k_row);
+  lanes.sum_runs(shape.sums.data() + block.begin * k_row, block.end - block.begin,
+                 shape.by_particle().lengths, shape.region_weight.size(),
+                 shape.table.data() + block.begin * k_row);
 }
 
-void write_goals(const ShapeInput& in, const Block& block, const ShapeKernels& kernels, ShapeMatching& shape) {
+void write_goals(const ShapeInput& in, const Block& block, const ShapeLanes& lanes, ShapeMatching& shape) {
   const float* const table = has_region_table(shape) ? shape.table.data() : shape.sums.data();
-  kernels.goals(in, block.begin, block.end, table, raw(shape.pull));
+  lanes.goals(in, block.begin, block.end, table, raw(shape.pull));
 }
 
 /// Bodies that one thread handles at a time where each takes some microseconds.
@@ -173,7 +174,7 @@ void MatchedBodies::add(ShapeMatching& shape, std::size_t begin) {
 
 void match_small_bodies(const VectorColumn& positions, int iterations, const Threads& threads,
                         InstructionLevel level, MatchedBodies& matched) {
-  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
+  const ShapeLanes& lanes = MALLOW_SELECT(level, shape_lanes);
   const auto match = [&](MatchedBodies::Body& body) {
     ShapeMatching& shape = *body.shape;
     const Block particles{0, 0, static_cast<std::uint32_t>(shape.reference.size())};
@@ -181,11 +182,11 @@ void match_small_bodies(const VectorColumn& positions, int iterations, const Thr
     const FrameSums sums = sum_frame(positions, body, particles, level);
     update_frame(positions, body.begin, {&sums, 1}, shape);
     body.input = shape_input(positions, body.begin, shape);
-    write_particle_table(body.input, particles, kernels, shape);
-    kernels.sum_regions(body.input, regions.begin, regions.end, shape.table.data(), shape.sums.data());
+    write_particle_table(body.input, particles, lanes, shape);
+    lanes.sum_regions(body.input, regions.begin, regions.end, shape.table.data(), shape.sums.data());
     solve_block(iterations, regions, level, body);
-    write_region_table(regions, kernels, shape);
-    write_goals(body.input, particles, kernels, shape);
+    write_region_table(regions, lanes, shape);
+    write_goals(body.input, particles, lanes, shape);
   };
   parallel_for(
       threads, matched.small.size(),
@@ -197,7 +198,7 @@ void match_small_bodies(const VectorColumn& positions, int iterations, const Thr
 
 void sum_regions(const VectorColumn& positions, const Threads& threads, InstructionLevel level,
                  MatchedBodies& matched) {
-  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
+  const ShapeLanes& lanes = MALLOW_SELECT(level, shape_lanes);
   matched.partial.resize(matched.particles.blocks.size());
   parallel_for(threads, matched.particles, [&](const Block& block, std::size_t number) {
     matched.partial[number] = sum_frame(positions, matched.large[block.range], block, level);
@@ -216,12 +217,11 @@ void sum_regions(const VectorColumn& positions, const Threads& threads, Instruct
       k_body_block);
   parallel_for(threads, matched.particles, [&](const Block& block, std::size_t) {
     const MatchedBodies::Body& body = matched.large[block.range];
-    write_particle_table(body.input, block, kernels, *body.shape);
+    write_particle_table(body.input, block, lanes, *body.shape);
   });
   parallel_for(threads, matched.regions, [&](const Block& block, std::size_t) {
     const MatchedBodies::Body& body = matched.large[block.range];
-    kernels.sum_regions(body.input, block.begin, block.end, body.shape->table.data(),
-                        body.shape->sums.data());
+    lanes.sum_regions(body.input, block.begin, block.end, body.shape->table.data(), body.shape->sums.data());
   });
 }
 
@@ -232,13 +232,13 @@ void solve_rotations(int iterations, const Threads& threads, InstructionLevel le
 }
 
 void compute_goals(const Threads& threads, InstructionLevel level, MatchedBodies& matched) {
-  const ShapeKernels& kernels = MALLOW_SELECT(level, shape_kernels);
+  const ShapeLanes& lanes = MALLOW_SELECT(level, shape_lanes);
   parallel_for(threads, matched.regions, [&](const Block& block, std::size_t) {
-    write_region_table(block, kernels, *matched.large[block.range].shape);
+    write_region_table(block, lanes, *matched.large[block.range].shape);
   });
   parallel_for(threads, matched.particles, [&](const Block& block, std::size_t) {
     const MatchedBodies::Body& body = matched.large[block.range];
-    write_goals(body.input, block, kernels, *body.shape);
+    write_goals(body.input, block, lanes, *body.shape);
   });
 }
 

@@ -10,9 +10,9 @@
 #include "core/range_blocks.h"
 #include "core/threads.h"
 #include "shape_matching/regions.h"
-#include "shape_matching/rotation_kernels.h"
+#include "shape_matching/rotation_lanes.h"
 #include "shape_matching/run_tables.h"
-#include "shape_matching/shape_kernels.h"
+#include "shape_matching/shape_lanes.h"
 
 namespace mallow {
 
@@ -63,7 +63,7 @@ struct ShapeMatching {
   std::size_t bytes() const;
 };
 
-/// What kernels see of a shape whose particles are in the rows from `begin` on.
+/// What lanes see of a shape whose particles are in the rows from `begin` on.
 ShapeInput shape_input(const VectorColumn& positions, std::size_t begin, const ShapeMatching& shape);
 
 /// Bodies whose shapes are matched together. Large ones take one phase after the other, each once over the

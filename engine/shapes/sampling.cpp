@@ -121,7 +121,7 @@ class SpacingSearch {
 
   /// Symmetric shapes gain points by dozens as the spacing shrinks. Other alignments gain them elsewhere, so
   /// all are tried until one meets the number; the one without a point in the middle comes first.
-  Candidate run() {
+  Candidate best() {
     const float start = guess();
     for (unsigned alignment : {0u, 7u, 1u, 2u, 4u, 3u, 5u, 6u}) {
       if (best_.count == wanted_) break;
@@ -186,7 +186,7 @@ Candidate choose_lattice(const ImplicitShape& shape, const Sampling& sampling) {
   const std::int64_t wanted = *sampling.count;
   const double box = (shape.bounds.max - shape.bounds.min).cast<double>().prod();
   refuse_too_far("bounds", shape.bounds, static_cast<float>(std::cbrt(box / double(wanted))));
-  const Candidate best = SpacingSearch(shape, wanted).run();
+  const Candidate best = SpacingSearch(shape, wanted).best();
   // Among less than 200 points 1% is less than the two by which symmetric shapes grow at the least.
   if (wanted >= 200 && !within_1_percent(best.count, wanted)) {
     throw ConfigError("count", std::to_string(wanted) +

@@ -15,7 +15,7 @@ struct Damage {
 };
 
 /// The first number that is not finite: in what a step starts from, else in the columns of phases up to
-/// `last` in their order, so that what was computed from another such number comes after it. Kernels do not
+/// `last` in their order, so that what was computed from another such number comes after it. Lanes do not
 /// look for them; they hand them on to where choose_time_step() or move_bodies() cannot miss them.
 std::optional<Damage> find_damage(const Simulation::State& state, Phase last);
 

@@ -123,12 +123,12 @@ void read_alphas(Simulation::State& state) {
 }
 
 void take_reference(Simulation::State& state, BodyState& body) {
-  ColumnOrder& columns = state.region_scratch.columns;
+  PillarOrder& pillars = state.region_scratch.pillars;
   body.shape.spacing = body.spacing;
   update_reference(state.store.position, body.begin, body.end, state.threads, state.region_scratch,
                    body.shape);
-  sort_reference(state.threads, state.level, columns, body.shape);
-  state.store.permute(body.begin, columns.order.span(), state.threads);
+  sort_reference(state.threads, state.level, pillars, body.shape);
+  state.store.permute(body.begin, pillars.order.span(), state.threads);
   state.rows_moved();
 }
 

@@ -62,15 +62,15 @@ void compute_density(const Threads& threads, InstructionLevel level, Sph& sph) {
   for (Column<float>* column : {&sph.density, &sph.pressure, &sph.volume, &sph.density_by_row})
     column->resize(n);
   const SphInput in = input(sph);
-  const SphKernels& kernels = MALLOW_SELECT(level, sph_kernels);
+  const SphLanes& lanes = MALLOW_SELECT(level, sph_lanes);
   // Lists that are kept for steps to come stay as they are.
   const NearLists near = sph.neighbor_slack > 0 ? NearLists{nullptr, nullptr}
                                                 : NearLists{sph.lists.indices.data(), sph.lists.count.data()};
   parallel_for(
       threads, sph.grid.clusters(),
       [&](std::size_t begin, std::size_t end) {
-        kernels.density(in, begin, end, near, sph.density.data(), sph.pressure.data(), sph.volume.data(),
-                        sph.density_by_row.data());
+        lanes.density(in, begin, end, near, sph.density.data(), sph.pressure.data(), sph.volume.data(),
+                      sph.density_by_row.data());
       },
       k_cluster_block);
 }
@@ -91,13 +91,13 @@ void compute_accelerations(const VectorColumn& velocities, const Threads& thread
     });
   }
   const SphInput in = input(sph);
-  const SphKernels& kernels = MALLOW_SELECT(level, sph_kernels);
-  const auto run = sph.formulation == Formulation::printed ? kernels.printed : kernels.conservative;
+  const SphLanes& lanes = MALLOW_SELECT(level, sph_lanes);
+  const auto accelerate = sph.formulation == Formulation::printed ? lanes.printed : lanes.conservative;
   parallel_for(
       threads, sph.grid.clusters(),
       [&](std::size_t begin, std::size_t end) {
-        run(in, begin, end, sph.density.data(), sph.pressure.data(), sph.volume.data(), raw(sph.acceleration),
-            raw(sph.cross_group));
+        accelerate(in, begin, end, sph.density.data(), sph.pressure.data(), sph.volume.data(),
+                   raw(sph.acceleration), raw(sph.cross_group));
       },
       k_cluster_block);
 }

@@ -11,7 +11,7 @@
 #include "neighbors/kept_lists.h"
 #include "neighbors/neighbor_lists.h"
 #include "sph/kernel_functions.h"
-#include "sph/sph_kernels.h"
+#include "sph/sph_lanes.h"
 
 namespace mallow {
 
@@ -20,8 +20,8 @@ struct Sph {
   KernelFactors factors{};
   float support_radius = 0;  ///< σ [m]
   Formulation formulation = Formulation::conservative;
-  bool viscous = false;                ///< some group has μ > 0
-  float neighbor_slack = 0;            ///< share of σ by which lists reach farther
+  bool viscous = false;      ///< some group has μ > 0
+  float neighbor_slack = 0;  ///< share of σ by which lists reach farther
   /// Constants of particles that act on each other as parts of one body: that of one body, or of several
   /// that merge.
   std::vector<SphGroup> groups;
@@ -37,7 +37,7 @@ struct Sph {
   KeptLists kept;       ///< empty without slack
   // Sorted order.
   Column<std::uint32_t> group;  ///< empty where there is one group
-  VectorColumn velocity;       ///< empty without viscosity
+  VectorColumn velocity;        ///< empty without viscosity
   Column<float> density, pressure, volume;
   // By row of the particle store.
   Column<float> density_by_row;

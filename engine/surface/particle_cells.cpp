@@ -15,9 +15,9 @@ namespace {
 /// wide, so many count.
 constexpr std::uint32_t k_crowd = 64, k_crowd_keeps = 4;
 
-const SearchKernels& search() {
+const SearchLanes& search() {
   static const InstructionLevel level = best_instruction_level();
-  return MALLOW_SELECT(level, search_kernels);
+  return MALLOW_SELECT(level, search_lanes);
 }
 
 }  // namespace
@@ -130,12 +130,12 @@ void ParticleCells::find_near_cluster(std::size_t c, Eigen::Vector3d& corner, Ne
 
 void ParticleCells::find_near(const Bounds& box, const Eigen::Vector3d& corner, NearParticles& near) const {
   const SearchInput input = search_input(grid_, radius_);
-  near.runs.resize(std::max(near.runs.size(), grid_.columns() + 1));
-  const std::size_t runs = search().find_runs(input, box, near.runs.data());
+  near.ranges.resize(std::max(near.ranges.size(), grid_.pillars() + 1));
+  const std::size_t ranges = search().find_ranges(input, box, near.ranges.data());
   std::size_t most = 0;
-  for (std::size_t r = 0; r < runs; ++r) most += near.runs[r].end - near.runs[r].begin;
+  for (std::size_t r = 0; r < ranges; ++r) most += near.ranges[r].end - near.ranges[r].begin;
   near.places.resize(std::max(near.places.size(), most + k_cluster));
-  near.count = search().near_cluster(input, box, near.runs.data(), runs, near.places.data());
+  near.count = search().near_cluster(input, box, near.ranges.data(), ranges, near.places.data());
   order_by_number(near);
   for (std::vector<float>* axis : {&near.x, &near.y, &near.z})
     axis->resize(std::max(axis->size(), near.count));

@@ -6,7 +6,7 @@
 #include "core/column.h"
 #include "core/threads.h"
 #include "neighbors/cell_grid.h"
-#include "neighbors/search_kernel.h"
+#include "neighbors/search_lanes.h"
 #include "surface/picked_vectors.h"
 
 namespace mallow {
@@ -14,7 +14,7 @@ namespace mallow {
 /// The particles within a radius of a box, in radii from its lowest corner, in the order of their numbers: so
 /// sums over them have the same bits wherever other particles are, though these move the cells.
 struct NearParticles {
-  std::vector<PlaceRun> runs;
+  std::vector<PlaceRange> ranges;
   std::vector<std::uint32_t> places;
   std::vector<float> x, y, z;
   std::size_t count = 0;
@@ -47,7 +47,7 @@ class ParticleCells {
 
   /// Clusters of up to eight particles that follow each other, near each other.
   std::size_t clusters() const { return grid_.clusters(); }
-  PlaceRun cluster(std::size_t c) const { return {grid_.cluster_start[c], grid_.cluster_start[c + 1]}; }
+  PlaceRange cluster(std::size_t c) const { return {grid_.cluster_start[c], grid_.cluster_start[c + 1]}; }
   /// The particles near a cluster, in radii from `corner`, the lowest of the cluster's box.
   void find_near_cluster(std::size_t c, Eigen::Vector3d& corner, NearParticles& near) const;
 

@@ -71,9 +71,9 @@ int step_within(double distance) {
   return distance >= 4 ? 4 : distance >= 2 ? 2 : 1;
 }
 
-const SurfaceKernels& kernels() {
+const SurfaceLanes& lanes() {
   static const InstructionLevel level = best_instruction_level();
-  return MALLOW_SELECT(level, surface_kernels);
+  return MALLOW_SELECT(level, surface_lanes);
 }
 void find_neighbors(const BlockMap& blocks, const Threads& threads,
                     std::vector<std::array<std::uint32_t, 27>>& neighbors) {
@@ -137,7 +137,7 @@ void SurfaceField::build(const PickedVectors& positions, float spacing, const Su
   if (config.kind == SurfaceKind::anisotropic) {
     const AnisotropyModel model(config.kernel_radius, config.particle_radius);
     shape_.threshold = static_cast<float>(std::pow(model.threshold, 0.25));
-    kernels_.fit(model, radius_, threads, particles_);
+    ellipsoids_.fit(model, radius_, threads, particles_);
   }
   find_blocks(reach, config);
   find_neighbors(blocks_, threads, neighbors_);
@@ -195,7 +195,7 @@ void SurfaceField::drop_out_of_reach(Near& near) const {
   near.shapes.resize(std::max(near.shapes.size(), near.count));
   std::size_t kept = 0;
   for (std::size_t k = 0; k < near.count; ++k) {
-    const KernelShape& shape = kernels_.shapes()[near.places[k]];
+    const Ellipsoid& shape = ellipsoids_.shapes()[near.places[k]];
     const float x[3] = {near.x[k], near.y[k], near.z[k]};
     bool reaches = true;
     for (int a = 0; a < 3; ++a)
@@ -216,15 +216,15 @@ void SurfaceField::find_distances(const VoxelLattice& points, const Near& near, 
   const std::size_t n = points.x.size();
   switch (surface_kind_) {
     case SurfaceKind::blended:
-      kernels().sum_at_points(points.points(), n, near.positions(), near.count, sums);
-      kernels().distances(shape_, sums, n, distances);
+      lanes().sum_at_points(points.points(), n, near.positions(), near.count, sums);
+      lanes().distances(shape_, sums, n, distances);
       break;
     case SurfaceKind::anisotropic:
-      kernels().density_at_points(points.points(), n, near.positions(), near.shapes.data(), near.count, sums);
-      kernels().density_distances(shape_, sums, n, distances);
+      lanes().density_at_points(points.points(), n, near.positions(), near.shapes.data(), near.count, sums);
+      lanes().density_distances(shape_, sums, n, distances);
       break;
     case SurfaceKind::spheres:
-      kernels().sphere_distances(shape_, points.points(), n, near.positions(), near.count, distances);
+      lanes().sphere_distances(shape_, points.points(), n, near.positions(), near.count, distances);
       break;
   }
 }
@@ -333,8 +333,8 @@ void SurfaceField::sum_at_nodes(const Threads& threads) {
         for (std::size_t b = begin; b < end; ++b) {
           if (!needs_nodes_[b]) continue;
           find_near(static_cast<std::uint32_t>(b), near);
-          kernels().sum_at_points(points.points(), n, near.positions(), near.count,
-                                  node_sums_.data() + node_place_[b]);
+          lanes().sum_at_points(points.points(), n, near.positions(), near.count,
+                                node_sums_.data() + node_place_[b]);
         }
       },
       k_blocks_at_once);
@@ -385,7 +385,7 @@ void SurfaceField::fill(const Threads& threads) {
           float* const to = distances_.data() + place_[b];
           if (node_step_ > 1) {
             collect_nodes(static_cast<std::uint32_t>(b), sums);
-            kernels().fill_block(shape_, weights_, sums, to);
+            lanes().fill_block(shape_, weights_, sums, to);
             continue;
           }
           find_near(static_cast<std::uint32_t>(b), near);
@@ -413,11 +413,11 @@ void SurfaceField::mean_at(std::uint32_t block, ConstVectors points, std::size_t
   const auto raw = [](const std::vector<float>(&axes)[3]) {
     return ConstVectors{axes[0].data(), axes[1].data(), axes[2].data()};
   };
-  kernels().mean_at_points(raw(scaled), n, near.positions(), raw(near_values), near.count, means);
+  lanes().mean_at_points(raw(scaled), n, near.positions(), raw(near_values), near.count, means);
 }
 
 std::size_t SurfaceField::bytes() const {
-  return particles_.bytes() + kernels_.bytes() + blocks_.bytes() + distances_.bytes() +
+  return particles_.bytes() + ellipsoids_.bytes() + blocks_.bytes() + distances_.bytes() +
          neighbors_.capacity() * sizeof neighbors_[0] +
          (probes_.capacity() + node_sums_.capacity()) * sizeof(float) +
          (place_.capacity() + node_place_.capacity()) * sizeof(std::size_t) + kind_.capacity() +

@@ -7,11 +7,11 @@
 #include "core/column.h"
 #include "core/threads.h"
 #include "mallow/surface_config.h"
-#include "surface/anisotropic_kernels.h"
 #include "surface/block_map.h"
+#include "surface/ellipsoids.h"
 #include "surface/particle_cells.h"
 #include "surface/picked_vectors.h"
-#include "surface/surface_kernel.h"
+#include "surface/surface_lanes.h"
 #include "surface/voxel_frame.h"
 #include "surface/voxel_lattice.h"
 
@@ -58,7 +58,7 @@ class SurfaceField {
  private:
   /// The particles near a block, and their kernels where each has its own.
   struct Near : NearParticles {
-    std::vector<KernelShape> shapes;
+    std::vector<Ellipsoid> shapes;
   };
 
   void find_blocks(double reach, const SurfaceConfig& config);
@@ -82,7 +82,7 @@ class SurfaceField {
   NodeWeights weights_{};
 
   ParticleCells particles_;
-  AnisotropicKernels kernels_;
+  Ellipsoids ellipsoids_;
   BlockMap blocks_;
   std::vector<std::array<std::uint32_t, 27>> neighbors_;
   std::vector<BlockKind> kind_;

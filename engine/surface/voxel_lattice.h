@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/raw_columns.h"
-#include "surface/surface_kernel.h"
+#include "surface/surface_lanes.h"
 
 namespace mallow {
 

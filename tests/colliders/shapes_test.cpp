@@ -47,7 +47,7 @@ TEST(shapes, distance_in_lanes_is_that_of_the_oracle_at_every_level) {
     for (const InstructionLevel level : levels()) {
       Column<float> distance(x.size());
       VectorColumn normal(x.size());
-      ShapeTraits<Shape>::kernels(level).nearest(numbers, raw(x), 0, x.size(), distance.data(), raw(normal));
+      ShapeTraits<Shape>::lanes(level).nearest(numbers, raw(x), 0, x.size(), distance.data(), raw(normal));
       for (std::size_t i = 0; i < x.size(); ++i) {
         const oracle::Distance expected = oracle::distance(shape, x.get(i).template cast<double>() - by);
         EXPECT_NEAR(static_cast<double>(distance[i]), expected.value, 2e-6);
@@ -64,7 +64,7 @@ TEST(shapes, a_point_alone_has_the_bits_that_it_has_among_others) {
     for (const InstructionLevel level : levels()) {
       Column<float> distance(x.size());
       VectorColumn normal(x.size());
-      ShapeTraits<Shape>::kernels(level).nearest(numbers, raw(x), 0, x.size(), distance.data(), raw(normal));
+      ShapeTraits<Shape>::lanes(level).nearest(numbers, raw(x), 0, x.size(), distance.data(), raw(normal));
       for (std::size_t i = 0; i < x.size(); ++i) {
         EXPECT_EQ(nearest(shape, x.get(i)).distance, distance[i]);
         EXPECT_EQ(nearest(shape, x.get(i)).normal, normal.get(i));
@@ -112,7 +112,7 @@ TEST(shapes, no_point_of_a_block_is_nearer_than_the_least_distance) {
     const ShapeNumbers numbers = ShapeTraits<Shape>::numbers(shape, {0, 0, 0});
     for (std::size_t block = 0; block < x.size(); block += 3) {
       const Vec3 min = x[block].cwiseMin(x[block + 1]), max = x[block].cwiseMax(x[block + 1]);
-      const float least = ShapeTraits<Shape>::kernels(InstructionLevel::baseline)
+      const float least = ShapeTraits<Shape>::lanes(InstructionLevel::baseline)
                               .least_distance(numbers, min.data(), max.data());
       float nearest_of_all = 1e9f;
       for (const Vec3& p : random_points(400, min, max))

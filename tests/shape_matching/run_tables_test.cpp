@@ -39,7 +39,7 @@ Points cloud(std::size_t n, float side, float radius) {
   return points;
 }
 
-/// Two walls of columns of one point each, and a stray that makes them columns: of those near a point each is
+/// Two walls of pillars of one point each, and a stray that makes them pillars: of those near a point each is
 /// a run of its own, as the other wall's lie between.
 Points walls(int length, float radius) {
   Points points{VectorColumn(static_cast<std::size_t>(2 * length + 1)), 1.0f, radius};
@@ -79,20 +79,20 @@ std::vector<std::uint32_t> rows_of(std::span<const Run> runs) {
   return rows;
 }
 
-TEST(column_order, sorts_columns_and_along_them_and_keeps_what_is_sorted) {
+TEST(pillar_order, sorts_pillars_and_along_them_and_keeps_what_is_sorted) {
   for (const Points& points : bodies()) {
-    ColumnOrder columns, again, threaded;
+    PillarOrder pillars, again, threaded;
     const std::size_t n = points.x.size();
-    order_by_columns(points.x, 0, n, points.spacing, 1, best_instruction_level(), columns);
-    std::vector<std::uint32_t> order(columns.order.begin(), columns.order.end());
-    for (std::size_t c = 0; c < columns.columns(); ++c) {
-      const float* const along = columns.sorted.axis(static_cast<std::size_t>(columns.along));
-      EXPECT_TRUE(std::is_sorted(along + columns.start[c], along + columns.start[c + 1]));
+    order_by_pillars(points.x, 0, n, points.spacing, 1, best_instruction_level(), pillars);
+    std::vector<std::uint32_t> order(pillars.order.begin(), pillars.order.end());
+    for (std::size_t c = 0; c < pillars.pillars(); ++c) {
+      const float* const along = pillars.sorted.axis(static_cast<std::size_t>(pillars.along));
+      EXPECT_TRUE(std::is_sorted(along + pillars.start[c], along + pillars.start[c + 1]));
     }
-    for (std::size_t s = 0; s < n; ++s) EXPECT_EQ(columns.sorted.get(s), points.x.get(order[s]));
-    order_by_columns(points.x, 0, n, points.spacing, 3, best_instruction_level(), threaded);
+    for (std::size_t s = 0; s < n; ++s) EXPECT_EQ(pillars.sorted.get(s), points.x.get(order[s]));
+    order_by_pillars(points.x, 0, n, points.spacing, 3, best_instruction_level(), threaded);
     EXPECT_TRUE(std::equal(order.begin(), order.end(), threaded.order.begin()));
-    order_by_columns(columns.sorted, 0, n, points.spacing, 2, best_instruction_level(), again);
+    order_by_pillars(pillars.sorted, 0, n, points.spacing, 2, best_instruction_level(), again);
     EXPECT_TRUE(again.already);
     std::sort(order.begin(), order.end());
     for (std::size_t s = 0; s < n; ++s) EXPECT_EQ(order[s], s);
@@ -101,12 +101,12 @@ TEST(column_order, sorts_columns_and_along_them_and_keeps_what_is_sorted) {
 
 TEST(run_lists, equal_brute_force_in_any_order_of_rows) {
   for (const Points& points : bodies()) {
-    ColumnOrder columns;
-    order_by_columns(points.x, 0, points.x.size(), points.spacing, 2, best_instruction_level(), columns);
-    const VectorColumn sorted = std::move(columns.sorted);
+    PillarOrder pillars;
+    order_by_pillars(points.x, 0, points.x.size(), points.spacing, 2, best_instruction_level(), pillars);
+    const VectorColumn sorted = std::move(pillars.sorted);
     for (const VectorColumn* x : {&points.x, &sorted}) {
-      ColumnOrder order;
-      order_by_columns(*x, 0, x->size(), points.spacing, 2, best_instruction_level(), order);
+      PillarOrder order;
+      order_by_pillars(*x, 0, x->size(), points.spacing, 2, best_instruction_level(), order);
       for (const InstructionLevel level : levels()) {
         RunLists lists;
         find_runs(order, points.radius, 2, level, lists);
@@ -120,20 +120,20 @@ TEST(run_lists, equal_brute_force_in_any_order_of_rows) {
   }
 }
 
-/// Lists of points whose rows are in the order of columns, as the engine keeps them.
-RunLists lists_in_column_order(const Points& points, int threads) {
-  ColumnOrder columns;
-  order_by_columns(points.x, 0, points.x.size(), points.spacing, threads, best_instruction_level(), columns);
-  const VectorColumn x = std::move(columns.sorted);
-  order_by_columns(x, 0, x.size(), points.spacing, threads, best_instruction_level(), columns);
+/// Lists of points whose rows are in the order of pillars, as the engine keeps them.
+RunLists lists_in_pillar_order(const Points& points, int threads) {
+  PillarOrder pillars;
+  order_by_pillars(points.x, 0, points.x.size(), points.spacing, threads, best_instruction_level(), pillars);
+  const VectorColumn x = std::move(pillars.sorted);
+  order_by_pillars(x, 0, x.size(), points.spacing, threads, best_instruction_level(), pillars);
   RunLists lists;
-  find_runs(columns, points.radius, threads, best_instruction_level(), lists);
+  find_runs(pillars, points.radius, threads, best_instruction_level(), lists);
   return lists;
 }
 
 TEST(run_tables, hold_the_rows_of_the_lists_whatever_their_lengths) {
   for (const Points& points : bodies()) {
-    const RunLists lists = lists_in_column_order(points, 2);
+    const RunLists lists = lists_in_pillar_order(points, 2);
     TableLists coded;
     encode(lists, {}, points.x.size(), 2, coded);
     std::size_t members = 0;
@@ -145,20 +145,32 @@ TEST(run_tables, hold_the_rows_of_the_lists_whatever_their_lengths) {
   }
 }
 
+TEST(run_tables, have_the_entries_of_the_example_in_their_header) {
+  TableLists coded;
+  coded.lengths = {{1, 2, 4}, 3};
+  coded.rows = 8;
+  for (Column<std::uint32_t>* column : {&coded.begin, &coded.count}) column->resize(1);
+  coded.count[0] = 3;
+  coded.entries.resize(3);
+  const std::vector<std::uint32_t> entries = {0, 18, 14}, rows = {0, 2, 3, 4, 5, 6, 7};
+  std::ranges::copy(entries, coded.entries.begin());
+  EXPECT_EQ(decode(coded, 0), rows);
+}
+
 TEST(run_tables, cost_nothing_where_they_do_not_pay_and_little_where_they_do) {
-  const auto entries = [](const Points& points, std::uint32_t& levels) {
-    const RunLists lists = lists_in_column_order(points, 1);
+  const auto entries = [](const Points& points, std::uint32_t& lengths) {
+    const RunLists lists = lists_in_pillar_order(points, 1);
     TableLists coded;
     encode(lists, {}, points.x.size(), 1, coded);
-    levels = coded.lengths.levels;
+    lengths = coded.lengths.count;
     return static_cast<double>(coded.total) / static_cast<double>(coded.members);
   };
-  std::uint32_t levels = 0;
-  EXPECT_EQ(entries(cloud(700, 40, 1.5f), levels), 1);
-  EXPECT_EQ(levels, 1u);
+  std::uint32_t lengths = 0;
+  EXPECT_EQ(entries(cloud(700, 40, 1.5f), lengths), 1);
+  EXPECT_EQ(lengths, 1u);
   // Table 1's bar: 755 neighbours of radius 7.2 spacings.
-  EXPECT_LT(entries(lattice(36, 10, 10, 7.2f), levels), 0.12);
-  EXPECT_LE(levels, k_max_levels);
+  EXPECT_LT(entries(lattice(36, 10, 10, 7.2f), lengths), 0.12);
+  EXPECT_LE(lengths, k_max_lengths);
 }
 
 /// A body with tables, matched to a deformation of it.
@@ -173,10 +185,10 @@ struct Matched {
     shape.spacing = points.spacing;
     shape.region_stride = stride;
     update_reference(points.x, 0, points.x.size(), threads, scratch, shape);
-    sort_reference(threads, best_instruction_level(), scratch.columns, shape);
+    sort_reference(threads, best_instruction_level(), scratch.pillars, shape);
     x.resize(points.x.size());
     for (std::size_t i = 0; i < x.size(); ++i)
-      x.set(i, deform(points.x.get(scratch.columns.order[i]).cast<double>()).template cast<float>());
+      x.set(i, deform(points.x.get(scratch.pillars.order[i]).cast<double>()).template cast<float>());
     build_regions(threads, level, scratch, shape);
     MatchedBodies bodies;
     bodies.add(shape, 0);
@@ -193,7 +205,7 @@ TEST(run_tables, give_the_same_bits_at_every_level_and_thread_count) {
   for (const Points& points : {lattice(14, 10, 20, 2.9f), lattice(9, 30, 9, 4.3f, 0.15f)})
     for (const int stride : {1, 2, 3}) {
       const Matched reference(points, stride, 1, InstructionLevel::baseline, bend);
-      EXPECT_GT(reference.shape.regions.lengths.levels, 1u);
+      EXPECT_GT(reference.shape.regions.lengths.count, 1u);
       for (const InstructionLevel level : levels())
         for (const int threads : {1, 2, 3}) {
           const Matched other(points, stride, threads, level, bend);

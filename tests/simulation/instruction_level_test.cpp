@@ -7,7 +7,7 @@
 namespace mallow {
 namespace instruction_level_test {
 
-/// Two groups that touch, half elastic, viscous, on a floor: every kernel of a step runs.
+/// Two groups that touch, half elastic, viscous, on a floor: a step takes all of its lanes.
 Simulation scene(Formulation formulation, int threads, std::optional<InstructionLevel> level) {
   Simulation s({.support_radius = 2.1f,
                 .update_interval = 8,

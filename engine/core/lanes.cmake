@@ -1,11 +1,11 @@
-# mallow_add_kernels(<source> [target]): compiles a kernel file once per instruction level into a target, mallow if none
+# mallow_add_lanes(<source> [target]): compiles a file of lanes once per instruction level into a target, mallow if none
 # is named; the level is chosen at run time (core/isa.h). On machines other than x86-64 there is one level, the
-# compiler's own; fuzz targets, whose kernels take minutes to compile, do with that as well.
+# compiler's own; fuzz targets, as lanes take minutes to compile, do with that as well.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64" AND NOT MALLOW_FUZZ)
   set(MALLOW_X86_LEVELS ON)
 endif()
 
-function(mallow_add_kernels source)
+function(mallow_add_lanes source)
   set(target mallow)
   if(ARGC GREATER 1)
     set(target ${ARGV1})
@@ -23,7 +23,7 @@ function(mallow_add_kernels source)
     add_library(${object} OBJECT ${source})
     target_include_directories(${object} PRIVATE ${MALLOW_INCLUDE_DIR} ${PROJECT_SOURCE_DIR}/engine)
     target_compile_definitions(${object} PRIVATE MALLOW_LEVEL=level_${level} $<$<BOOL:${MALLOW_X86_LEVELS}>:MALLOW_X86_LEVELS>)
-    # Vectors wider than a register never leave a kernel file, so it matters to none how they are passed (-Wno-psabi).
+    # Vectors wider than a register never leave a file of lanes, so it matters to none how they are passed (-Wno-psabi).
     # Without -fno-math-errno and -fno-trapping-math a square root or a comparison keeps a loop scalar; neither
     # changes a result.
     target_compile_options(${object} PRIVATE ${flags_${level}} -fno-math-errno -fno-trapping-math -Wno-psabi

@@ -1,4 +1,4 @@
-#include "surface/surface_kernel.h"
+#include "surface/surface_lanes.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "levels.h"
 
 namespace mallow {
-namespace surface_kernel_test {
+namespace surface_lanes_test {
 
 constexpr SurfaceShape k_shape{.voxel_size = 0.1f,
                                .offset = 0.275f,
@@ -35,13 +35,13 @@ struct Cloud {
   ConstVectors raw() const { return {x.data(), y.data(), z.data()}; }
 };
 
-const SurfaceKernels& kernels(InstructionLevel level) {
-  return MALLOW_SELECT(level, surface_kernels);
+const SurfaceLanes& lanes(InstructionLevel level) {
+  return MALLOW_SELECT(level, surface_lanes);
 }
 
-/// What all kernels give for one cloud of particles, one after another.
+/// What all lanes give for one cloud of particles, one after another.
 std::vector<float> everything(InstructionLevel level) {
-  const SurfaceKernels& k = kernels(level);
+  const SurfaceLanes& k = lanes(level);
   const Cloud particles(71, 1), points(128, 2), values(71, 3);
   std::vector<float> all(k_sums * 128 + 128 + k_block_voxels + 128 + 3 * 128 +
                          (k_moments + k_density_sums + 1) * 128);
@@ -61,7 +61,7 @@ std::vector<float> everything(InstructionLevel level) {
                    {means, means + 128, means + 256});
   float* const moments = means + 3 * 128;
   k.moments_at_points(points.raw(), 128, particles.raw(), particles.count, moments);
-  std::vector<KernelShape> shapes;
+  std::vector<Ellipsoid> shapes;
   for (std::size_t i = 0; i < particles.count; ++i)
     shapes.push_back({.xx = 1 + values.x[i] * 0.5f,
                       .xy = 0.2f * values.y[i],
@@ -77,7 +77,7 @@ std::vector<float> everything(InstructionLevel level) {
   return all;
 }
 
-TEST(surface_kernel, same_bits_at_every_instruction_level) {
+TEST(surface_lanes, same_bits_at_every_instruction_level) {
   const std::vector<float> baseline = everything(InstructionLevel::baseline);
   for (const InstructionLevel level : levels()) {
     const std::vector<float> other = everything(level);
@@ -86,10 +86,10 @@ TEST(surface_kernel, same_bits_at_every_instruction_level) {
   }
 }
 
-TEST(surface_kernel, gradient_of_the_density_is_its_slope) {
-  const SurfaceKernels& k = kernels(best_instruction_level());
+TEST(surface_lanes, gradient_of_the_density_is_its_slope) {
+  const SurfaceLanes& k = lanes(best_instruction_level());
   const Cloud particles(30, 1), at(8, 2);
-  const std::vector<KernelShape> shapes(
+  const std::vector<Ellipsoid> shapes(
       30,
       {.xx = 0.8f, .xy = 0.2f, .xz = 0.1f, .yy = 1.1f, .yz = -0.3f, .zz = 0.7f, .weight = 1, .reach = {}});
   constexpr float k_step = 1e-3f;
@@ -110,8 +110,8 @@ TEST(surface_kernel, gradient_of_the_density_is_its_slope) {
   }
 }
 
-TEST(surface_kernel, no_particles_and_far_particles_are_outside) {
-  const SurfaceKernels& k = kernels(best_instruction_level());
+TEST(surface_lanes, no_particles_and_far_particles_are_outside) {
+  const SurfaceLanes& k = lanes(best_instruction_level());
   const Cloud points(8, 4);
   Cloud far(1, 5);
   far.x[0] = 2.5f;
@@ -125,5 +125,5 @@ TEST(surface_kernel, no_particles_and_far_particles_are_outside) {
   }
 }
 
-}  // namespace surface_kernel_test
+}  // namespace surface_lanes_test
 }  // namespace mallow

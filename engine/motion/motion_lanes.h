@@ -1,6 +1,6 @@
 #pragma once
 
-#include "colliders/collider_kernels.h"
+#include "colliders/collider_lanes.h"
 #include "core/isa.h"
 #include "core/raw_columns.h"
 
@@ -30,7 +30,7 @@ struct ForcesInput {
 };
 
 /// All of model section 4 but contact (engine/colliders). They write to no row outside [begin, end).
-struct MotionKernels {
+struct MotionLanes {
   /// v' before contact of free particles and of pinned ones alike, and what it says of the rows.
   BlockBounds (*blend)(const ForcesInput&, std::size_t begin, std::size_t end, Vectors velocity) noexcept;
   /// What blend says of rows whose velocities have changed since.
@@ -45,6 +45,6 @@ struct MotionKernels {
   /// Largest |v + Δt (a^SPH + a_ext)|² of unpinned rows: NaN where one is, -1 where there is none.
   float (*fastest)(const ForcesInput&, std::size_t begin, std::size_t end) noexcept;
 };
-MALLOW_DECLARE_LEVELS(MotionKernels, motion_kernels)
+MALLOW_DECLARE_LEVELS(MotionLanes, motion_lanes)
 
 }  // namespace mallow

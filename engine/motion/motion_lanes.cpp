@@ -1,6 +1,6 @@
 // Blend and positions of model section 4 [TK eq. 10, 11, 13] and V of section 3 [TK eq. 12]. Each lane is a
 // particle.
-#include "motion/motion_kernels.h"
+#include "motion/motion_lanes.h"
 
 #include "core/lanes.h"
 
@@ -113,7 +113,7 @@ float fastest(const ForcesInput& in, std::size_t begin, std::size_t end) noexcep
 
 }  // namespace
 
-extern const MotionKernels motion_kernels;
-const MotionKernels motion_kernels = {blend, bounds, advance, external, fastest};
+extern const MotionLanes motion_lanes;
+const MotionLanes motion_lanes = {blend, bounds, advance, external, fastest};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -1,6 +1,6 @@
 // Region sums and goal positions of model section 2: [TK eq. 7] with the weights of Rivers & James
 // 2007, which keep momentum exactly. Departs from [TK]: region centres c̄_j stand where the print has x̄_j.
-#include "shape_matching/shape_kernels.h"
+#include "shape_matching/shape_lanes.h"
 
 #include "core/lanes.h"
 
@@ -22,19 +22,19 @@ void write_rows(const ShapeInput& in, std::size_t begin, std::size_t end, float*
     const LaneVec3 u = displacement(in, get(part, in.position), reference);
     const Lanes w = part.get(in.weight);
     const Lanes wu[3] = {w * u.x, w * u.y, w * u.z};
-    Lanes columns[k_row_sums];
+    Lanes numbers[k_row_sums];
     for (std::size_t a = 0; a < 3; ++a) {
-      columns[3 * a] = wu[a] * reference.x;
-      columns[3 * a + 1] = wu[a] * reference.y;
-      columns[3 * a + 2] = wu[a] * reference.z;
-      columns[9 + a] = wu[a];
+      numbers[3 * a] = wu[a] * reference.x;
+      numbers[3 * a + 1] = wu[a] * reference.y;
+      numbers[3 * a + 2] = wu[a] * reference.z;
+      numbers[9 + a] = wu[a];
     }
     float* const to = rows + (part.row - begin) * k_row;
     if (part.count == k_width) {
-      store_columns(columns, k_row_sums, k_row, to);
+      store_transposed(numbers, k_row_sums, k_row, to);
     } else {
       alignas(64) float last[k_width * k_row] = {};
-      store_columns(columns, k_row_sums, k_row, last);
+      store_transposed(numbers, k_row_sums, k_row, last);
       __builtin_memcpy(to, last, part.count * k_row * sizeof(float));
     }
   });
@@ -77,8 +77,8 @@ void sum_runs(const float* rows, std::size_t count, const RunLengths& lengths, s
     const float* row = rows + i * k_row;
     float* entry = table + i * k_row;
     std::uint32_t length = 0;
-    for (std::uint32_t level = 0; level < lengths.levels; ++level, entry += all * k_row) {
-      for (; length < lengths.length[level]; ++length, row += k_row) add_row(row, sum);
+    for (std::uint32_t l = 0; l < lengths.count; ++l, entry += all * k_row) {
+      for (; length < lengths.length[l]; ++length, row += k_row) add_row(row, sum);
       for (std::size_t p = 0; p < k_parts; ++p) store(sum[p], entry + p * k_width);
     }
   }
@@ -96,7 +96,7 @@ void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float
     for (std::size_t l = 0; l < part.count; ++l)
       sum_rows(table, in.memberships, part.row + l, rows + l * k_row);
     Lanes s[k_row_sums];
-    load_columns(rows, k_row, k_row_sums, s);
+    load_transposed(rows, k_row, k_row_sums, s);
     const LaneVec3 reference = get(part, in.reference);
     const LaneVec3 u = displacement(in, get(part, in.position), reference);
     const Lanes x = reference.x, y = reference.y, z = reference.z;
@@ -108,7 +108,7 @@ void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float
 
 }  // namespace
 
-extern const ShapeKernels shape_kernels;
-const ShapeKernels shape_kernels = {write_rows, sum_runs, sum_regions, goals};
+extern const ShapeLanes shape_lanes;
+const ShapeLanes shape_lanes = {write_rows, sum_runs, sum_regions, goals};
 
 }  // namespace mallow::MALLOW_LEVEL

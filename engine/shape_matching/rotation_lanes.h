@@ -1,6 +1,6 @@
 #pragma once
 
-#include "shape_matching/shape_kernels.h"
+#include "shape_matching/shape_lanes.h"
 
 namespace mallow {
 
@@ -17,7 +17,7 @@ inline constexpr int k_enough_iterations = 8;
 /// H      | of a step    | tr(S) I − S with S = (M + Mᵀ)/2, the Hessian
 /// ω      | of a step    | H⁻¹ b; where A is round, the axis times the tangent of the turn that is left
 /// c      | of a step    | ((ω·b) H⁻¹ ω − |ω|² ω)/4: what the tangent is off by elsewhere, in third order
-struct RotationKernels {
+struct RotationLanes {
   /// A_j = R_g B_j + Σ w u x̄ᵀ − (Σ w u) c̄ᵀ, R_j by at most `iterations` steps from the last rotation.
   /// Replaces sums row j by R_j − R_g (row by row) and u of the centre − (R_j − R_g) c̄. Regions that Newton
   /// cannot decide (singular, mirrored, far away) keep their sums row, with their A in front, and get
@@ -26,6 +26,6 @@ struct RotationKernels {
   void (*solve)(const ShapeInput&, std::size_t begin, std::size_t end, int iterations, float* sums,
                 float* const* rotation, std::uint8_t* undecided) noexcept;
 };
-MALLOW_DECLARE_LEVELS(RotationKernels, rotation_kernels)
+MALLOW_DECLARE_LEVELS(RotationLanes, rotation_lanes)
 
 }  // namespace mallow

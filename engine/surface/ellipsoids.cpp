@@ -1,4 +1,4 @@
-#include "surface/anisotropic_kernels.h"
+#include "surface/ellipsoids.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -27,9 +27,9 @@ constexpr double k_lone = 0.15, k_shaped = 0.4;
 constexpr std::size_t k_layers = 20;
 constexpr std::size_t k_clusters_at_once = 16;
 
-const SurfaceKernels& kernels() {
+const SurfaceLanes& lanes() {
   static const InstructionLevel level = best_instruction_level();
-  return MALLOW_SELECT(level, surface_kernels);
+  return MALLOW_SELECT(level, surface_lanes);
 }
 
 /// A layer of particles taken as a sheet with one particle for each unit of its area, `d` from a point: the
@@ -52,7 +52,7 @@ double blend(double x, double low, double high) {
 }
 
 /// shaped: 0 gives a lone particle's sphere, 1 axes as long as the neighbours are spread.
-KernelShape make_shape(const AnisotropyModel& model, const Eigen::Matrix3d& variance, double shaped) {
+Ellipsoid make_shape(const AnisotropyModel& model, const Eigen::Matrix3d& variance, double shaped) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(variance);
   const Eigen::Vector3d spread = (eigen.eigenvalues().cwiseMax(0.0) / model.full_variance).cwiseSqrt();
   const Eigen::Vector3d spread_axes = spread.cwiseMax(model.shortest_axis).cwiseMin(1.0);
@@ -112,8 +112,8 @@ AnisotropyModel::AnisotropyModel(double radius, double particle_radius) {
   lone_weight = threshold / std::pow(1 - 1 / (k_lone_axis * k_lone_axis), 3);
 }
 
-void AnisotropicKernels::fit(const AnisotropyModel& model, float radius, const Threads& threads,
-                             ParticleCells& cells) {
+void Ellipsoids::fit(const AnisotropyModel& model, float radius, const Threads& threads,
+                     ParticleCells& cells) {
   const std::size_t n = cells.count();
   const auto r = static_cast<double>(radius);
   centers_.resize_unset(n);
@@ -125,14 +125,13 @@ void AnisotropicKernels::fit(const AnisotropyModel& model, float radius, const T
         for (std::size_t c = begin; c < end; ++c) {
           Eigen::Vector3d corner;
           cells.find_near_cluster(c, corner, near);
-          const PlaceRun places = cells.cluster(c);
+          const PlaceRange places = cells.cluster(c);
           float x[3][k_cluster] = {}, moments[k_moments][k_cluster];
           for (std::uint32_t i = places.begin; i < places.end; ++i)
             for (int a = 0; a < 3; ++a)
               x[a][i - places.begin] =
                   static_cast<float>((static_cast<double>(cells.position(i)[a]) - corner[a]) / r);
-          kernels().moments_at_points({x[0], x[1], x[2]}, k_cluster, near.positions(), near.count,
-                                      moments[0]);
+          lanes().moments_at_points({x[0], x[1], x[2]}, k_cluster, near.positions(), near.count, moments[0]);
           for (std::uint32_t i = places.begin; i < places.end; ++i) {
             const auto m = [&](std::size_t k) { return static_cast<double>(moments[k][i - places.begin]); };
             const Eigen::Vector3d mean = Eigen::Vector3d(m(1), m(2), m(3)) / m(0);

@@ -1,5 +1,5 @@
 // Neighbours of clusters (after Pall & Hess 2013) and of points.
-#include "neighbors/search_kernel.h"
+#include "neighbors/search_lanes.h"
 
 #include "core/cluster_lanes.h"
 
@@ -62,15 +62,15 @@ CellRange cells_within(const SearchInput& in, int axis, const Bounds& from_origi
           cell_of(in, axis, from_origin.high[axis] + reach)};
 }
 
-/// Eight columns of a slice, next to each other in y: cells [first, last] of each may be in reach of a box.
-struct ColumnCells {
+/// Eight pillars of a slice, next to each other in y: cells [first, last] of each may be in reach of a box.
+struct PillarCells {
   int first[k_cluster], last[k_cluster];
-  unsigned in_reach;  ///< bit k: of column k any are
+  unsigned in_reach;  ///< bit k: of pillar k any are
 };
 
 /// squared_y: of the squared reach, what the distance to the slice leaves. No branch asks for a distance:
 /// they could not be foreseen.
-MALLOW_INLINE ColumnCells columns_within(const SearchInput& in, const Bounds& from_origin, int y,
+MALLOW_INLINE PillarCells pillars_within(const SearchInput& in, const Bounds& from_origin, int y,
                                          float squared_y) {
   const Floats zero = {}, place = __builtin_convertvector(k_count + y, Floats), low = place * in.edge[1];
   const Floats last_y = all(static_cast<float>(in.dims[1] - 1)),
@@ -84,14 +84,14 @@ MALLOW_INLINE ColumnCells columns_within(const SearchInput& in, const Bounds& fr
     return __builtin_convertvector(larger(smaller(last_x, x * in.inverse_edge[0]), zero), Ints);
   };
   const Ints first = cells(from_origin.low[0] - chord), last = cells(from_origin.high[0] + chord);
-  ColumnCells columns;
-  __builtin_memcpy(columns.first, &first, sizeof first);
-  __builtin_memcpy(columns.last, &last, sizeof last);
-  columns.in_reach = ~bits(is_larger(zero, squared_x));
-  return columns;
+  PillarCells pillars;
+  __builtin_memcpy(pillars.first, &first, sizeof first);
+  __builtin_memcpy(pillars.last, &last, sizeof last);
+  pillars.in_reach = ~bits(is_larger(zero, squared_x));
+  return pillars;
 }
 
-std::size_t find_runs(const SearchInput& in, const Bounds& box, PlaceRun* runs) noexcept {
+std::size_t find_ranges(const SearchInput& in, const Bounds& box, PlaceRange* ranges) noexcept {
   Bounds from_origin;
   for (int a = 0; a < 3; ++a) {
     from_origin.low[a] = box.low[a] - in.origin[a];
@@ -101,18 +101,18 @@ std::size_t find_runs(const SearchInput& in, const Bounds& box, PlaceRun* runs) 
   const auto nx = static_cast<std::size_t>(in.dims[0]);
   const CellRange slices = cells_within(in, 2, from_origin, in.reach);
   const CellRange rows = cells_within(in, 1, from_origin, in.reach);
-  constexpr int k_columns = static_cast<int>(k_cluster);
+  constexpr int k_pillars = static_cast<int>(k_cluster);
   std::size_t count = 0;
   for (int z = slices.first; z <= slices.last; ++z) {
     const float squared_y = squared_reach - squared_distance(in, 2, from_origin, z);
-    for (int y = rows.first; y <= rows.last; y += k_columns) {
-      const ColumnCells cells = columns_within(in, from_origin, y, squared_y);
-      const int n = rows.last - y < k_columns ? rows.last - y + 1 : k_columns;
+    for (int y = rows.first; y <= rows.last; y += k_pillars) {
+      const PillarCells cells = pillars_within(in, from_origin, y, squared_y);
+      const int n = rows.last - y < k_pillars ? rows.last - y + 1 : k_pillars;
       for (int k = 0; k < n; ++k) {
-        const std::uint32_t* const column = in.cell_start + column_of(in.dims, y + k, z) * nx;
+        const std::uint32_t* const pillar = in.cell_start + pillar_of(in.dims, y + k, z) * nx;
         // Always written, kept only if there are points.
-        runs[count] = {column[cells.first[k]], column[cells.last[k] + 1]};
-        count += (cells.in_reach >> k & 1u) & (runs[count].begin < runs[count].end ? 1u : 0u);
+        ranges[count] = {pillar[cells.first[k]], pillar[cells.last[k] + 1]};
+        count += (cells.in_reach >> k & 1u) & (ranges[count].begin < ranges[count].end ? 1u : 0u);
       }
     }
   }
@@ -124,8 +124,8 @@ MALLOW_INLINE unsigned bits_of(const Ints& mask, std::size_t count) {
   return bits(mask) & ((1u << (count < k_cluster ? count : k_cluster)) - 1);
 }
 
-std::size_t near_cluster(const SearchInput& in, const Bounds& box, const PlaceRun* runs, std::size_t count,
-                         std::uint32_t* out) noexcept {
+std::size_t near_cluster(const SearchInput& in, const Bounds& box, const PlaceRange* ranges,
+                         std::size_t count, std::uint32_t* out) noexcept {
   // Copies that what is written to `out` cannot alias.
   const float *const sx = in.sorted.x, *const sy = in.sorted.y, *const sz = in.sorted.z;
   const Floats low[3] = {all(box.low[0]), all(box.low[1]), all(box.low[2])};
@@ -134,8 +134,8 @@ std::size_t near_cluster(const SearchInput& in, const Bounds& box, const PlaceRu
   const Floats zero = {};
   const std::uint32_t* const start = out;
   for (std::size_t r = 0; r < count; ++r) {
-    const std::uint32_t behind = runs[r].end;
-    for (std::uint32_t j = runs[r].begin; j < behind; j += k_cluster) {
+    const std::uint32_t behind = ranges[r].end;
+    for (std::uint32_t j = ranges[r].begin; j < behind; j += k_cluster) {
       const Floats x = load(sx + j), y = load(sy + j), z = load(sz + j);
       const Floats dx = larger(larger(low[0] - x, x - high[0]), zero);
       const Floats dy = larger(larger(low[1] - y, y - high[1]), zero);
@@ -161,7 +161,7 @@ std::size_t near_point(const SearchInput& in, std::size_t point, std::size_t n, 
 
 }  // namespace
 
-extern const SearchKernels search_kernels;
-const SearchKernels search_kernels = {box_of, find_runs, near_cluster, near_point};
+extern const SearchLanes search_lanes;
+const SearchLanes search_lanes = {box_of, find_ranges, near_cluster, near_point};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -1,7 +1,7 @@
 // SPH sums of model section 1: Mueller, Charypar & Gross 2003 in pairwise form, and [TK eq. 1, 2] as printed.
 // Departs from [TK]: densities sum rest volumes, so that a light body is not pushed off by heavy neighbours
 // (Solenthaler & Pajarola 2008); pressure and viscosity are antisymmetric, so that momentum is kept.
-#include "sph/sph_kernels.h"
+#include "sph/sph_lanes.h"
 
 #include "core/cluster_lanes.h"
 
@@ -221,15 +221,15 @@ template <class Formula>
 void accelerations(const SphInput& in, std::size_t begin, std::size_t end, const float* rho,
                    const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept {
   const bool viscous = in.velocity.x != nullptr, grouped = in.group != nullptr;
-  const auto run = viscous
+  const auto sum = viscous
                        ? (grouped ? sum_clusters<Formula, true, true> : sum_clusters<Formula, true, false>)
                        : (grouped ? sum_clusters<Formula, false, true> : sum_clusters<Formula, false, false>);
-  run(in, begin, end, rho, pressure, volume, same, cross);
+  sum(in, begin, end, rho, pressure, volume, same, cross);
 }
 
 }  // namespace
 
-extern const SphKernels sph_kernels;
-const SphKernels sph_kernels = {density, accelerations<Conservative>, accelerations<Printed>};
+extern const SphLanes sph_lanes;
+const SphLanes sph_lanes = {density, accelerations<Conservative>, accelerations<Printed>};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -14,13 +14,13 @@ struct Run {
 };
 /// Rows in the longest run that a table has a sum of, and how many lengths it can have.
 inline constexpr std::uint32_t k_longest_run = 32;
-inline constexpr std::uint32_t k_max_levels = 16;
+inline constexpr std::uint32_t k_max_lengths = 16;
 /// Lengths of the runs that a table of rows has sums of, ascending from 1: entry l rows + i of the table is
 /// the sum of the length[l] rows from i on. Entries of one length lie together: lists of neighbouring rows
 /// read neighbouring entries.
 struct RunLengths {
-  std::uint32_t length[k_max_levels] = {1};
-  std::uint32_t levels = 1;
+  std::uint32_t length[k_max_lengths] = {1};
+  std::uint32_t count = 1;
 };
 
 /// Entries of a list between the one whose row is asked for from memory and the one that is added: as much
@@ -61,7 +61,7 @@ struct ShapeInput {
   float frame_translation[3];  ///< t
 };
 
-struct ShapeKernels {
+struct ShapeLanes {
   /// Rows of particles [begin, end), from `rows` on: w u x̄ᵀ (row by row), w u.
   void (*write_rows)(const ShapeInput&, std::size_t begin, std::size_t end, float* rows) noexcept;
   /// The table entries of the first `count` rows, those of one length `all` entries behind those of the one
@@ -75,6 +75,6 @@ struct ShapeKernels {
   void (*goals)(const ShapeInput&, std::size_t begin, std::size_t end, const float* table,
                 Vectors pull) noexcept;
 };
-MALLOW_DECLARE_LEVELS(ShapeKernels, shape_kernels)
+MALLOW_DECLARE_LEVELS(ShapeLanes, shape_lanes)
 
 }  // namespace mallow

@@ -26,7 +26,7 @@ struct SurfaceShape {
 };
 
 /// The kernel of one particle, w(|G (x_i − x)|) with a symmetric G; lengths in kernel radii.
-struct KernelShape {
+struct Ellipsoid {
   float xx, xy, xz, yy, yz, zz;  ///< G
   float weight;                  ///< density in its middle, relative to that inside of a body
   float reach[3];                ///< half of the box it fills
@@ -48,7 +48,7 @@ struct NodeWeights {
 
 /// Points come in eights, as three arrays [kernel radii]; particles are those within reach of them, and may
 /// be read to the next whole eight. Sums of n points are five arrays of n.
-struct SurfaceKernels {
+struct SurfaceLanes {
   void (*sum_at_points)(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
                         float* sums) noexcept;
   /// Signed distances [voxels] from sums.
@@ -65,13 +65,13 @@ struct SurfaceKernels {
                             float* moments) noexcept;
   /// Σ weight (1 − |G d|²)³ over particles with kernels of their own, and its gradient, n of each.
   void (*density_at_points)(ConstVectors points, std::size_t n, ConstVectors particles,
-                            const KernelShape* shapes, std::size_t count, float* sums) noexcept;
+                            const Ellipsoid* shapes, std::size_t count, float* sums) noexcept;
   /// Signed distances [voxels] from the surface where the density is at its threshold, to first order.
   void (*density_distances)(const SurfaceShape&, const float* sums, std::size_t n, float* distances) noexcept;
   /// Σ w value / Σ w at points, for three values a particle; zero where there is no particle.
   void (*mean_at_points)(ConstVectors points, std::size_t n, ConstVectors particles, ConstVectors values,
                          std::size_t count, Vectors means) noexcept;
 };
-MALLOW_DECLARE_LEVELS(SurfaceKernels, surface_kernels)
+MALLOW_DECLARE_LEVELS(SurfaceLanes, surface_lanes)
 
 }  // namespace mallow

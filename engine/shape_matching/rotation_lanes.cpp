@@ -1,6 +1,6 @@
 // The rotations of model section 2: polar factors with det +1, warm-started. [TK eq. 7; Kugelstadt et al.
 // 2018]
-#include "shape_matching/rotation_kernels.h"
+#include "shape_matching/rotation_lanes.h"
 
 #include "core/lanes.h"
 
@@ -123,7 +123,7 @@ void region_matrices(const float* g, const Lanes* sums, const LaneVec3& center, 
 LaneBytes solve_lanes(const ShapeInput& in, std::size_t j, int iterations, float* rows,
                       float* const* rotation) {
   Lanes sums[12], a[12], moment[6], q[4], r[9];
-  load_columns(rows, k_row, 12, sums);
+  load_transposed(rows, k_row, 12, sums);
   const LaneVec3 center = get(WholeRows{j}, in.center);
   for (int k = 0; k < 6; ++k) moment[k] = load(in.moment[k] + j);
   for (int k = 0; k < 4; ++k) q[k] = load(rotation[k] + j);
@@ -143,7 +143,7 @@ LaneBytes solve_lanes(const ShapeInput& in, std::size_t j, int iterations, float
     a[3 * i + 2] = good ? z : a[3 * i + 2];
     a[9 + i] = good ? shift : sums[9 + i];
   }
-  store_columns(a, 12, k_row, rows);
+  store_transposed(a, 12, k_row, rows);
   return bytes(~good);
 }
 
@@ -167,7 +167,7 @@ void solve(const ShapeInput& in, std::size_t begin, std::size_t end, int iterati
 
 }  // namespace
 
-extern const RotationKernels rotation_kernels;
-const RotationKernels rotation_kernels = {solve};
+extern const RotationLanes rotation_lanes;
+const RotationLanes rotation_lanes = {solve};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -51,7 +51,7 @@ struct NearLists {
 };
 
 /// [begin, end): clusters.
-struct SphKernels {
+struct SphLanes {
   /// ρ_i = ρ0_i Σ_j (m_j/ρ0_j) W_ij, p_i = k (ρ_i − ρ0), negative ones times cohesion.
   /// Writes density, pressure and volume, and the density also by row.
   void (*density)(const SphInput&, std::size_t begin, std::size_t end, const NearLists& near, float* density,
@@ -66,6 +66,6 @@ struct SphKernels {
   void (*printed)(const SphInput&, std::size_t begin, std::size_t end, const float* density,
                   const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept;
 };
-MALLOW_DECLARE_LEVELS(SphKernels, sph_kernels)
+MALLOW_DECLARE_LEVELS(SphLanes, sph_lanes)
 
 }  // namespace mallow

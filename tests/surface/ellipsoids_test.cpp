@@ -1,4 +1,4 @@
-#include "surface/anisotropic_kernels.h"
+#include "surface/ellipsoids.h"
 
 #include <gtest/gtest.h>
 
@@ -13,33 +13,33 @@
 #include "surface/particle_order.h"
 
 namespace mallow {
-namespace anisotropic_kernels_test {
+namespace ellipsoids_test {
 
 constexpr SurfaceConfig k_anisotropic{.voxel_size = 0.15f, .kind = SurfaceKind::anisotropic};
 
 struct Fit {
   std::map<std::uint32_t, Vec3> centers;  ///< by particle
-  std::map<std::uint32_t, KernelShape> shapes;
+  std::map<std::uint32_t, Ellipsoid> shapes;
 };
 Fit fit(const std::vector<Vec3>& positions, const AnisotropyModel& model) {
   ParticleCells cells;
   ParticleOrder order;
   order.sort({.positions = positions, .bodies = {{.spacing = 1}}}, false);
   cells.sort({positions, order.rows(0)}, 1, 2, 2);
-  AnisotropicKernels kernels;
-  kernels.fit(model, 2, 2, cells);
+  Ellipsoids ellipsoids;
+  ellipsoids.fit(model, 2, 2, cells);
   Fit fit;
   for (std::size_t place = 0; place < cells.count(); ++place) {
     fit.centers[cells.particle(place)] = cells.position(place);
-    fit.shapes[cells.particle(place)] = kernels.shapes()[place];
+    fit.shapes[cells.particle(place)] = ellipsoids.shapes()[place];
   }
   return fit;
 }
-Eigen::Matrix3f matrix(const KernelShape& g) {
+Eigen::Matrix3f matrix(const Ellipsoid& g) {
   return (Eigen::Matrix3f() << g.xx, g.xy, g.xz, g.xy, g.yy, g.yz, g.xz, g.yz, g.zz).finished();
 }
 /// Shortest first [kernel radii].
-Eigen::Vector3f axes(const KernelShape& g) {
+Eigen::Vector3f axes(const Ellipsoid& g) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen(matrix(g));
   return eigen.eigenvalues().reverse().cwiseInverse();
 }
@@ -55,7 +55,7 @@ std::vector<Vec3> shaken_ball(float radius) {
   return sample(sphere_shape({0, 0, 0}, radius), {.spacing = 1.0f, .jitter = 0.3f}).positions;
 }
 
-TEST(anisotropic_kernels, are_round_inside_and_flat_on_faces_and_sheets) {
+TEST(ellipsoids, are_round_inside_and_flat_on_faces_and_sheets) {
   const AnisotropyModel model(2, 0.55);
   const std::vector<Vec3> cube = lattice(9, 9, 9);
   const Fit body = fit(cube, model);
@@ -72,7 +72,7 @@ TEST(anisotropic_kernels, are_round_inside_and_flat_on_faces_and_sheets) {
   EXPECT_NEAR(axes(sheet.shapes.at(4 * 9 + 4))[0], 0.375f, 1e-3f);
 }
 
-TEST(anisotropic_kernels, density_is_one_inside_of_a_body) {
+TEST(ellipsoids, density_is_one_inside_of_a_body) {
   const AnisotropyModel model(2, 0.55);
   const Fit body = fit(lattice(9, 9, 9), model);
   for (const Vec3& x : {Vec3(4, 4, 4), Vec3(4.5f, 4.5f, 4.5f), Vec3(4.5f, 4, 4)}) {
@@ -85,7 +85,7 @@ TEST(anisotropic_kernels, density_is_one_inside_of_a_body) {
   }
 }
 
-TEST(anisotropic_kernels, turn_with_the_body) {
+TEST(ellipsoids, turn_with_the_body) {
   const AnisotropyModel model(2, 0.55);
   const Eigen::Matrix3f turn = Eigen::AngleAxisf(0.7f, Vec3(1, 2, 3).normalized()).matrix();
   const std::vector<Vec3> points = shaken_ball(4);
@@ -159,5 +159,5 @@ TEST(anisotropic_surface, refuses_kernels_too_small_to_tell_a_shape) {
                {"surface.kernel_radius", "1.5", "2 to 4 spacings for anisotropic kernels"});
 }
 
-}  // namespace anisotropic_kernels_test
+}  // namespace ellipsoids_test
 }  // namespace mallow

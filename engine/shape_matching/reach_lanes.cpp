@@ -1,5 +1,5 @@
 // Regions of model section 2: the points within a radius of a point, eight tested at a time.
-#include "shape_matching/reach_kernel.h"
+#include "shape_matching/reach_lanes.h"
 
 #include "core/cluster_lanes.h"
 
@@ -33,19 +33,19 @@ class RunWriter {
   Run run_{0, 0};
 };
 
-std::size_t runs_in_reach(const ReachInput& in, std::size_t s, ReachColumn* columns, std::size_t count,
+std::size_t runs_in_reach(const ReachInput& in, std::size_t s, ReachPillar* pillars, std::size_t count,
                           Run* runs, std::uint32_t& members) noexcept {
   const float x = in.along[s];
   const Floats a = all(in.across[0][s]), b = all(in.across[1][s]), limit = all(in.squared_radius);
   RunWriter writer(runs);
   members = 0;
   for (std::size_t c = 0; c < count; ++c) {
-    const float reach = columns[c].reach;
-    const std::uint32_t end = columns[c].end;
-    std::uint32_t first = columns[c].first;
+    const float reach = pillars[c].reach;
+    const std::uint32_t end = pillars[c].end;
+    std::uint32_t first = pillars[c].first;
     // Differences as the test takes them: rounded, they are in the order of the points.
     while (first < end && in.along[first] - x < -reach) ++first;
-    columns[c].first = first;
+    pillars[c].first = first;
     for (; first < end && in.along[first] - x <= reach; first += k_cluster) {
       const Floats dx = load(in.along + first) - x;
       const Floats da = load(in.across[0] + first) - a, db = load(in.across[1] + first) - b;
@@ -65,7 +65,7 @@ std::size_t runs_in_reach(const ReachInput& in, std::size_t s, ReachColumn* colu
 
 }  // namespace
 
-extern const ReachKernels reach_kernels;
-const ReachKernels reach_kernels = {runs_in_reach};
+extern const ReachLanes reach_lanes;
+const ReachLanes reach_lanes = {runs_in_reach};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -1,5 +1,5 @@
 // Sums in double: what the rigid frame of a group and the moments of its regions are found from.
-#include "shape_matching/moment_kernels.h"
+#include "shape_matching/moment_lanes.h"
 
 #include "core/lanes.h"
 
@@ -105,7 +105,7 @@ void sum_runs(const double* rows, const Run* runs, std::size_t count, double* ou
 
 }  // namespace
 
-extern const MomentKernels moment_kernels;
-const MomentKernels moment_kernels = {frame_sums, write_rows, sum_runs};
+extern const MomentLanes moment_lanes;
+const MomentLanes moment_lanes = {frame_sums, write_rows, sum_runs};
 
 }  // namespace mallow::MALLOW_LEVEL

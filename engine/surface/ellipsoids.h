@@ -5,7 +5,7 @@
 #include "core/column.h"
 #include "core/threads.h"
 #include "surface/particle_cells.h"
-#include "surface/surface_kernel.h"
+#include "surface/surface_lanes.h"
 
 namespace mallow {
 
@@ -33,19 +33,19 @@ struct AnisotropyModel {
 /// - the density at the surface follows from a flat face of a full body, whose outermost particles move 0.34
 ///   spacings inwards at a radius of two: the face is where it is in all other kinds of surfaces;
 /// - between lone particles and full bodies axes and moves are blended; the paper switches at 25 neighbours.
-class AnisotropicKernels {
+class Ellipsoids {
  public:
   /// Moves the particles to their centres. shapes: by place after that, lengths in radii.
   /// radius: of the kernels [m], that of the cells.
   void fit(const AnisotropyModel& model, float radius, const Threads& threads, ParticleCells& cells);
-  const std::vector<KernelShape>& shapes() const { return shapes_; }
+  const std::vector<Ellipsoid>& shapes() const { return shapes_; }
   std::size_t bytes() const {
-    return centers_.bytes() + (shapes_.capacity() + unsorted_.capacity()) * sizeof(KernelShape);
+    return centers_.bytes() + (shapes_.capacity() + unsorted_.capacity()) * sizeof(Ellipsoid);
   }
 
  private:
   VectorColumn centers_;
-  std::vector<KernelShape> unsorted_, shapes_;
+  std::vector<Ellipsoid> unsorted_, shapes_;
 };
 
 }  // namespace mallow

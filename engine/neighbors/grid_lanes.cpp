@@ -1,5 +1,5 @@
 // The cells of points.
-#include "neighbors/grid_kernels.h"
+#include "neighbors/grid_lanes.h"
 
 #include "core/cluster_lanes.h"
 
@@ -15,7 +15,7 @@ MALLOW_INLINE Floats clamped_cell(const SearchInput& in, int axis, const Floats&
 
 void cells_of(const SearchInput& in, ConstVectors points, std::size_t begin, std::size_t end,
               std::uint32_t* cells) noexcept {
-  // As column_of, but for eight; only the last strip may be narrower.
+  // As pillar_of, but for eight; only the last strip may be narrower.
   const int last_strip = (in.dims[1] - 1) / k_strip * k_strip, narrower = k_strip - (in.dims[1] - last_strip);
   const Floats last = all(static_cast<float>(last_strip));
   const auto cells_from = [&](std::size_t i) {
@@ -24,8 +24,8 @@ void cells_of(const SearchInput& in, ConstVectors points, std::size_t begin, std
     const Ints y = __builtin_convertvector(y_cell, Ints);
     const Ints z = __builtin_convertvector(clamped_cell(in, 2, load(points.z + i)), Ints);
     const Ints width = k_strip - (~is_larger(last, y_cell) & narrower);
-    const Ints column = (y & -k_strip) * in.dims[2] + z * width + (y & (k_strip - 1));
-    return column * in.dims[0] + x;
+    const Ints pillar = (y & -k_strip) * in.dims[2] + z * width + (y & (k_strip - 1));
+    return pillar * in.dims[0] + x;
   };
   std::size_t i = begin;
   for (; i + k_cluster <= end; i += k_cluster) store(cells_from(i), cells + i);
@@ -37,7 +37,7 @@ void cells_of(const SearchInput& in, ConstVectors points, std::size_t begin, std
 
 }  // namespace
 
-extern const GridKernels grid_kernels;
-const GridKernels grid_kernels = {cells_of};
+extern const GridLanes grid_lanes;
+const GridLanes grid_lanes = {cells_of};
 
 }  // namespace mallow::MALLOW_LEVEL

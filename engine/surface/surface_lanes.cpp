@@ -9,7 +9,7 @@
 // negative in the empty middle. Solenthaler et al. 2007 see that in the eigenvalues of ∇x̄, ten sums more; the
 // variance is one sum more. The distance to the nearest particle tells it less well: it ripples, and leaves
 // crumbs in gaps of two spacings.
-#include "surface/surface_kernel.h"
+#include "surface/surface_lanes.h"
 
 #include "core/cluster_lanes.h"
 
@@ -174,20 +174,20 @@ void moments_at_points(ConstVectors points, std::size_t n, ConstVectors particle
 }
 
 /// G v
-MALLOW_INLINE ClusterVec3 product(const KernelShape& g, const ClusterVec3& v) {
+MALLOW_INLINE ClusterVec3 product(const Ellipsoid& g, const ClusterVec3& v) {
   return {g.xx * v.x + g.xy * v.y + g.xz * v.z, g.xy * v.x + g.yy * v.y + g.yz * v.z,
           g.xz * v.x + g.yz * v.y + g.zz * v.z};
 }
 
 // Yu & Turk 2013, eq. 6 and 7: φ(x) = Σ V_i W(|G_i (x_i − x)|), with the weights of above.
-void density_at_points(ConstVectors points, std::size_t n, ConstVectors particles, const KernelShape* shapes,
+void density_at_points(ConstVectors points, std::size_t n, ConstVectors particles, const Ellipsoid* shapes,
                        std::size_t count, float* sums) noexcept {
   for (std::size_t k = 0; k < n; k += k_cluster) {
     const ClusterVec3 x = load(points, k);
     Floats density = {};
     ClusterVec3 gradient = {};
     for (std::size_t i = 0; i < count; ++i) {
-      const KernelShape& g = shapes[i];
+      const Ellipsoid& g = shapes[i];
       const ClusterVec3 d = difference(particles, i, x);
       const ClusterVec3 q = product(g, d);
       const Floats t = nearness(dot_from_left(q, q));
@@ -217,9 +217,8 @@ void density_distances(const SurfaceShape& shape, const float* sums, std::size_t
 
 }  // namespace
 
-extern const SurfaceKernels surface_kernels;
-const SurfaceKernels surface_kernels = {sum_at_points,     distances,         fill_block,
-                                        sphere_distances,  moments_at_points, density_at_points,
-                                        density_distances, mean_at_points};
+extern const SurfaceLanes surface_lanes;
+const SurfaceLanes surface_lanes = {sum_at_points,     distances,         fill_block,        sphere_distances,
+                                    moments_at_points, density_at_points, density_distances, mean_at_points};
 
 }  // namespace mallow::MALLOW_LEVEL
