@@ -65,7 +65,8 @@ void find_pillars(const VectorColumn& positions, std::size_t begin, std::size_t 
   for (std::size_t k = 0; k < 2; ++k)
     x[k] = positions.axis(static_cast<std::size_t>(pillars.across[k])) + begin;
   const auto place = [&](float value, std::size_t k) {
-    const float at = std::floor((value - pillars.origin[k]) * pillars.inverse_width);
+    // Not below 0 once it is clamped, so that the cast rounds down.
+    const float at = (value - pillars.origin[k]) * pillars.inverse_width;
     return static_cast<int>(std::clamp(at, 0.0f, static_cast<float>(pillars.dims[k] - 1)));
   };
   pillars.pillar_of.resize_unset(n);
