@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <string>
 
-#include "mallow/external_program.h"
-#include "mallow/failure.h"
+#include "program/external_program.h"
+#include "program/failure.h"
 
 namespace mallow::bench {
 
@@ -29,18 +29,18 @@ void ContactSheet::add(const ParticleFrame& frame) {
 
 void ContactSheet::close() {
   if (pictures_ == 0) return;
-  if (!cli::is_installed("ffmpeg")) {
+  if (!program::is_installed("ffmpeg")) {
     std::fprintf(stderr,
                  "mallow-bench: pictures are not joined, because the program ffmpeg is not installed\n");
     return;
   }
   const std::string tiles = std::to_string(pictures_ / takes_) + 'x' + std::to_string(takes_);
   write_whole(file_, [&](const std::filesystem::path& beside) {
-    const int status = cli::run_program(
+    const int status = program::run_program(
         {"ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-i", file_.stem().string() + "_%03d.png", "-vf",
          "tile=" + tiles, "-frames:v", "1", "-f", "image2", "-c:v", "png", beside.filename().string()},
         file_.parent_path());
-    if (status != 0) throw cli::RunFailure("ffmpeg failed with exit status " + std::to_string(status));
+    if (status != 0) throw program::RunFailure("ffmpeg failed with exit status " + std::to_string(status));
   });
   for (std::size_t number = 0; number < pictures_; ++number) std::filesystem::remove(picture(number));
 }

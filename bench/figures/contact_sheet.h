@@ -7,8 +7,8 @@
 
 #include "mallow/files.h"
 #include "mallow/scene.h"
-#include "mallow/stills.h"
 #include "mallow/surface.h"
+#include "program/stills.h"
 
 namespace mallow::bench {
 
@@ -31,7 +31,7 @@ class ContactSheet {
   int threads_;
   Scene scene_;  ///< of the take at hand, with the sheet's size of pictures
   std::optional<Surfacer> surfacer_;
-  std::optional<cli::Stills> stills_;
+  std::optional<program::Stills> stills_;
   std::vector<float> spacings_;
   std::size_t takes_ = 0, pictures_ = 0;
 };

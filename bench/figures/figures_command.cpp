@@ -11,7 +11,7 @@
 #include "figures/record.h"
 #include "harness/command.h"
 #include "harness/plot.h"
-#include "mallow/failure.h"
+#include "program/failure.h"
 
 namespace mallow::bench {
 namespace {
@@ -137,7 +137,7 @@ void check(const Json& rows) {
     failed += (failed.empty() ? "" : ", ") + row["figure"].get<std::string>() + '.' +
               row["claim"].get<std::string>();
   }
-  if (!failed.empty()) throw cli::RunFailure("what the paper shows does not hold: " + failed);
+  if (!failed.empty()) throw program::RunFailure("what the paper shows does not hold: " + failed);
 }
 
 void run(const FiguresOptions& options) {

@@ -2,7 +2,7 @@
 
 #include "harness/command.h"
 #include "harness/statistics.h"
-#include "mallow/run_report.h"
+#include "program/run_report.h"
 
 namespace mallow::bench {
 namespace {
@@ -55,7 +55,7 @@ Run record(const Figure& figure, const Take& take, int threads, const FrameVisit
   run.about["reference_updates"] = std::move(updates);
   run.about["simulated_time"] = simulation.time();
   run.about["seconds"] = milliseconds_spent / 1000;
-  run.about["state_hash"] = cli::hash_text(simulation.state_hash());
+  run.about["state_hash"] = program::hash_text(simulation.state_hash());
   return run;
 }
 

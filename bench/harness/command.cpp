@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 
 #include "mallow/errors.h"
-#include "mallow/failure.h"
-#include "mallow/interrupt.h"
-#include "mallow/machine.h"
+#include "program/failure.h"
+#include "program/interrupt.h"
+#include "program/machine.h"
 
 namespace mallow::bench {
 
@@ -18,8 +18,8 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
   command->add_option("--threads", options.threads, "Number of threads; 0: one for each processor")
       ->check(CLI::Range(0, 1024));
   command->callback([&options, run] {
-    options.threads = cli::resolve_threads(options.threads);
-    cli::watch_for_interrupt();
+    options.threads = program::resolve_threads(options.threads);
+    program::watch_for_interrupt();
     run();
   });
   return command;
@@ -39,9 +39,9 @@ std::vector<std::string> chosen(const std::string& option, const std::vector<std
 }
 
 void stop_if_interrupted(const Results& results) {
-  if (!cli::interrupted()) return;
-  throw cli::RunFailure("interrupted; the " + std::to_string(results.rows().size()) +
-                        " rows that were finished are in " + results.file(".csv").string());
+  if (!program::interrupted()) return;
+  throw program::RunFailure("interrupted; the " + std::to_string(results.rows().size()) +
+                            " rows that were finished are in " + results.file(".csv").string());
 }
 
 std::filesystem::path data_file(const std::string& name) {

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <sstream>
 
-#include "mallow/external_program.h"
-#include "mallow/failure.h"
 #include "mallow/files.h"
+#include "program/external_program.h"
+#include "program/failure.h"
 
 namespace mallow::bench {
 namespace {
@@ -26,7 +26,7 @@ std::string field(std::string text) {
 }
 
 void run_gnuplot(const std::filesystem::path& svg, int width, int height, const std::string& commands) {
-  if (!cli::is_installed("gnuplot")) {
+  if (!program::is_installed("gnuplot")) {
     std::fprintf(stderr, "mallow-bench: no %s, because the program gnuplot is not installed\n", svg.c_str());
     return;
   }
@@ -39,9 +39,9 @@ void run_gnuplot(const std::filesystem::path& svg, int width, int height, const 
            << commands;
     const std::filesystem::path file = beside.string() + ".gp";
     write_whole(file, script.str());
-    const int status = cli::run_program({"gnuplot", file.filename().string()}, file.parent_path());
+    const int status = program::run_program({"gnuplot", file.filename().string()}, file.parent_path());
     std::filesystem::remove(file);
-    if (status != 0) throw cli::RunFailure("gnuplot failed with exit status " + std::to_string(status));
+    if (status != 0) throw program::RunFailure("gnuplot failed with exit status " + std::to_string(status));
   });
 }
 

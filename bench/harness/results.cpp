@@ -2,12 +2,14 @@
 
 #include <chrono>
 #include <ctime>
+#include <fstream>
 
-#include "mallow/failure.h"
+#include "mallow/errors.h"
 #include "mallow/files.h"
 #include "mallow/instruction_level.h"
-#include "mallow/machine.h"
 #include "mallow/version.h"
+#include "program/machine.h"
+#include "program/output_files.h"
 
 namespace mallow::bench {
 namespace {
@@ -20,7 +22,7 @@ std::string now() {
 }
 
 Json machine() {
-  Json machine = cli::machine_json();
+  Json machine = program::machine_json();
   machine["instruction_level"] = name(best_instruction_level());
   machine["compiler"] = MALLOW_COMPILER;
   return machine;
@@ -81,14 +83,23 @@ std::string table_cell(const Json& value, int decimals) {
   return text;
 }
 
+/// Throws ConfigError where a file is there that is none of these results: somebody's data is not overwritten.
+void check_own(const std::filesystem::path& json) {
+  if (!std::filesystem::is_regular_file(json)) return;
+  const Json there = Json::parse(std::ifstream(json), nullptr, false);
+  if (there.is_object() && there.contains("command") && there.contains("rows")) return;
+  throw ConfigError("--json", json.string() + " is not allowed: it is there and holds no results of mallow-bench");
+}
+
 }  // namespace
 
 Results::Results(std::string command, const Output& output, int threads, Json settings)
     : command_(std::move(command)), folder_(output.folder), json_(output.json) {
   std::filesystem::create_directories(folder_);
   if (json_.empty()) json_ = file(".json");
-  cli::check_writable(json_);
-  cli::check_writable(file(".csv"));
+  program::check_writable(json_);
+  check_own(json_);
+  program::check_writable(file(".csv"));
   document_ = {{"command", command_},  {"version", version()}, {"date", now()},
                {"machine", machine()}, {"threads", threads},   {"settings", std::move(settings)},
                {"complete", false},    {"rows", Json::array()}};

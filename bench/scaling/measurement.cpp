@@ -1,8 +1,8 @@
 #include "scaling/measurement.h"
 
 #include "harness/statistics.h"
-#include "mallow/failure.h"
-#include "mallow/run_report.h"
+#include "program/failure.h"
+#include "program/run_report.h"
 #include "scaling/memory.h"
 #include "scaling/on_paper.h"
 
@@ -79,7 +79,7 @@ CubeRun run_cube(const Cube& cube, int threads, int steps) {
   }
   run.peak_bytes = peak.bytes();
   run.bytes = simulation.info().bytes;
-  run.state_hash = cli::hash_text(simulation.state_hash());
+  run.state_hash = program::hash_text(simulation.state_hash());
   return run;
 }
 
@@ -100,10 +100,10 @@ std::vector<Measurement> measure(const Cube& cube, const std::vector<int>& threa
   for (const Measurement& m : measurements)
     for (const CubeRun& run : m.runs)
       if (run.state_hash != expected)
-        throw cli::RunFailure(cube.material + " cube of " + std::to_string(cube.particles()) +
-                              " particles: " + std::to_string(m.threads) + " threads end in state " +
-                              run.state_hash + ", the first run with " + std::to_string(threads.front()) +
-                              " in " + expected);
+        throw program::RunFailure(cube.material + " cube of " + std::to_string(cube.particles()) +
+                                  " particles: " + std::to_string(m.threads) + " threads end in state " +
+                                  run.state_hash + ", the first run with " + std::to_string(threads.front()) +
+                                  " in " + expected);
   return measurements;
 }
 

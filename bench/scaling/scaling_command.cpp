@@ -9,7 +9,7 @@
 #include "harness/command.h"
 #include "harness/plot.h"
 #include "mallow/errors.h"
-#include "mallow/machine.h"
+#include "program/machine.h"
 #include "scaling/cube.h"
 #include "scaling/measurement.h"
 #include "scaling/memory.h"
@@ -190,7 +190,7 @@ void run_scaling(const ScalingOptions& options) {
     throw ConfigError("--max-particles", std::to_string(options.max_particles) +
                                              " is not allowed: at least --min-particles, " +
                                              std::to_string(options.min_particles));
-  check_memory(sizes, needed_bytes_per_particle(materials, options.threads), cli::available_memory());
+  check_memory(sizes, needed_bytes_per_particle(materials, options.threads), program::available_memory());
 
   Results results("scaling", options.output, options.threads, settings(options));
   const MemoryRates rates{memory_rate(1), memory_rate(options.threads)};

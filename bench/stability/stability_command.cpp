@@ -9,7 +9,7 @@
 
 #include "core/parallel.h"
 #include "harness/command.h"
-#include "mallow/failure.h"
+#include "program/failure.h"
 #include "stability/extremes.h"
 #include "stability/grid.h"
 #include "stability/stability_map.h"
@@ -139,7 +139,7 @@ void run_stability(const StabilityOptions& options) {
   const auto broken = std::count_if(results.rows().begin(), results.rows().end(), [](const Json& row) {
     return row["kind"] != "grid" && row["verdict"] == "unstable";
   });
-  if (broken > 0) throw cli::RunFailure(std::to_string(broken) + " trials are unstable");
+  if (broken > 0) throw program::RunFailure(std::to_string(broken) + " trials are unstable");
 }
 
 }  // namespace

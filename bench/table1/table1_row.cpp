@@ -4,12 +4,12 @@
 
 #include "harness/command.h"
 #include "harness/statistics.h"
-#include "mallow/failure.h"
 #include "mallow/files.h"
-#include "mallow/run_report.h"
 #include "mallow/scene.h"
-#include "mallow/stills.h"
 #include "mallow/surface.h"
+#include "program/failure.h"
+#include "program/run_report.h"
+#include "program/stills.h"
 #include "table1/plain_surface.h"
 #include "table1/rest_shape.h"
 #include "textbook/from_scene.h"
@@ -72,7 +72,7 @@ Frames draw_frames(const Scene& scene, const Table1Settings& settings, int threa
   std::vector<float> spacings;
   for (const BodyInfo& body : simulation.info().bodies) spacings.push_back(body.spacing);
   Surfacer surfacer(scene.surface, threads);
-  cli::Stills stills(scene, snapshot(simulation), spacings, threads);
+  program::Stills stills(scene, snapshot(simulation), spacings, threads);
   const std::filesystem::path picture = std::filesystem::temp_directory_path() / "mallow-bench-table1.png";
   Frames frames;
   const float spacing = *std::max_element(spacings.begin(), spacings.end());
@@ -159,9 +159,9 @@ Json measure_row(const PaperRow& paper, const Table1Settings& settings, int thre
   for (const Run& run : runs) {
     step_ms.push_back(run.milliseconds());
     if (run.state_hash != runs.front().state_hash)
-      throw cli::RunFailure(paper.name + ": two runs end in different states, " +
-                            cli::hash_text(runs.front().state_hash) + " and " +
-                            cli::hash_text(run.state_hash));
+      throw program::RunFailure(paper.name + ": two runs end in different states, " +
+                                program::hash_text(runs.front().state_hash) + " and " +
+                                program::hash_text(run.state_hash));
   }
 
   const double ms = median(step_ms), surface_ms = median(frames.surface), picture_ms = median(frames.picture);
@@ -195,7 +195,7 @@ Json measure_row(const PaperRow& paper, const Table1Settings& settings, int thre
       {"fps2_ratio", 1000 / (ms + surface_ms) / paper.fps2},
       {"fps2_rendered_ratio", 1000 / (ms + surface_ms + picture_ms) / paper.fps2},
       {"bytes_per_particle", static_cast<double>(runs.front().bytes) / static_cast<double>(info.particles)},
-      {"state_hash", cli::hash_text(runs.front().state_hash)}};
+      {"state_hash", program::hash_text(runs.front().state_hash)}};
   // OpenVDB leaves out spheres of less than 1.5 voxels: then it has no surface to compare with.
   if (frames.plain_distance > 0) {
     row["plain_surface_ms"] = mean(frames.plain_surface);

@@ -7,9 +7,9 @@
 
 #include "harness/command.h"
 #include "harness/statistics.h"
-#include "mallow/failure.h"
 #include "mallow/level_set.h"
 #include "mallow/surface.h"
+#include "program/failure.h"
 #include "render/renderer.h"
 #include "scaling/cube.h"
 #include "threads/busy_loops.h"
@@ -103,7 +103,7 @@ void measure(double seconds, std::vector<Variant>& variants) {
     }
   for (const Variant& v : variants)
     if (v.hash && v.hash() != variants.front().hash())
-      throw cli::RunFailure("threads: " + v.executor + " ends in another state than one thread");
+      throw program::RunFailure("threads: " + v.executor + " ends in another state than one thread");
 }
 
 Json row(const std::string& work, std::size_t particles, int busy, int threads, const Variant& variant,

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "harness/statistics.h"
-#include "mallow/run_report.h"
+#include "program/run_report.h"
 #include "tradeoff/errors.h"
 #include "tradeoff/pareto.h"
 
@@ -81,7 +81,7 @@ std::vector<Json> measure_motion(const std::string& scene_name, const std::files
                 {"particles", motion.moments.front().x.rows()},
                 {"failure", motion.failure},
                 {"on_front", false},
-                {"state_hash", cli::hash_text(motion.state_hash)}};
+                {"state_hash", program::hash_text(motion.state_hash)}};
     if (motion.complete(count)) {
       const Trajectory& same = reference.motion;
       const bool resample = lattice(scene).count != lattice(written).count;

@@ -1,6 +1,8 @@
+#include <filesystem>
 #include <set>
 
 #include "bench_fixture.h"
+#include "mallow/files.h"
 
 namespace mallow::test {
 namespace scaling_test {
@@ -37,6 +39,13 @@ TEST_F(bench_scaling, too_many_particles_are_refused_before_anything_runs) {
   // What is needed, what there is, and what fits.
   expect_refused("scaling", {"--max-particles", "10000000000000", "--threads", "1"},
                  {"--max-particles", "particles need", "GiB", "available", "fits"});
+}
+
+TEST_F(bench_scaling, a_file_of_someone_else_is_not_overwritten) {
+  const std::filesystem::path notes = folder_ / "notes.json";
+  write_whole(notes, "{\"mine\": 1}\n");
+  expect_refused("scaling", {"--json", notes.string()}, {"--json", "notes.json", "no results of mallow-bench"});
+  EXPECT_EQ(read_text(notes), "{\"mine\": 1}\n");
 }
 
 TEST_F(bench_scaling, what_makes_no_sense_is_refused) {

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
-#include "mallow/external_program.h"
+#include "program/external_program.h"
 
 namespace mallow::test {
 namespace film_test {
@@ -34,7 +34,7 @@ bool is_mp4(const fs::path& file) {
 }
 
 TEST_F(cli_film, goes_to_the_file_that_is_named_and_not_into_the_folder) {
-  if (!cli::is_installed("ffmpeg")) GTEST_SKIP() << "ffmpeg is not installed";
+  if (!program::is_installed("ffmpeg")) GTEST_SKIP() << "ffmpeg is not installed";
   Outcome outcome = run({"--out", at("out"), "--film", at("a: b.mp4")}, true);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_TRUE(is_mp4(at("a: b.mp4")));
@@ -80,7 +80,7 @@ TEST_F(cli_film, without_ffmpeg_the_film_of_the_folder_is_left_out_with_a_word) 
 }
 
 TEST_F(cli_film, is_refused_before_a_run_goes_on_where_a_picture_is_missing) {
-  if (!cli::is_installed("ffmpeg")) GTEST_SKIP() << "ffmpeg is not installed";
+  if (!program::is_installed("ffmpeg")) GTEST_SKIP() << "ffmpeg is not installed";
   ASSERT_EQ(run({"--out", at("out"), "--checkpoint-every", "1", "--no-film"}, true).exit_code, 0);
   fs::remove(at("out/images/frame_000001.png"));
   Outcome outcome = run_mallow({"run", "--resume", at("out"), "--frames", "3"});

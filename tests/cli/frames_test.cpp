@@ -6,9 +6,9 @@
 #include <memory>
 
 #include "cli/program.h"
-#include "mallow/external_program.h"
 #include "mallow/files.h"
 #include "mallow/quality.h"
+#include "program/external_program.h"
 
 namespace mallow::test {
 namespace frames_test {
@@ -141,7 +141,7 @@ TEST_F(cli_frames, have_the_same_times_in_every_file_that_plays_them) {
   EXPECT_NEAR(std::strtod(usd.c_str() + rate + 21, nullptr), 30, 1e-9);
   EXPECT_NE(usd.find("endTimeCode = 12\n"), std::string::npos);
   EXPECT_EQ(names_in(at("out/images")).size(), 13u);
-  if (!cli::is_installed("ffprobe")) return;
+  if (!program::is_installed("ffprobe")) return;
   const std::string ask =
       "ffprobe -v error -count_frames -select_streams v -show_entries "
       "stream=nb_read_frames,r_frame_rate -of csv=p=0 '" +

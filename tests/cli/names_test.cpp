@@ -4,8 +4,8 @@
 #include <csignal>
 
 #include "cli/program.h"
-#include "mallow/external_program.h"
 #include "mallow/files.h"
+#include "program/external_program.h"
 
 namespace mallow::test {
 namespace names_test {
@@ -45,7 +45,7 @@ std::string short_name(const std::string& name, const char* ending) {
 }
 
 TEST_F(cli_names, do_not_matter_to_any_command) {
-  const bool film = cli::is_installed("ffmpeg");
+  const bool film = program::is_installed("ffmpeg");
   for (const std::string& name : k_names) {
     SCOPED_TRACE(name);
     const fs::path folder = folder_ / name;
@@ -98,7 +98,7 @@ TEST_F(cli_names, of_files_may_begin_like_an_option) {
   fs::copy_file("cube.toml", "-x/cube.toml");
   expect_done({"run", "--out=-x/out", "--frames", "1", "--", "-x/cube.toml"});
   expect_done({"render", "--film=-x/film.mp4", "--", "-x/out"});
-  EXPECT_EQ(fs::exists("-x/film.mp4"), cli::is_installed("ffmpeg"));
+  EXPECT_EQ(fs::exists("-x/film.mp4"), program::is_installed("ffmpeg"));
   fs::current_path(before);
 }
 

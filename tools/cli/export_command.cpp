@@ -1,0 +1,281 @@
+#include "cli/export_command.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/frame_loop.h"
+#include "cli/messages.h"
+#include "mallow/errors.h"
+#include "mallow/files.h"
+#include "mallow/level_set.h"
+#include "mallow/surface.h"
+#include "program/cached_run.h"
+#include "program/failure.h"
+#include "program/group_appearances.h"
+#include "program/input_files.h"
+#include "program/output_files.h"
+#include "program/run_mark.h"
+#include "program/shell_word.h"
+
+namespace mallow::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportOptions : program::CachedRunOptions {
+  std::vector<std::string> surface;    ///< formats
+  std::vector<std::string> particles;  ///< formats
+  std::string up = "z";
+  std::string out;
+};
+
+/// Beside the OBJ files, which all name it.
+constexpr const char* k_materials = "materials.mtl";
+
+bool contains(const std::vector<std::string>& formats, const char* format) {
+  return std::find(formats.begin(), formats.end(), format) != formats.end();
+}
+
+/// What files say of each group of the scene.
+std::vector<MeshGroup> mesh_groups(const program::CachedRun& run) {
+  const std::vector<Appearance> appearances = program::group_appearances(run.scene);
+  const std::vector<std::size_t> materials = group_materials(run.scene);
+  std::vector<MeshGroup> groups;
+  for (std::size_t g = 0; g < materials.size(); ++g) {
+    groups.push_back({appearances[g], run.report.at("groups").at(g).value("name", ""),
+                      run.scene.materials[materials[g]].name});
+  }
+  return groups;
+}
+
+/// Simulated seconds from a frame to the next, as the particles say.
+double frame_time(const program::CachedRun& run) {
+  const std::vector<int> frames = run.cache.particle_frames();
+  const double film = 1.0 / run.scene.render.frames_per_second;
+  if (frames.size() < 2) return film;
+  const auto time = [&](int frame) { return read_particles(run.cache.particles_file(frame)).time; };
+  const double mean = (time(frames.back()) - time(frames.front())) / (frames.back() - frames.front());
+  if (!(mean > 0)) return film;  // frames that all show one time
+  // A scene in real time says 0.0333, or a float next to 1/30, but means the film's rate.
+  return std::abs(mean - film) < 2e-3 * film ? film : mean;
+}
+
+/// A frame of USD is one of the film, and its seconds are the film's.
+UsdOptions usd_options(const program::CachedRun& run, UpAxis up) {
+  const double rate = run.scene.render.frames_per_second;
+  return {.up = up, .frames_per_second = rate, .speed = frame_time(run) * rate};
+}
+
+/// Frames of one kind in all of their formats: OUT/surface/frame_000000.glb and what plays them where a
+/// format has such a file, OUT/surface.pvd for VTP and OUT/surface.usda.
+class Series {
+ public:
+  /// Throws IoError where it cannot be written.
+  Series(const fs::path& out, const char* kind, const std::vector<std::string>& formats)
+      : out_(out), kind_(kind), formats_(formats) {
+    if (formats.empty()) return;
+    std::error_code error;
+    fs::create_directories(out / kind, error);
+    if (error) throw IoError({(out / kind).string(), 0, 0, "", "cannot be made: " + error.message()});
+    program::check_writable(out / kind / "frame");
+  }
+
+  template <class Write>
+  void add(int number, double time, const Write& write) {
+    for (const std::string& format : formats_)
+      write(format, out_ / kind_ / program::frame_name(number, format));
+    vtp_frames_.push_back({fs::path(kind_) / program::frame_name(number, "vtp"), time});
+    usda_frames_.push_back({fs::path(kind_) / program::frame_name(number, "usda"), number});
+  }
+  void finish(std::span<const MeshGroup> groups, const UsdOptions& usd) const {
+    const std::string name = (out_ / kind_).string();
+    if (contains(formats_, "vtp")) write_pvd(name + ".pvd", vtp_frames_);
+    if (contains(formats_, "usda")) write_usda_series(name + ".usda", usda_frames_, groups, usd);
+    if (contains(formats_, "obj")) write_mtl(out_ / kind_ / k_materials, groups);
+    if (!formats_.empty()) std::printf("%s %zu\n", kind_, vtp_frames_.size());
+  }
+
+ private:
+  fs::path out_;
+  const char* kind_;
+  const std::vector<std::string>& formats_;
+  std::vector<TimedFile> vtp_frames_;
+  std::vector<UsdFrame> usda_frames_;
+};
+
+void check_formats(const ExportOptions& options) {
+  if (options.surface.empty() && options.particles.empty()) {
+    throw ConfigError("--surface, --particles", "at least one is needed, with the formats to write");
+  }
+}
+
+/// A run that was ended early may lack the last frame's surface; one without any has nothing to export.
+void require_surfaces(const program::Cache& cache) {
+  if (!cache.surface_frames().empty()) return;
+  throw IoError({cache.folder().string(), 0, 0, "--surface",
+                 "the run has no surfaces; 'mallow surface " + program::shell_word(cache.folder().string()) +
+                     "' draws them"});
+}
+
+/// A scene may name what an earlier export wrote.
+void refuse_inputs(const ExportOptions& options, const program::CachedRun& run, const fs::path& out) {
+  const program::InputFiles inputs(run.scene);
+  const auto check = [&](const char* kind, const std::vector<std::string>& formats) {
+    for (const std::string& format : formats)
+      for (const int frame : run.cache.particle_frames())
+        inputs.refuse(out / kind / program::frame_name(frame, format), "--out");
+  };
+  check("surface", options.surface);
+  check("particles", options.particles);
+}
+
+/// Two exports into one folder would mix their frames.
+program::RunLock lock_folder(const fs::path& out) {
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) throw IoError({out.string(), 0, 0, "--out", "cannot be made: " + error.message()});
+  return program::RunLock::for_exports(out);
+}
+
+void turn(std::vector<Vec3>& vectors) {
+  for (Vec3& vector : vectors) vector = with_y_up(vector);
+}
+
+/// Writes a frame in one of the formats.
+class FrameWriter {
+ public:
+  FrameWriter(const program::CachedRun& run, UpAxis up)
+      : run_(run),
+        usd_(usd_options(run, up)),
+        groups_(mesh_groups(run)),
+        surfacer_(run.scene.surface, run.threads),
+        voxel_size_(2 * *std::max_element(run.spacings.begin(), run.spacings.end())) {}
+
+  const UsdOptions& usd() const { return usd_; }
+  std::span<const MeshGroup> groups() const { return groups_; }
+
+  ParticleFrame read_particles(int number) const {
+    ParticleFrame frame = mallow::read_particles(run_.cache.particles_file(number));
+    if (usd_.up == UpAxis::z) return frame;
+    turn(frame.positions);
+    turn(frame.velocities);
+    return frame;
+  }
+  void write_particles(const ParticleFrame& frame, const std::string& format, const fs::path& file) const {
+    if (format == "vdb") write_particles_vdb(file, frame, voxel_size_, run_.threads);
+    if (format == "vtp") write_particles_vtp(file, frame);
+    if (format == "csv") write_state_csv(file, frame);
+  }
+  /// mesh: as the cache has it
+  void write_surface(const Mesh& mesh, int number, const std::string& format, const fs::path& file) const {
+    if (format == "obj")
+      write_mesh_obj(file, mesh, {.up = usd_.up, .groups = groups_, .material_library = k_materials});
+    if (format == "glb") write_mesh_glb(file, mesh, groups_);
+    if (format == "vtp") write_mesh_vtp(file, turned(mesh));
+    if (format == "usda") write_mesh_usda(file, mesh, groups_, usd_, number);
+  }
+  /// Level sets are no part of a cache: they are drawn again, with the run's settings.
+  void write_level_set(const ParticleFrame& frame, const fs::path& file) {
+    SurfaceParticles particles = surface_particles(frame, run_.spacings);
+    particles.velocities = {};
+    surfacer_.draw(particles);
+    write_whole(file, level_set_vdb(surfacer_));
+  }
+
+ private:
+  Mesh turned(Mesh mesh) const {
+    if (usd_.up == UpAxis::z) return mesh;
+    for (std::vector<Vec3>* vectors : {&mesh.vertices, &mesh.normals, &mesh.velocities}) turn(*vectors);
+    return mesh;
+  }
+
+  const program::CachedRun& run_;
+  UsdOptions usd_;
+  std::vector<MeshGroup> groups_;
+  Surfacer surfacer_;
+  float voxel_size_;
+};
+
+void export_frames(const ExportOptions& options) {
+  check_formats(options);
+  const program::CachedRun run = program::open_cached_run(options, "");
+  print_warning(run.cache.lock_warning());
+  const program::Cache& cache = run.cache;
+  if (!options.surface.empty()) require_surfaces(cache);
+  const fs::path out = options.out.empty() ? cache.export_folder() : fs::path(options.out);
+  refuse_inputs(options, run, out);
+  const program::RunLock lock = lock_folder(out);
+  print_warning(lock.warning());
+  Series surfaces(out, "surface", options.surface);
+  Series particles(out, "particles", options.particles);
+  FrameWriter writer(run, options.up == "y" ? UpAxis::y : UpAxis::z);
+  try {
+    for_each_frame(cache.particle_frames(), "exporting", [&](int number) {
+      const ParticleFrame frame = writer.read_particles(number);  // tells the time of surfaces too
+      if (!options.particles.empty()) {
+        particles.add(number, frame.time, [&](const std::string& format, const fs::path& file) {
+          writer.write_particles(frame, format, file);
+        });
+      }
+      if (options.surface.empty() || !fs::exists(cache.surface_file(number))) return;
+      const Mesh mesh = read_mesh(cache.surface_file(number));
+      surfaces.add(number, frame.time, [&](const std::string& format, const fs::path& file) {
+        if (format == "vdb")
+          writer.write_level_set(frame, file);
+        else
+          writer.write_surface(mesh, number, format, file);
+      });
+    });
+    surfaces.finish(writer.groups(), writer.usd());
+    particles.finish(writer.groups(), writer.usd());
+  } catch (const std::exception& error) {
+    throw program::RunFailure(error.what());
+  }
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app) {
+  const auto options = std::make_shared<ExportOptions>();
+  CLI::App* command = app.add_subcommand(
+      "export", "Write the surfaces and particles of an earlier run in the formats of other programs");
+  command->add_option("DIR", options->folder, "The --out folder of a run")->required();
+  command
+      ->add_option("--surface", options->surface,
+                   "Formats of the surfaces, with commas between: obj, glb (glTF; Blender, web), "
+                   "vtp (ParaView), usda (USD), vdb (level sets)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"obj", "glb", "vtp", "usda", "vdb"}));
+  command
+      ->add_option("--particles", options->particles,
+                   "Formats of the particles: vdb (OpenVDB points; Houdini), vtp (ParaView), csv")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"vdb", "vtp", "csv"}));
+  command
+      ->add_option(
+          "--up", options->up,
+          "The axis that points up in the files: z, as in the scene, or y; in glb it is y, as glTF has it")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Folder for surface/ and particles/; DIR/export if left out");
+  command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
+      ->check(CLI::Range(0, 1024));
+  command->footer(
+      "Velocities: _VELOCITY in glb, Velocity in vtp, velocities in usda, v in vdb, vx vy vz in csv; "
+      "an OBJ has none.\n"
+      "Groups and materials have the names of the scene in obj (materials.mtl), glb and usda.\n"
+      "surface.pvd plays the frames at their simulated times; surface.usda plays them as the film does: a\n"
+      "time code is a frame, and velocities are per second of the film.");
+  command->callback([options] { export_frames(*options); });
+}
+
+}  // namespace mallow::cli

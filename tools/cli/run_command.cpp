@@ -1,0 +1,362 @@
+#include "cli/run_command.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/film_options.h"
+#include "cli/messages.h"
+#include "cli/scene_changes.h"
+#include "cli/scene_options.h"
+#include "cli/summary.h"
+#include "mallow/errors.h"
+#include "mallow/files.h"
+#include "mallow/scene.h"
+#include "program/cache.h"
+#include "program/checkpoint.h"
+#include "program/failure.h"
+#include "program/input_files.h"
+#include "program/interrupt.h"
+#include "program/machine.h"
+#include "program/output_files.h"
+#include "program/progress.h"
+#include "program/run_loop.h"
+#include "program/run_plan.h"
+#include "program/run_report.h"
+#include "program/shell_word.h"
+
+namespace mallow::cli {
+namespace {
+
+struct RunOptions {
+  SceneOptions scene;
+  std::optional<int> frames;
+  std::optional<std::int64_t> steps;
+  std::string out;
+  std::string resume;
+  std::optional<int> checkpoint_every;
+  std::optional<double> checkpoint_seconds;
+  int threads = 0;
+  std::string state_out;
+  std::string report;
+  FilmOptions film;
+  bool no_surface = false;
+  bool no_images = false;
+  bool overwrite = false;
+};
+
+/// What a run is made of, as it begins or as it goes on.
+struct Run {
+  Scene scene;
+  program::RunPlan plan;
+  program::RunReport report;
+  std::optional<Simulation> simulation;
+  std::optional<program::Cache> cache;
+};
+
+/// No output may be another one, or a file of the folder that means something else there.
+void check_apart(const RunOptions& options) {
+  const std::string& folder = options.out.empty() ? options.resume : options.out;
+  std::map<std::filesystem::path, std::string> names;
+  const auto add = [&](const std::filesystem::path& file, const std::string& name,
+                       const char* may_be = nullptr) {
+    if (file.empty() || is_written_in_place(file)) return;
+    std::error_code unknown;
+    const auto [other, is_new] = names.emplace(std::filesystem::weakly_canonical(file, unknown), name);
+    if (is_new || (may_be && other->second == may_be)) return;
+    throw ConfigError(name, "'" + file.string() + "' is also " + other->second + "; give another name");
+  };
+  if (!folder.empty())
+    for (const char* name : program::Cache::k_single_files)
+      add(std::filesystem::path(folder) / name, std::string("the run's ") + name);
+  add(options.report, "--report", "the run's report.json");
+  add(options.film.file, "--film", "the run's film.mp4");
+  add(options.state_out, "--state-out");
+}
+
+/// All that can be known to be wrong before anything is read.
+void check_outputs(const RunOptions& options) {
+  if (!options.out.empty()) program::Cache::check(options.out, options.overwrite);
+  if (!options.state_out.empty()) program::check_writable(options.state_out);
+  if (!options.report.empty()) program::check_writable(options.report);
+  check_film(options.film);
+  check_apart(options);
+}
+
+/// Nothing that is written may be what is read.
+void refuse_inputs(const RunOptions& options, const Scene& scene) {
+  const program::InputFiles inputs(scene);
+  inputs.refuse(options.state_out, "--state-out");
+  inputs.refuse(options.report, "--report");
+  inputs.refuse(options.film.file, "--film");
+  if (!options.out.empty()) program::Cache::refuse_inputs(options.out, inputs, "--out", true);
+  // A run that goes on reads its own scene.toml, and writes there what of it has changed.
+  if (!options.resume.empty()) program::Cache::refuse_inputs(options.resume, inputs, "--resume", false);
+}
+
+Scene scene_of(const RunOptions& options) {
+  Scene scene = read_scene(options.scene);
+  if (options.frames) scene.run.frames = *options.frames;
+  return scene;
+}
+
+program::CheckpointInterval checkpoint_interval(const RunOptions& options,
+                                                program::CheckpointInterval interval) {
+  if (options.checkpoint_every) interval = {*options.checkpoint_every, 0};
+  if (options.checkpoint_seconds) interval.seconds = *options.checkpoint_seconds;
+  return interval;
+}
+
+/// What both kinds of runs have: a simulation, and what it says of itself.
+void describe(const Scene& scene, int threads, Simulation& simulation, program::RunReport& report) {
+  report.threads = threads;
+  report.info = simulation.info();
+  report.frame_time = frame_time(scene, report.info);
+}
+
+Run begin(const RunOptions& options, int threads) {
+  Run run{.scene = scene_of(options), .plan = {}, .report = {}, .simulation = {}, .cache = {}};
+  refuse_inputs(options, run.scene);
+  if (!options.out.empty()) program::Cache::check_names(options.out, run.scene);
+  run.plan = {.frames = run.scene.run.frames,
+              .steps = options.steps,
+              .surface = !options.no_surface,
+              .images = !options.no_images,
+              .threads = threads,
+              .checkpoints = checkpoint_interval(options, {})};
+  run.report.scene = options.scene.file;
+  run.report.overrides = options.scene.overrides;
+  if (options.scene.quality) run.report.quality = name(*options.scene.quality);
+  {
+    const program::StageTimer timer(run.report.stage_seconds, program::Stage::build);
+    std::vector<std::string> notes;
+    run.simulation.emplace(build(run.scene, threads, &notes));
+    print_notes(notes);
+    describe(run.scene, threads, *run.simulation, run.report);
+  }
+  if (!options.out.empty()) {
+    run.cache = program::Cache::create(options.out, options.overwrite);
+    print_warning(run.cache->lock_warning());
+  }
+  return run;
+}
+
+/// What of a scene counts when a run goes on: how frames look, and how many there are. What moves the
+/// particles is in the checkpoint.
+bool counts_when_resumed(const std::string& key) {
+  const bool hides_collider = key.starts_with("collider[") && key.ends_with("].visible");
+  return key.starts_with("surface.") || key.starts_with("render.") || key == "run.frames" || hides_collider;
+}
+
+/// Takes over what counts of a scene that is not the checkpoint's any more, and says on stderr what differs.
+/// own: it is the scene.toml of the run, which then says again how the run began.
+void take_changes(const Scene& now, bool own, Scene& scene) {
+  std::string said;
+  bool put_back = false;
+  for (const SceneChange& change : scene_changes(scene, now)) {
+    if (change.key == "run.frames") continue;  // to go on longer is no change of what is there
+    const auto text = [](const std::string& value) { return value.empty() ? "left out" : value; };
+    said += "\n  " + change.key + " is " + text(change.now) + ", was " + text(change.before) +
+            (counts_when_resumed(change.key) ? ": from the next frame on" : ": without effect");
+    put_back = put_back || (own && !counts_when_resumed(change.key));
+  }
+  if (put_back) said += "\n  scene.toml is put back to what has an effect";
+  if (!said.empty())
+    print_warning(now.file.string() +
+                  " has changed since the run began; the motion continues as it began:" + said);
+  scene.surface = now.surface;
+  scene.render = now.render;
+  for (std::size_t i = 0; i < std::min(scene.colliders.size(), now.colliders.size()); ++i)
+    scene.colliders[i].visible = now.colliders[i].visible;
+  scene.run.frames = now.run.frames;
+}
+
+/// The run in a folder as its newest whole checkpoint has it.
+Run resume(const RunOptions& options, int threads) {
+  const auto started = std::chrono::steady_clock::now();
+  program::Cache cache = program::Cache::open_to_resume(options.resume);
+  print_warning(cache.lock_warning());
+  program::CheckpointedRun saved = program::load_newest_checkpoint(cache, threads);
+  print_warning(saved.passed_over);
+  std::fprintf(stderr, "resuming from %s: step %lld, frame %d\n", saved.file.c_str(),
+               static_cast<long long>(saved.report.steps), saved.report.frames);
+  SceneOptions now = options.scene;
+  std::error_code unknown;
+  const bool own = now.file.empty() || std::filesystem::equivalent(now.file, cache.scene_file(), unknown);
+  if (own) now.file = cache.scene_file().string();
+  now.allow_outside_paths = true;  // what it names is not read: the particles are there
+  const Scene scene_now = read_scene(now);
+  refuse_inputs(options, scene_now);
+  take_changes(cache.moved_here(scene_now), own, saved.scene);
+  if (options.frames) saved.scene.run.frames = *options.frames;
+
+  Run run{std::move(saved.scene), saved.plan, std::move(saved.report), std::move(saved.simulation),
+          std::move(cache)};
+  if (options.frames) run.plan.steps.reset();
+  if (options.steps) run.plan.steps = options.steps;
+  run.plan.frames = run.scene.run.frames;
+  run.plan.surface = run.plan.surface && !options.no_surface;
+  run.plan.images = run.plan.images && !options.no_images;
+  if (run.plan.images) check_pictures(options.film, *run.cache, run.report.frames);
+  run.plan.threads = threads;
+  run.plan.checkpoints = checkpoint_interval(options, run.plan.checkpoints);
+  describe(run.scene, threads, *run.simulation, run.report);
+  run.report.resumed_after.push_back(run.report.steps);
+  run.report.stage_seconds[static_cast<std::size_t>(program::Stage::build)] +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  return run;
+}
+
+void write_reports(const RunOptions& options, const Scene& scene, const program::Cache* cache,
+                   const program::RunReport& report) {
+  const nlohmann::ordered_json document = program::to_json(report);
+  if (!options.report.empty()) program::write_report(options.report, document);
+  if (!cache) return;
+  program::write_report(cache->report_file(), document);
+  write_summary(*cache, scene, document);
+}
+
+/// Motion and what is made of every frame, with progress on stderr and an end at Ctrl-C.
+void simulate(Run& run, const program::Cache* cache) {
+  const bool by_steps = run.plan.steps.has_value();
+  program::Progress progress("simulating", run.plan.steps.value_or(run.plan.frames),
+                             by_steps ? "steps" : "frames", by_steps ? run.report.steps : run.report.frames);
+  program::RunCallbacks callbacks{.after_step = {}, .after_frame = {}, .stop = program::interrupted};
+  if (by_steps)
+    callbacks.after_step = [&](const program::RunReport& report) { progress.show(report.steps); };
+  else
+    callbacks.after_frame = [&](const program::RunReport& report) { progress.show(report.frames); };
+  const program::RunEnd end =
+      program::run_frames(run.scene, *run.simulation, run.plan, cache, run.report, callbacks);
+  if (end == program::RunEnd::complete) return;
+  const std::string said = "interrupted after " + std::to_string(run.report.steps) + " steps";
+  throw program::RunFailure(cache ? said + "; to go on: mallow run --resume " +
+                                        program::shell_word(cache->folder().string())
+                                  : said);
+}
+
+/// Motion, surfaces, pictures and film; the report says what was done, also when this throws.
+void run_stages(const RunOptions& options, Run& run) {
+  const program::Cache* cache = run.cache ? &*run.cache : nullptr;
+  simulate(run, cache);
+  if (!options.state_out.empty()) write_state_csv(options.state_out, snapshot(*run.simulation));
+  if (!cache || !run.plan.images) return;
+  const program::StageTimer timer(run.report.stage_seconds, program::Stage::film);
+  make_film(options.film, *cache, run.scene.render.frames_per_second, run.plan.threads);
+}
+
+void print_result(const program::Cache* cache, const program::RunReport& report) {
+  std::printf("particles %zu\nframes %d\nsteps %lld\nsimulated_time %.9g\nstate_hash %s\n",
+              report.info.particles, report.frames, static_cast<long long>(report.steps),
+              report.simulated_time, program::hash_text(report.state_hash).c_str());
+  if (cache) std::printf("summary %s\n", cache->summary_file().c_str());
+}
+
+void run(const RunOptions& options) {
+  check_outputs(options);
+  const int threads = program::resolve_threads(options.threads);
+  Run run = options.resume.empty() ? begin(options, threads) : resume(options, threads);
+  const program::Cache* out = run.cache ? &*run.cache : nullptr;
+  print_warnings(run.scene, run.report.info);
+
+  // From here on something is computed, so what goes wrong is a failure of the run, and is reported as far as
+  // it came.
+  program::watch_for_interrupt();
+  const auto close_report = [&](const std::string& why_ended) {
+    run.report.error = why_ended;
+    run.report.complete = why_ended.empty();
+    run.report.simulated_time = run.simulation->time();
+    run.report.state_hash = run.simulation->state_hash();
+    write_reports(options, run.scene, out, run.report);
+  };
+  try {
+    if (out) out->write_scene(run.scene);
+    close_report("the run has not ended yet");
+    run_stages(options, run);
+    close_report("");
+  } catch (const std::exception& failure) {
+    try {
+      close_report(failure.what());
+      // The state before the step that failed: what was computed is not lost.
+      if (!options.state_out.empty()) write_state_csv(options.state_out, snapshot(*run.simulation));
+    } catch (const std::exception&) {
+      // Where the disk is full the report written at the start stays, and it says that the run did not end.
+    }
+    throw program::RunFailure(failure.what());
+  }
+  print_result(out, run.report);
+  require_film(options.film);
+}
+
+/// What options cannot say of each other to the parser.
+void check_together(const RunOptions& options) {
+  if (options.resume.empty() && options.scene.file.empty()) throw CLI::RequiredError("SCENE");
+  const bool kept = !options.out.empty() || !options.resume.empty();
+  if (!options.film.file.empty() && !kept) throw CLI::RequiresError("--film", "--out");
+  if ((options.checkpoint_every || options.checkpoint_seconds) && !kept)
+    throw CLI::RequiresError("--checkpoint-every, --checkpoint-seconds", "--out");
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app) {
+  const auto options = std::make_shared<RunOptions>();
+  CLI::App* command =
+      app.add_subcommand("run", "Simulate a scene; write particles, surfaces, pictures and a film");
+  add_scene_options(*command, options->scene);
+  command->get_option("SCENE")->required(false);
+  CLI::Option* frames = command
+                            ->add_option("--frames", options->frames,
+                                         "Number of frames after frame 0, instead of the scene's run.frames")
+                            ->check(CLI::NonNegativeNumber);
+  command->add_option("--steps", options->steps, "Number of steps to take, instead of frames")
+      ->check(CLI::NonNegativeNumber)
+      ->excludes(frames);
+  CLI::Option* out =
+      command->add_option("--out", options->out, "Folder for the frames; without it no frames are written");
+  CLI::Option* resume =
+      command
+          ->add_option("--resume", options->resume,
+                       "Continue the run in this folder; the result is the same to the last bit "
+                       "as without the break. With SCENE, list what differs from it")
+          ->excludes(out);
+  command
+      ->add_option("--checkpoint-every", options->checkpoint_every,
+                   "Frames from one checkpoint to the next; a run can be resumed from a checkpoint")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option(
+          "--checkpoint-seconds", options->checkpoint_seconds,
+          "Seconds from one checkpoint to the next; 0: none by time. Default: 60, or none by time with "
+          "--checkpoint-every")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--threads", options->threads,
+                   "Number of threads; 0: one for each processor. The result does not depend on it")
+      ->check(CLI::Range(0, 1024));
+  command->add_option("--state-out", options->state_out,
+                      "Write the state after the last step to this CSV file");
+  command->add_option("--report", options->report, "Write what ran and how long it took to this JSON file");
+  command->add_flag("--no-surface", options->no_surface, "Make no surfaces; pictures show the particles");
+  CLI::Option* no_images =
+      command->add_flag("--no-images", options->no_images, "Make no pictures and no film");
+  add_film_options(*command, options->film);
+  // A film is made of pictures.
+  command->get_option("--film")->excludes(no_images);
+  command->add_flag("--overwrite", options->overwrite, "Replace an earlier run in the --out folder")
+      ->excludes(resume);
+  command->callback([options] {
+    check_together(*options);
+    run(*options);
+  });
+}
+
+}  // namespace mallow::cli

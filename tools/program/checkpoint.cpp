@@ -1,0 +1,119 @@
+#include "program/checkpoint.h"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "mallow/errors.h"
+#include "mallow/files.h"
+#include "program/shell_word.h"
+
+namespace mallow::program {
+namespace fs = std::filesystem;
+namespace {
+
+// Names of the chunks that are the program's own.
+constexpr const char* k_scene = "run.scene";
+constexpr const char* k_plan = "run.plan";
+constexpr const char* k_progress = "run.progress";
+
+const std::string& require_chunk(const SavedState& state, const char* name) {
+  const std::string* bytes = state.find(name);
+  if (!bytes) throw ConfigError(std::string("chunk '") + name + "'", "is missing");
+  return *bytes;
+}
+
+/// A path that is not UTF-8 has to pass through JSON too.
+std::string dumped(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::string plan_text(const RunPlan& plan) {
+  nlohmann::ordered_json json = {{"surface", plan.surface},
+                                 {"images", plan.images},
+                                 {"checkpoint_frames", plan.checkpoints.frames},
+                                 {"checkpoint_seconds", plan.checkpoints.seconds}};
+  if (plan.steps) json["steps"] = *plan.steps;
+  return json.dump();
+}
+
+RunPlan read_plan(const std::string& text) {
+  RunPlan plan;
+  const auto json = nlohmann::ordered_json::parse(text);
+  json.at("surface").get_to(plan.surface);
+  json.at("images").get_to(plan.images);
+  json.at("checkpoint_frames").get_to(plan.checkpoints.frames);
+  json.at("checkpoint_seconds").get_to(plan.checkpoints.seconds);
+  if (json.contains("steps")) plan.steps = json.at("steps").get<std::int64_t>();
+  return plan;
+}
+
+CheckpointedRun load(const fs::path& file, const Cache& cache, int threads) try {
+  const SavedState state = read_checkpoint(file);
+  RunReport report;
+  report.set_progress(nlohmann::ordered_json::parse(require_chunk(state, k_progress)));
+  return {parse_scene(require_chunk(state, k_scene), cache.scene_file(), {}, {.allow_outside_paths = true}),
+          read_plan(require_chunk(state, k_plan)),
+          std::move(report),
+          Simulation::restore(state, threads),
+          file,
+          ""};
+} catch (const ConfigError& error) {
+  throw IoError({file.string(), 0, 0, "", error.what()});
+} catch (const nlohmann::ordered_json::exception& error) {
+  throw IoError({file.string(), 0, 0, "", error.what()});
+}
+
+bool is_complete(const Cache& cache) {
+  try {
+    return read_report(cache.report_file()).value("complete", false);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+Checkpoints::Checkpoints(const Scene& scene, const RunPlan& plan, const Cache& cache)
+    : interval_(plan.checkpoints), scene_(print_scene(cache.moved_here(scene))), plan_(plan_text(plan)) {}
+
+bool Checkpoints::due_after_step() const {
+  return interval_.seconds > 0 && Clock::now() - taken_ >= std::chrono::duration<double>(interval_.seconds);
+}
+
+bool Checkpoints::due_after_frame(int frame) const {
+  return interval_.frames > 0 && frame % interval_.frames == 0;
+}
+
+SavedState Checkpoints::take(const Simulation& simulation, const RunReport& report) {
+  SavedState state = simulation.save();
+  state.chunks.push_back({k_scene, scene_});
+  state.chunks.push_back({k_plan, plan_});
+  state.chunks.push_back({k_progress, dumped(report.progress())});
+  taken_ = Clock::now();
+  return state;
+}
+
+CheckpointedRun load_newest_checkpoint(const Cache& cache, int threads) {
+  const fs::path newest = cache.checkpoint_file();
+  std::string refused;
+  for (const fs::path& file : {newest, previous_checkpoint(newest)}) {
+    if (!fs::exists(file)) continue;
+    try {
+      CheckpointedRun run = load(file, cache, threads);
+      if (!refused.empty()) fs::remove(newest);
+      run.passed_over = std::move(refused);
+      return run;
+    } catch (const IoError& error) {
+      refused += (refused.empty() ? "" : "; ") + std::string(error.what());
+    }
+  }
+  const std::string folder = cache.folder().string();
+  if (refused.empty() && is_complete(cache))
+    throw IoError({folder, 0, 0, "--resume", "holds a run that is complete, and no checkpoint of it"});
+  const std::string why =
+      refused.empty() ? "holds no checkpoint: the run ended before the first one was due" : refused;
+  throw IoError({folder, 0, 0, "--resume",
+                 why + "; start again with: mallow run SCENE --out " + shell_word(folder) + " --overwrite"});
+}
+
+}  // namespace mallow::program

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace mallow::program {
+
+/// Whether a program is found on the PATH.
+bool is_installed(const std::string& program);
+
+/// Runs a program in a folder, without a shell, and waits for it; gives its exit status. Names of files in
+/// that folder need no path then, which could hold what means something to the program: '%', quotes, '-' at
+/// the beginning. Throws RunFailure where it cannot be started.
+int run_program(std::vector<std::string> arguments, const std::filesystem::path& folder);
+
+}  // namespace mallow::program

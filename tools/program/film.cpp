@@ -1,0 +1,81 @@
+#include "program/film.h"
+
+#include <vector>
+
+#include "mallow/errors.h"
+#include "mallow/files.h"
+#include "program/external_program.h"
+#include "program/failure.h"
+#include "program/shell_word.h"
+
+namespace mallow::program {
+namespace {
+
+constexpr const char* k_ffmpeg = "ffmpeg";
+
+/// The pictures of the present folder from frame `first` on to an MP4.
+std::vector<std::string> command_line(int first, const std::string& film, int frames_per_second,
+                                      int threads) {
+  // yuv420p, which every player knows, has no odd sides: hence the pad.
+  return {k_ffmpeg,
+          "-nostdin",
+          "-y",
+          "-loglevel",
+          "error",
+          "-framerate",
+          std::to_string(frames_per_second),
+          "-start_number",
+          std::to_string(first),
+          "-i",
+          "frame_%06d.png",
+          "-vf",
+          "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+          "-c:v",
+          "libx264",
+          "-preset",
+          "fast",
+          "-crf",
+          "18",
+          "-pix_fmt",
+          "yuv420p",
+          "-threads",
+          std::to_string(threads),
+          "-movflags",
+          "+faststart",
+          "-f",
+          "mp4",
+          "file:" + film};  // a name with a colon is no protocol
+}
+
+/// ffmpeg ends a film where a picture is missing, and says nothing.
+void require_all_pictures(const Cache& cache) {
+  const std::vector<int> frames = cache.image_frames();
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (frames[i] != frames[0] + static_cast<int>(i))
+      throw RunFailure("no film: " + missing_picture(cache, frames[0] + static_cast<int>(i)));
+  if (frames.empty()) throw RunFailure("no film: " + missing_picture(cache, 0));
+}
+
+}  // namespace
+
+bool can_make_films() {
+  return is_installed(k_ffmpeg);
+}
+
+std::string missing_picture(const Cache& cache, int frame) {
+  return "the picture of frame " + std::to_string(frame) + " is missing; 'mallow render " +
+         shell_word(cache.folder().string()) + "' takes all of them again";
+}
+
+void make_film(const Cache& cache, const std::filesystem::path& film, int frames_per_second, int threads) {
+  require_all_pictures(cache);
+  const int first = cache.image_frames().front();
+  write_whole(film, [&](const std::filesystem::path& beside) {
+    const std::string name = std::filesystem::absolute(beside).string();  // ffmpeg runs in another folder
+    const int status =
+        run_program(command_line(first, name, frames_per_second, threads), cache.images_folder());
+    if (status != 0) throw RunFailure("ffmpeg failed with exit status " + std::to_string(status));
+  });
+}
+
+}  // namespace mallow::program

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "program/cache.h"
+
+namespace mallow::program {
+
+/// Whether films can be made: the program ffmpeg is installed.
+bool can_make_films();
+
+/// What to say where a run lacks the picture of a frame, and what takes it again.
+std::string missing_picture(const Cache& cache, int frame);
+
+/// Joins the pictures of a run to a film (H.264), an MP4 file. Throws RunFailure where ffmpeg fails or a
+/// picture between two others is missing.
+void make_film(const Cache& cache, const std::filesystem::path& film, int frames_per_second, int threads);
+
+}  // namespace mallow::program

@@ -1,0 +1,26 @@
+#include "program/group_appearances.h"
+
+#include <array>
+
+namespace mallow::program {
+namespace {
+
+/// Linear RGB; for materials that name no colour.
+const std::array<Vec3, 8> k_palette = {
+    Vec3{0.80f, 0.24f, 0.09f}, Vec3{0.05f, 0.36f, 0.55f}, Vec3{0.85f, 0.55f, 0.08f},
+    Vec3{0.18f, 0.48f, 0.14f}, Vec3{0.50f, 0.12f, 0.42f}, Vec3{0.03f, 0.45f, 0.42f},
+    Vec3{0.75f, 0.30f, 0.34f}, Vec3{0.35f, 0.25f, 0.16f},
+};
+
+}  // namespace
+
+std::vector<Appearance> group_appearances(const Scene& scene) {
+  std::vector<Appearance> appearances;
+  for (const std::size_t index : group_materials(scene)) {
+    const SceneMaterial& material = scene.materials[index];
+    appearances.push_back({material.color.value_or(k_palette[index % k_palette.size()]), material.finish});
+  }
+  return appearances;
+}
+
+}  // namespace mallow::program

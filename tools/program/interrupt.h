@@ -1,0 +1,10 @@
+#pragma once
+
+namespace mallow::program {
+
+/// From now on the first Ctrl-C (or SIGTERM) asks the run to end after the present step, with all files
+/// whole; the second one ends the program at once.
+void watch_for_interrupt();
+bool interrupted();
+
+}  // namespace mallow::program

@@ -1,0 +1,156 @@
+#include "program/run_loop.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mallow/files.h"
+#include "mallow/surface.h"
+#include "program/background_writer.h"
+#include "program/checkpoint.h"
+#include "program/failure.h"
+#include "program/stills.h"
+
+namespace mallow::program {
+namespace {
+
+/// Writes particles, surface and picture of a frame, and keeps the time of each: what the run waits for, as
+/// files are written by another thread while it goes on.
+class FrameWriter {
+ public:
+  FrameWriter(const Scene& scene, const RunPlan& plan, const Cache& cache, const ParticleFrame& first,
+              RunReport& report)
+      : cache_(cache), report_(report), checkpoints_(scene, plan, cache), whole_frames_(report.frames) {
+    if (plan.surface) {
+      std::filesystem::create_directories(cache.surface_file(0).parent_path());
+      surfacer_.emplace(scene.surface, plan.threads);
+    }
+    if (plan.images) {
+      std::filesystem::create_directories(cache.images_folder());
+      std::vector<float> spacings;
+      for (const BodyInfo& body : report.info.bodies) spacings.push_back(body.spacing);
+      stills_.emplace(scene, first, spacings, plan.threads);
+    }
+  }
+
+  /// Nothing is on its way any more, and the report speaks of no frame that did not get there.
+  ~FrameWriter() {
+    try {
+      files_.finish();
+    } catch (...) {
+      // The run ended with this already, or with what came before it.
+    }
+    report_.frames = std::min(report_.frames, whole_frames_);
+  }
+  FrameWriter(const FrameWriter&) = delete;
+  FrameWriter& operator=(const FrameWriter&) = delete;
+
+  /// frame: the particles of the simulation as they are now.
+  void write(int number, const Simulation& simulation, const std::shared_ptr<const ParticleFrame>& frame) {
+    {
+      const StageTimer timer(report_.stage_seconds, Stage::particles);
+      files_.add([this, number, frame] {
+        write_particles(cache_.particles_file(number), *frame);
+        if (!surfacer_) whole_frames_ = number;
+      });
+    }
+    auto mesh = std::make_shared<const Mesh>();
+    if (surfacer_) {
+      const StageTimer timer(report_.stage_seconds, Stage::surface);
+      mesh = std::make_shared<const Mesh>(surfacer_->draw(surface_particles(simulation)));
+      files_.add([this, number, mesh] {
+        write_mesh_ply(cache_.surface_file(number), *mesh);
+        whole_frames_ = number;
+      });
+    }
+    if (stills_) {
+      const StageTimer timer(report_.stage_seconds, Stage::pictures);
+      stills_->take(*frame, *mesh, cache_.image_file(number));
+    }
+  }
+
+  /// A checkpoint behind the files of all frames so far, so that those need not be made again.
+  void write_checkpoint(const Simulation& simulation) {
+    const auto state = std::make_shared<const SavedState>(checkpoints_.take(simulation, report_));
+    files_.add([this, state] { mallow::write_checkpoint(cache_.checkpoint_file(), *state); });
+  }
+  void after_step(const Simulation& simulation) {
+    if (checkpoints_.due_after_step()) write_checkpoint(simulation);
+  }
+  void after_frame(const Simulation& simulation) {
+    if (checkpoints_.due_after_frame(report_.frames)) write_checkpoint(simulation);
+  }
+
+  /// Waits until all files are there.
+  void finish() {
+    const StageTimer timer(report_.stage_seconds, surfacer_ ? Stage::surface : Stage::particles);
+    files_.finish();
+  }
+
+ private:
+  const Cache& cache_;
+  RunReport& report_;
+  Checkpoints checkpoints_;
+  std::optional<Surfacer> surfacer_;
+  std::optional<Stills> stills_;
+  int whole_frames_;        ///< the last frame of which all files are there; read when none is being written
+  BackgroundWriter files_;  // last: its thread uses the others
+};
+
+/// Frame 0, which every picture is framed by: as the simulation has it, or of the run that goes on.
+std::shared_ptr<const ParticleFrame> first_frame(const Simulation& simulation, const Cache& cache) {
+  return std::make_shared<const ParticleFrame>(
+      simulation.step_count() == 0 ? snapshot(simulation) : read_particles(cache.particles_file(0)));
+}
+
+/// What a run that is asked to end leaves behind.
+void write_last_checkpoint(const Simulation& simulation, FrameWriter& writer, const RunReport& report) try {
+  writer.write_checkpoint(simulation);
+  writer.finish();
+} catch (const Error& error) {
+  throw RunFailure("interrupted after " + std::to_string(report.steps) +
+                   " steps, and no checkpoint could be written: " + error.what());
+}
+
+}  // namespace
+
+RunEnd run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan, const Cache* cache,
+                  RunReport& report, const RunCallbacks& callbacks) {
+  std::optional<FrameWriter> writer;
+  if (cache) {
+    const auto first = first_frame(simulation, *cache);
+    writer.emplace(scene, plan, *cache, *first, report);
+    if (report.steps == 0) writer->write(0, simulation, first);
+  }
+
+  const auto steps_left = [&] { return !plan.steps || report.steps < *plan.steps; };
+  const auto ended = [&] { return plan.steps ? !steps_left() : report.frames >= plan.frames; };
+  while (!ended()) {
+    const int number = report.frames + 1;
+    const double frame_end = number * report.frame_time;
+    while (simulation.time() < frame_end && steps_left()) {
+      if (callbacks.stop && callbacks.stop()) {
+        if (writer) write_last_checkpoint(simulation, *writer, report);
+        return RunEnd::stopped;
+      }
+      {
+        const StageTimer timer(report.stage_seconds, Stage::motion);
+        report.add(simulation.step_towards(frame_end));
+      }
+      if (writer) writer->after_step(simulation);
+      if (callbacks.after_step) callbacks.after_step(report);
+    }
+    if (simulation.time() < frame_end) break;
+    if (writer)
+      writer->write(number, simulation, std::make_shared<const ParticleFrame>(snapshot(simulation)));
+    report.frames = number;
+    if (writer) writer->after_frame(simulation);
+    if (callbacks.after_frame) callbacks.after_frame(report);
+  }
+  if (writer) writer->finish();
+  return RunEnd::complete;
+}
+
+}  // namespace mallow::program

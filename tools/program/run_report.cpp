@@ -1,0 +1,195 @@
+#include "program/run_report.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "mallow/errors.h"
+#include "mallow/files.h"
+#include "mallow/version.h"
+#include "program/machine.h"
+
+namespace mallow::program {
+namespace {
+
+nlohmann::ordered_json groups_json(const RunReport& report) {
+  nlohmann::ordered_json groups = nlohmann::ordered_json::array();
+  for (const BodyInfo& body : report.info.bodies)
+    groups.push_back({{"name", body.name},
+                      {"material", body.material},
+                      {"particles", body.particles},
+                      {"spacing", body.spacing},
+                      {"particle_mass", body.particle_mass},
+                      {"rest_density", body.rest_density},
+                      {"region_radius", body.region_radius},
+                      {"update_threshold", body.update_threshold},
+                      {"pressure_coefficient", body.pressure_coefficient},
+                      {"viscosity", body.viscosity},
+                      {"average_neighbors", body.average_neighbors},
+                      {"regions", body.regions},
+                      {"shape_matching", body.shape_matching}});
+  return groups;
+}
+
+const char* source_name(TimeStepSource source) {
+  return source == TimeStepSource::given ? "given" : source == TimeStepSource::gravity ? "gravity" : "speed";
+}
+
+nlohmann::ordered_json updates_json(const RunReport& report) {
+  nlohmann::ordered_json updates = nlohmann::ordered_json::array();
+  for (const auto& update : report.reference_updates)
+    updates.push_back({{"step", update.step}, {"groups", update.groups}});
+  return updates;
+}
+
+nlohmann::ordered_json phases_json(const RunReport& report) {
+  nlohmann::ordered_json phases = nlohmann::ordered_json::array();
+  const double steps = static_cast<double>(std::max<std::int64_t>(report.steps, 1));
+  for (std::size_t i = 0; i < k_phase_count; ++i) {
+    phases.push_back({{"name", name(static_cast<Phase>(i))},
+                      {"seconds", report.phase_seconds[i]},
+                      {"ms_per_step", 1000 * report.phase_seconds[i] / steps}});
+  }
+  return phases;
+}
+
+nlohmann::ordered_json stages_json(const RunReport& report) {
+  nlohmann::ordered_json stages;
+  for (std::size_t i = 0; i < k_stage_count; ++i)
+    stages[name(static_cast<Stage>(i))] = report.stage_seconds[i];
+  return stages;
+}
+
+}  // namespace
+
+const char* name(Stage stage) {
+  static constexpr std::array<const char*, k_stage_count> k_names = {"build",   "motion",   "particles",
+                                                                     "surface", "pictures", "film"};
+  return k_names[static_cast<std::size_t>(stage)];
+}
+
+void RunReport::add(const StepReport& step) {
+  ++steps;
+  smallest_step = steps == 1 ? step.time_step : std::min(smallest_step, step.time_step);
+  largest_step = std::max(largest_step, step.time_step);
+  if (step.limited) ++limited_steps;
+  if (step.updated_references > 0) reference_updates.push_back({steps, step.updated_references});
+  for (std::size_t i = 0; i < k_phase_count; ++i) phase_seconds[i] += step.seconds[i];
+}
+
+nlohmann::ordered_json RunReport::progress() const {
+  return {{"scene", scene},
+          {"overrides", overrides},
+          {"quality", quality},
+          {"frames", frames},
+          {"steps", steps},
+          {"smallest_step", smallest_step},
+          {"largest_step", largest_step},
+          {"limited_steps", limited_steps},
+          {"reference_updates", updates_json(*this)},
+          {"resumed_after", resumed_after},
+          {"phase_seconds", phase_seconds},
+          {"stage_seconds", stage_seconds}};
+}
+
+void RunReport::set_progress(const nlohmann::ordered_json& progress) {
+  progress.at("scene").get_to(scene);
+  progress.at("overrides").get_to(overrides);
+  progress.at("quality").get_to(quality);
+  progress.at("frames").get_to(frames);
+  progress.at("steps").get_to(steps);
+  progress.at("smallest_step").get_to(smallest_step);
+  progress.at("largest_step").get_to(largest_step);
+  progress.at("limited_steps").get_to(limited_steps);
+  reference_updates.clear();
+  for (const auto& update : progress.at("reference_updates"))
+    reference_updates.push_back({update.at("step").get<std::int64_t>(), update.at("groups").get<int>()});
+  progress.at("resumed_after").get_to(resumed_after);
+  progress.at("phase_seconds").get_to(phase_seconds);
+  progress.at("stage_seconds").get_to(stage_seconds);
+}
+
+nlohmann::ordered_json to_json(const RunReport& report) {
+  const double mean_step = report.steps > 0 ? report.simulated_time / static_cast<double>(report.steps) : 0;
+  return {{"version", version()},
+          {"scene", report.scene},
+          {"overrides", report.overrides},
+          {"quality", report.quality},
+          {"complete", report.complete},
+          {"error", report.error},
+          {"machine", machine_json()},
+          {"threads", report.threads},
+          {"particles", report.info.particles},
+          {"groups", groups_json(report)},
+          {"settings",
+           {{"time_step", report.info.time_step},
+            {"time_step_source", source_name(report.info.time_step_source)},
+            {"longest_step", report.info.longest_step},
+            {"update_period", report.info.update_period}}},
+          {"warnings", report.info.warnings},
+          {"sph", report.info.sph},
+          {"viscosity", report.info.viscosity},
+          {"cross_group", report.info.cross_group},
+          {"instruction_level", name(report.info.instruction_level)},
+          {"bytes", report.info.bytes},
+          {"frames", report.frames},
+          {"frame_time", report.frame_time},
+          {"steps", report.steps},
+          {"simulated_time", report.simulated_time},
+          {"time_step",
+           {{"smallest", report.smallest_step},
+            {"mean", mean_step},
+            {"largest", report.largest_step},
+            {"limited_steps", report.limited_steps}}},
+          {"reference_updates", updates_json(report)},
+          {"resumed_after", report.resumed_after},
+          {"phases", phases_json(report)},
+          {"stage_seconds", stages_json(report)},
+          {"state_hash", hash_text(report.state_hash)}};
+}
+
+std::string hash_text(std::uint64_t hash) {
+  char text[24];
+  std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+nlohmann::ordered_json read_report(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw IoError({file.string(), 0, 0, "", "cannot be read"});
+  // A report has 4 levels, and as a rule some kilobytes; it is written again by recursion.
+  constexpr int k_most_levels = 16;
+  constexpr std::uintmax_t k_most_bytes = std::uintmax_t{256} << 20;
+  std::error_code unknown_size;
+  if (std::filesystem::file_size(file, unknown_size) > k_most_bytes && !unknown_size)
+    throw IoError({file.string(), 0, 0, "", "is too large for a report: at most 256 MiB are allowed"});
+  const auto limit = [&](int depth, nlohmann::ordered_json::parse_event_t, nlohmann::ordered_json&) {
+    if (depth > k_most_levels)
+      throw IoError({file.string(), 0, 0, "", "is nested too deeply: at most 16 levels are allowed"});
+    return true;
+  };
+  try {
+    return nlohmann::ordered_json::parse(stream, limit);
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw IoError({file.string(), 0, 0, "", error.what()});
+  }
+}
+
+void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report) {
+  write_whole(file, report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+}
+
+std::vector<float> group_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
+  std::vector<float> spacings;
+  try {
+    for (const auto& group : report.at("groups")) spacings.push_back(group.at("spacing").get<float>());
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw IoError({file.string(), 0, 0, "groups", error.what()});
+  }
+  return spacings;
+}
+
+}  // namespace mallow::program

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "mallow/report.h"
+#include "mallow/scene.h"
+#include "mallow/simulation.h"
+
+namespace mallow::program {
+
+/// The parts of a run, in the order in which a frame passes them.
+enum class Stage { build, motion, particles, surface, pictures, film };
+inline constexpr std::size_t k_stage_count = 6;
+const char* name(Stage stage);
+using StageTimes = std::array<double, k_stage_count>;  ///< wall time [s]
+
+/// Adds the time of a scope to a stage.
+class StageTimer {
+ public:
+  StageTimer(StageTimes& times, Stage stage) : seconds_(times[static_cast<std::size_t>(stage)]) {}
+  ~StageTimer() { seconds_ += std::chrono::duration<double>(Clock::now() - started_).count(); }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double& seconds_;
+  Clock::time_point started_ = Clock::now();
+};
+
+/// What a run did: report.json.
+struct RunReport {
+  std::string scene;
+  std::vector<std::string> overrides;
+  std::string quality;  ///< empty: as the scene says
+  int threads = 0;
+  SimulationInfo info;
+
+  bool complete = false;
+  std::string error;      ///< why the run ended early; empty where it did not
+  int frames = 0;         ///< frames of the film after frame 0
+  double frame_time = 0;  ///< simulated time from one to the next [s]
+  std::int64_t steps = 0;
+  double simulated_time = 0;  ///< [s]
+  double smallest_step = 0;   ///< Δt [s]
+  double largest_step = 0;
+  std::int64_t limited_steps = 0;  ///< steps that a limit kept below Δt0
+  struct ReferenceUpdate {
+    std::int64_t step;  ///< counted from 1
+    int groups;
+  };
+  std::vector<ReferenceUpdate> reference_updates;
+  std::vector<std::int64_t> resumed_after;  ///< steps after which the run was taken up again
+  PhaseTimes phase_seconds{};
+  StageTimes stage_seconds{};
+  std::uint64_t state_hash = 0;
+
+  /// How far the run is, and how long that took, as a checkpoint keeps it.
+  nlohmann::ordered_json progress() const;
+  /// The reverse. Throws nlohmann's exceptions.
+  void set_progress(const nlohmann::ordered_json& progress);
+  /// Takes in a step that has just been made.
+  void add(const StepReport& step);
+};
+
+nlohmann::ordered_json to_json(const RunReport& report);
+
+/// 16 digits after 0x.
+std::string hash_text(std::uint64_t hash);
+/// The report of a cache. Throws IoError where it cannot be read.
+nlohmann::ordered_json read_report(const std::filesystem::path& file);
+/// Whole or not at all.
+void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report);
+/// What later commands need of a report: h of each group [m]. Throws IoError where the report does not fit
+/// the scene.
+std::vector<float> group_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file);
+
+}  // namespace mallow::program

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "mallow/files.h"
+#include "mallow/mesh.h"
+#include "mallow/scene.h"
+#include "render/renderer.h"
+
+namespace mallow::program {
+
+/// Takes the pictures of a run: camera and looks are those of frame 0 and stay through the film.
+class Stills {
+ public:
+  /// `scene` must outlive the stills. spacings: h of each group [m].
+  Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads);
+
+  /// The surface of a frame, or its particles where the surface is empty.
+  void take(const ParticleFrame& frame, const Mesh& surface, const std::filesystem::path& file);
+
+ private:
+  const Scene& scene_;
+  render::Renderer renderer_;
+  render::Camera camera_;
+  std::vector<Appearance> palette_;  ///< appearance of each group
+  float ball_radius_;                ///< [m]
+};
+
+/// What the camera has to have in view: the particles of frame 0, the ground below them, and the visible
+/// colliders near by.
+Aabb view_bounds(const Scene& scene, const ParticleFrame& first);
+
+}  // namespace mallow::program
