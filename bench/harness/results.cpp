@@ -83,22 +83,24 @@ std::string table_cell(const Json& value, int decimals) {
   return text;
 }
 
-/// Throws ConfigError where a file is there that is none of these results: somebody's data is not overwritten.
+/// Throws ConfigError where a file is there that is none of these results: somebody's data is not
+/// overwritten.
 void check_own(const std::filesystem::path& json) {
   if (!std::filesystem::is_regular_file(json)) return;
   const Json there = Json::parse(std::ifstream(json), nullptr, false);
   if (there.is_object() && there.contains("command") && there.contains("rows")) return;
-  throw ConfigError("--json", json.string() + " is not allowed: it is there and holds no results of mallow-bench");
+  throw ConfigError("--json",
+                    json.string() + " is not allowed: it is there and holds no results of mallow-bench");
 }
 
 }  // namespace
 
 Results::Results(std::string command, const Output& output, int threads, Json settings)
     : command_(std::move(command)), folder_(output.folder), json_(output.json) {
-  std::filesystem::create_directories(folder_);
   if (json_.empty()) json_ = file(".json");
-  program::check_writable(json_);
   check_own(json_);
+  std::filesystem::create_directories(folder_);
+  program::check_writable(json_);
   program::check_writable(file(".csv"));
   document_ = {{"command", command_},  {"version", version()}, {"date", now()},
                {"machine", machine()}, {"threads", threads},   {"settings", std::move(settings)},

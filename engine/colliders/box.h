@@ -5,16 +5,18 @@
 namespace mallow {
 
 template <>
+struct FieldTable<Box> {
+  static constexpr std::tuple k_fields{
+      Field{"min", &Box::min, k_finite, "m", "lowest corner", k_required},
+      Field{"max", &Box::max, k_finite, "m", "highest corner", k_required},
+      Field{"inside", &Box::inside, k_any, "", "particles are kept in, not out"},
+  };
+};
+
+template <>
 struct MALLOW_EXPORT ShapeTraits<Box> {
   static constexpr const char* k_key = "box";
 
-  template <class Self, class Visit>
-  static void visit_members(Self& box, const Visit& visit) {
-    using enum ShapeMember::Values;
-    visit(box.min, ShapeMember{"min", "m", "lowest corner", finite, true});
-    visit(box.max, ShapeMember{"max", "m", "highest corner", finite, true});
-    visit(box.inside, ShapeMember{"inside", "", "particles are kept in, not out", any});
-  }
   static std::optional<ShapeProblem> problem(const Box& box);
   static bool keeps_in(const Box& box) { return box.inside; }
   /// A box that keeps particles in is six planes: in a corner it is met at two or three of them.

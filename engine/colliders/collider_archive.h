@@ -1,7 +1,8 @@
 #pragma once
 
 #include "colliders/shapes.h"
-#include "core/archive.h"
+#include "config/field_archive.h"
+#include "config/field_tables.h"
 
 namespace mallow {
 
@@ -15,14 +16,9 @@ void pass_shape(Archive& archive, Variant& shapes) {
   std::visit(
       [&]<class Shape>(Shape& shape) {
         if constexpr (std::is_same_v<std::remove_const_t<Shape>, Union>) {
-          if constexpr (Archive::k_packs)
-            archive(static_cast<std::uint64_t>(shape.parts.size()));
-          else
-            shape.parts.resize(archive.count(16));
-          for (auto& part : shape.parts) pass_shape(archive, part);
+          pass_list(archive, shape.parts, 16, [&](auto& part) { pass_shape(archive, part); });
         } else {
-          ShapeTraits<std::remove_const_t<Shape>>::visit_members(
-              shape, [&](auto& value, const ShapeMember&) { archive(value); });
+          pass_fields(archive, shape);
         }
       },
       shapes);
@@ -33,11 +29,7 @@ void pass_collider(Archive& archive, Collider& collider) {
   pass_shape(archive, collider.shape);
   archive.array(collider.pose.translation.data(), 3);
   archive.array(collider.pose.rotation.data(), 4);
-  archive(collider.velocity);
-  archive(collider.angular_velocity);
-  archive(collider.restitution);
-  archive(collider.friction);
-  archive(collider.measure_load);
+  pass_fields(archive, collider);
 }
 
 }  // namespace mallow

@@ -5,14 +5,17 @@
 namespace mallow {
 
 template <>
+struct FieldTable<Plane> {
+  static constexpr std::tuple k_fields{
+      Field{"normal", &Plane::normal, k_finite, "", "towards the free side, of any length but 0"},
+      Field{"offset", &Plane::offset, k_finite, "m", "normal · x >= offset is free"},
+  };
+};
+
+template <>
 struct MALLOW_EXPORT ShapeTraits<Plane> {
   static constexpr const char* k_key = "plane";
 
-  template <class Self, class Visit>
-  static void visit_members(Self& plane, const Visit& visit) {
-    visit(plane.normal, ShapeMember{"normal", "", "towards the free side, of any length but 0"});
-    visit(plane.offset, ShapeMember{"offset", "m", "normal · x >= offset is free"});
-  }
   static std::optional<ShapeProblem> problem(const Plane& plane);
   static bool keeps_in(const Plane&) { return false; }
   template <class Visit>

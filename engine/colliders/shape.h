@@ -6,21 +6,11 @@
 #include <optional>
 
 #include "colliders/collider_lanes.h"
+#include "config/field.h"
 #include "mallow/collider.h"
 #include "mallow/instruction_level.h"
 
 namespace mallow {
-
-/// A member of a shape, as scene files, checks and archives know it.
-struct ShapeMember {
-  enum class Values { any, finite, positive };  ///< any: a flag
-
-  const char* key;
-  const char* unit;  ///< empty for plain numbers and flags
-  const char* doc;
-  Values values = Values::finite;
-  bool required = false;  ///< in scene files
-};
 
 /// A member that does not go with the others.
 struct ShapeProblem {
@@ -41,13 +31,12 @@ using Crossings = std::array<Crossing, 2>;
 template <class Shape>
 struct ShapeTraits;
 
-/// What a specialisation has to offer.
+/// What a specialisation has to offer, beside a FieldTable of the members, which ranges, scene fields,
+/// archive and messages follow from.
 template <class Shape>
 concept ColliderShape = requires(const Shape& shape, const Vec3& x, const Eigen::Vector3d& by) {
   /// Its name in scene files and archives.
   { ShapeTraits<Shape>::k_key } -> std::convertible_to<const char*>;
-  /// visit_members(shape, visit) calls visit(member, ShapeMember) with each; ranges, scene fields, archive
-  /// and messages follow from that.
   /// What is wrong with members together that are right one by one.
   { ShapeTraits<Shape>::problem(shape) } -> std::same_as<std::optional<ShapeProblem>>;
   /// Whether particles are kept in.

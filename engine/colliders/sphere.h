@@ -5,16 +5,18 @@
 namespace mallow {
 
 template <>
+struct FieldTable<Sphere> {
+  static constexpr std::tuple k_fields{
+      Field{"center", &Sphere::center, k_finite, "m", "middle of the ball"},
+      Field{"radius", &Sphere::radius, k_positive, "m", "of the ball", k_required},
+      Field{"inside", &Sphere::inside, k_any, "", "particles are kept in, not out"},
+  };
+};
+
+template <>
 struct MALLOW_EXPORT ShapeTraits<Sphere> {
   static constexpr const char* k_key = "sphere";
 
-  template <class Self, class Visit>
-  static void visit_members(Self& sphere, const Visit& visit) {
-    using enum ShapeMember::Values;
-    visit(sphere.center, ShapeMember{"center", "m", "middle of the ball"});
-    visit(sphere.radius, ShapeMember{"radius", "m", "of the ball", positive, true});
-    visit(sphere.inside, ShapeMember{"inside", "", "particles are kept in, not out", any});
-  }
   static std::optional<ShapeProblem> problem(const Sphere&) { return std::nullopt; }
   static bool keeps_in(const Sphere& sphere) { return sphere.inside; }
   template <class Visit>

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mallow/errors.h"
@@ -15,7 +16,7 @@ class Checks {
  public:
   /// `value` must be finite and `ok`; `allowed` says what is.
   template <class T>
-  void number(const std::string& field, T value, bool ok, const char* allowed) {
+  void number(const std::string& field, T value, bool ok, std::string_view allowed) {
     if (ok && std::isfinite(static_cast<double>(value))) return;
     std::ostringstream text;
     text << value << " is not allowed: " << allowed;

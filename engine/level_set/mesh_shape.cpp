@@ -6,7 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "core/checks.h"
+#include "config/field_checks.h"
+#include "config/field_tables.h"
 #include "level_set/arena.h"
 #include "level_set/winding_signs.h"
 #include "mallow/level_set.h"
@@ -20,8 +21,8 @@ constexpr float k_half_band = 3.0f;
 
 void check(const Mesh& mesh, int voxels, int threads) {
   Checks checks;
-  checks.number("voxels", voxels, voxels >= 8 && voxels <= 2048, "8 to 2048");
-  checks.number("threads", threads, threads >= 0, "0 (all there are) or more");
+  check_value("voxels", voxels, between(8, 2048), checks);
+  check_value("threads", threads, range_of(&SolverConfig::threads), checks);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     if (mesh.vertices[i].allFinite()) continue;
     checks.vector("mesh.vertices[" + std::to_string(i) + "]", mesh.vertices[i]);

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/checks.h"
+#include "config/field_checks.h"
+#include "config/field_tables.h"
 #include "level_set/arena.h"
 #include "mallow/level_set.h"
 
@@ -24,8 +25,8 @@ constexpr double k_max_voxel = 1 << 30;
 void check(std::span<const Vec3> positions, std::span<const Vec3> velocities,
            std::span<const std::uint8_t> groups, float voxel_size, int threads) {
   Checks checks;
-  checks.number("voxel_size", voxel_size, voxel_size > 0, "more than 0");
-  checks.number("threads", threads, threads >= 0, "0 (all there are) or more");
+  check_value("voxel_size", voxel_size, k_positive, checks);
+  check_value("threads", threads, range_of(&SolverConfig::threads), checks);
   const std::string allowed = "as many as positions (" + std::to_string(positions.size()) + ')';
   const bool indexable = positions.size() <= 0x7fffffff;
   checks.number("positions", positions.size(), indexable, "at most 2^31 - 1, so that ids fit");

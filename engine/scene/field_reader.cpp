@@ -10,14 +10,10 @@
 namespace mallow::scene_file {
 namespace {
 
-bool holds(const Range& range, double value) {
-  return (range.above_lowest ? value > range.lowest : value >= range.lowest) && value <= range.highest;
-}
-
 /// Reads one node into the target of one field; a problem leaves the target as it is.
 class ValueReader {
  public:
-  ValueReader(const Node& node, std::string path, const Field& field, Problems& problems)
+  ValueReader(const Node& node, std::string path, const BoundField& field, Problems& problems)
       : node_(node), path_(std::move(path)), field_(field), problems_(problems) {}
 
   void operator()(bool* flag) const {
@@ -29,8 +25,8 @@ class ValueReader {
 
   void operator()(int* number) const {
     const std::int64_t* given = node_.get_if<std::int64_t>();
-    if (given && holds(field_.range, static_cast<double>(*given)) &&
-        *given <= std::numeric_limits<int>::max() && *given >= std::numeric_limits<int>::min())
+    if (given && field_.range.holds(*given) && *given <= std::numeric_limits<int>::max() &&
+        *given >= std::numeric_limits<int>::min())
       *number = static_cast<int>(*given);
     else
       complain();
@@ -44,7 +40,7 @@ class ValueReader {
       given = *real;
     else
       return complain(), false;
-    if (!std::isfinite(given) || !holds(field_.range, given)) return complain(), false;
+    if (!std::isfinite(given) || !field_.range.holds(given)) return complain(), false;
     *number = given;
     return true;
   }
@@ -94,24 +90,14 @@ class ValueReader {
     if (!text.empty()) *path = text;
   }
 
+  /// Of instruction levels any that there is: a scene may have been written for another machine.
   template <Choice T>
   void operator()(T* choice) const {
     const std::string* given = node_.get_if<std::string>();
-    constexpr auto k_names = choices(T{});
-    const auto name = given ? std::find(k_names.begin(), k_names.end(), *given) : k_names.end();
-    if (name == k_names.end()) return complain();
-    *choice = static_cast<T>(name - k_names.begin());
-  }
-
-  /// Any level there is: a scene may have been written for another machine, and is looked at on this one.
-  void operator()(InstructionLevel* level) const {
-    const std::string* given = node_.get_if<std::string>();
-    for (const InstructionLevel one : k_instruction_levels) {
-      if (!given || *given != name(one)) continue;
-      *level = one;
-      return;
-    }
-    complain();
+    const auto names = choices(T{});
+    const auto name = given ? std::find(names.begin(), names.end(), *given) : names.end();
+    if (name == names.end()) return complain();
+    *choice = static_cast<T>(name - names.begin());
   }
 
   void operator()(AlphaSchedule* alpha) const {
@@ -153,7 +139,7 @@ class ValueReader {
 
   template <class Number>
   void read_number(const Node& node, const std::string& path, const Range& range, Number* number) const {
-    const Field field{field_.name, number, range, field_.unit, field_.doc};
+    const BoundField field{field_.name, number, range, field_.unit, field_.doc};
     ValueReader(node, path, field, problems_)(number);
   }
 
@@ -186,7 +172,7 @@ class ValueReader {
 
   const Node& node_;
   std::string path_;
-  const Field& field_;
+  const BoundField& field_;
   Problems& problems_;
 };
 
@@ -204,10 +190,10 @@ std::string not_allowed(const std::string& given, const std::string& allowed) {
   return given + " is not allowed: " + allowed;
 }
 
-void read_fields(const Node& table, const std::string& path, const FieldTable& fields,
+void read_fields(const Node& table, const std::string& path, const BoundFields& fields,
                  std::span<const std::string> also, Problems& problems) {
   std::vector<std::string> known(also.begin(), also.end());
-  for (const Field& field : fields) known.push_back(field.name);
+  for (const BoundField& field : fields) known.push_back(field.name);
 
   const Table* entries = table.get_if<Table>();
   if (!entries) {
@@ -216,14 +202,14 @@ void read_fields(const Node& table, const std::string& path, const FieldTable& f
   }
   for (const Entry& entry : *entries) {
     const auto field =
-        std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return entry.key == f.name; });
+        std::find_if(fields.begin(), fields.end(), [&](const BoundField& f) { return entry.key == f.name; });
     if (field != fields.end())
       std::visit(ValueReader(entry.node, join_path(path, entry.key), *field, problems), field->target);
     else if (std::find(also.begin(), also.end(), entry.key) == also.end())
       problems.add(entry.place, path,
                    "unknown key '" + entry.key + "'" + (problems.full() ? "" : suggestion(entry.key, known)));
   }
-  for (const Field& field : fields)
+  for (const BoundField& field : fields)
     if (field.required() && !find(table, field.name))
       problems.add(table.place, join_path(path, field.name), "is missing: " + allowed(field));
 }

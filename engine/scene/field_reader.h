@@ -3,15 +3,15 @@
 #include <span>
 #include <string>
 
+#include "scene/bound_field.h"
 #include "scene/document.h"
-#include "scene/field_table.h"
 
 namespace mallow::scene_file {
 
 /// Sets each field that `table` gives. Reports keys that are neither fields nor in `also`, keys that are
 /// required and missing, and values of the wrong type or out of range; those fields keep the value they had.
 /// path: how a user would write the table ("body[2].box"), empty for the root.
-void read_fields(const Node& table, const std::string& path, const FieldTable& fields,
+void read_fields(const Node& table, const std::string& path, const BoundFields& fields,
                  std::span<const std::string> also, Problems& problems);
 
 /// "path.key", or the key alone at the root.

@@ -143,9 +143,8 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
   for (const auto& group : groups.list) {
     const SceneMaterial& material = scene.materials[group.material];
     if (materials.contains(group.material)) continue;
-    collect(problems, 0, "material." + material.name, [&] {
-      materials[group.material] = simulation.add_material(material.material, material.name);
-    });
+    collect(problems, 0, "material." + material.name,
+            [&] { materials[group.material] = simulation.add_material(material.material, material.name); });
   }
   problems.finish();
   std::vector<std::optional<BodyId>> ids(groups.list.size());

@@ -4,28 +4,24 @@
 #include <vector>
 
 #include "colliders/shapes.h"
-#include "mallow/scene.h"
-#include "scene/field_table.h"
+#include "config/field_tables.h"
+#include "config/run_field_tables.h"
+#include "scene/bound_field.h"
 
-/// The tables of every key a scene file may hold, one per config. A table points into the config it was made
-/// for.
+/// Every key a scene file may hold, a list per config; bound_field.h makes those of configs that have a
+/// table. A list points into the config it was made for.
 namespace mallow::scene_file {
 
-FieldTable fields(SolverConfig& config);
-FieldTable fields(SceneMaterial& material);
-FieldTable fields(SceneBody& body);  ///< without its source
-FieldTable fields(Lattice& lattice);
-FieldTable fields(SphereSource& source);
-FieldTable fields(MeshSource& source);
-FieldTable fields(PointsSource& source);
-FieldTable fields(ImplicitSource& source);
-FieldTable fields(SceneCollider& collider);  ///< without its shape
-FieldTable fields(Primitive& primitive);
-FieldTable fields(ScenePin& pin);  ///< without its box
-FieldTable fields(Aabb& box);
-FieldTable fields(SurfaceConfig& config);
-FieldTable fields(RunConfig& config);
-FieldTable fields(RenderConfig& config);
+BoundFields fields(SceneMaterial& material);
+BoundFields fields(SceneBody& body);  ///< without its source
+BoundFields fields(SphereSource& source);
+BoundFields fields(MeshSource& source);
+BoundFields fields(PointsSource& source);
+BoundFields fields(ImplicitSource& source);
+BoundFields fields(SceneCollider& collider);  ///< without its shape
+BoundFields fields(Primitive& primitive);
+BoundFields fields(ScenePin& pin);  ///< without its box
+BoundFields fields(Aabb& box);
 
 /// One of the keys of which a table must hold exactly one: what a body or a collider is.
 template <class Variant>
@@ -36,7 +32,7 @@ struct Kind {
 const std::vector<Kind<BodySource>>& source_kinds();    ///< in the order of BodySource
 const std::vector<Kind<Primitive>>& primitive_kinds();  ///< in the order of Primitive
 
-inline FieldTable fields(BodySource& source) {
+inline BoundFields fields(BodySource& source) {
   return std::visit([](auto& one) { return fields(one); }, source);
 }
 inline const char* key_of(const BodySource& source) {
@@ -46,9 +42,6 @@ inline const char* key_of(const Primitive& primitive) {
   return std::visit([](const auto& one) { return mallow::key_of(one); }, primitive);
 }
 
-/// Particles of one body and of all together, at most: what 32-bit ids and the memory of one machine leave
-/// room for.
-inline constexpr int k_most_particles = 100'000'000;
 /// Bodies, materials, colliders and pins of a scene, at most of each.
 inline constexpr std::size_t k_most_entries = 10'000;
 /// Bytes of a name and of a path: they come back in messages, of which one scene may cause a thousand.

@@ -8,9 +8,9 @@ namespace scene_file {
 namespace {
 
 /// "name = value" lines, with a comment for what is left out.
-std::string lines_of(const FieldTable& fields) {
+std::string lines_of(const BoundFields& fields) {
   std::string text;
-  for (const Field& field : fields) {
+  for (const BoundField& field : fields) {
     const std::string value = value_text(field);
     text += value.empty() ? "# " + std::string(field.name) + ": " + field.left_out
                           : std::string(field.name) + " = " + value;
@@ -20,9 +20,9 @@ std::string lines_of(const FieldTable& fields) {
 }
 
 /// "{ name = value, ... }".
-std::string inline_table(const FieldTable& fields) {
+std::string inline_table(const BoundFields& fields) {
   std::string text;
-  for (const Field& field : fields) {
+  for (const BoundField& field : fields) {
     const std::string value = value_text(field);
     if (!value.empty()) text += std::string(text.empty() ? " " : ", ") + field.name + " = " + value;
   }
@@ -45,7 +45,7 @@ std::string shape_line(Collider& collider) {
 }
 
 /// A line of describe_scene_keys(), in columns.
-std::string key_line(const std::string& key, const Field& field) {
+std::string key_line(const std::string& key, const BoundField& field) {
   const auto padded = [](std::string text, std::size_t width) {
     text.resize(std::max(text.size(), width), ' ');
     return text + "  ";
@@ -58,9 +58,9 @@ std::string key_line(const std::string& key, const Field& field) {
   return padded(key, 34) + padded(initially, 34) + field.doc + unit + "; " + allowed(field) + '\n';
 }
 
-std::string key_lines(const std::string& path, const FieldTable& fields) {
+std::string key_lines(const std::string& path, const BoundFields& fields) {
   std::string text;
-  for (const Field& field : fields) text += key_line(path + '.' + field.name, field);
+  for (const BoundField& field : fields) text += key_line(path + '.' + field.name, field);
   return text;
 }
 

@@ -54,7 +54,7 @@ class SceneReader {
   }
 
  private:
-  void read_section(const char* key, const FieldTable& table) {
+  void read_section(const char* key, const BoundFields& table) {
     static const Node k_nothing_given{.place = {}, .value = Table{}};
     const Node* node = find(root_, key);
     read_fields(node ? *node : k_nothing_given, key, table, {}, problems_);

@@ -157,11 +157,11 @@ class ShapeCheck {
 
 Primitive read_primitive(const Entry& entry, const std::string& path, Problems& problems) {
   Primitive primitive = kind_of(primitive_kinds(), entry.key);
-  const FieldTable table = fields(primitive);
+  const BoundFields table = fields(primitive);
   if (!read_whole(entry.node, path, table, {}, problems)) return primitive;
   const auto problem = std::visit(
       []<class Shape>(const Shape& shape) { return ShapeTraits<Shape>::problem(shape); }, primitive);
-  for (const Field& field : table) {
+  for (const BoundField& field : table) {
     if (!problem || std::string_view(problem->key) != field.name) continue;
     const Node* given = find(entry.node, field.name);
     problems.add(given ? given->place : entry.place, join_path(path, field.name),
@@ -232,7 +232,7 @@ void read_shape(const Node& table, const std::string& collider_path, Collider& c
                read_primitive(*entry, path, problems));
 }
 
-bool read_whole(const Node& table, const std::string& path, const FieldTable& fields,
+bool read_whole(const Node& table, const std::string& path, const BoundFields& fields,
                 const std::vector<std::string>& also, Problems& problems) {
   const std::size_t problems_before = problems.count();
   read_fields(table, path, fields, also, problems);

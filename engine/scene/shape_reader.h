@@ -22,7 +22,7 @@ void read_shape(const Node& table, const std::string& path, Collider& collider, 
 
 /// Reads fields and says whether nothing was wrong with them, so that checks of one against another make
 /// sense.
-bool read_whole(const Node& table, const std::string& path, const FieldTable& fields,
+bool read_whole(const Node& table, const std::string& path, const BoundFields& fields,
                 const std::vector<std::string>& also, Problems& problems);
 /// A box of which each side may be empty, but not negative.
 void check_box(const Aabb& box, const Node& table, const std::string& path, Problems& problems);

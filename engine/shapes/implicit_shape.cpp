@@ -5,7 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "core/checks.h"
+#include "config/field_checks.h"
+#include "config/field_tables.h"
 #include "mallow/body.h"
 #include "shapes/primitives.h"
 
@@ -37,7 +38,7 @@ Eigen::Matrix3f turn(const Vec3& degrees) {
 ImplicitShape sphere_shape(const Vec3& center, float radius) {
   Checks checks;
   checks.vector("center", center);
-  checks.number("radius", radius, radius > 0.0f, "a number > 0");
+  check_value("radius", radius, k_positive, checks);
   checks.finish();
   return {[=](const Vec3& x) { return sphere_distance(x, center, radius); },
           {center - Vec3::Constant(radius), center + Vec3::Constant(radius)},
@@ -61,9 +62,7 @@ ImplicitShape place(const ImplicitShape& shape, const Placement& placement) {
   const Vec3 half = 0.5f * (shape.bounds.max - shape.bounds.min);
   const Vec3 middle = shape.bounds.min + half;
   Checks checks;
-  checks.vector("rotate", placement.rotate);
-  if (placement.size) checks.number("size", *placement.size, *placement.size > 0.0f, "a number > 0");
-  if (placement.center) checks.vector("center", *placement.center);
+  check_fields("", placement, checks);
   checks.finish();
 
   // The size is measured before the turn: how large a body is must not depend on how it lies.

@@ -6,18 +6,16 @@
 #include <sstream>
 #include <string>
 
-#include "core/checks.h"
+#include "config/field_checks.h"
+#include "config/field_tables.h"
 #include "core/precision.h"
 #include "mallow/body.h"
 
 namespace mallow {
 namespace {
 
-constexpr double k_most_points = 100e6;
+const std::string k_too_many = std::to_string(k_most_particles) + " points at most";
 constexpr double k_most_cells = 1e9;
-
-/// Neighbours then come as near as a tenth of the spacing, which is as near as a simulation takes them.
-constexpr float k_most_jitter = 0.45f;
 
 /// Distance functions may be this much steeper than true distances and are still sampled correctly.
 constexpr float k_steepest = 1.5f;
@@ -284,13 +282,7 @@ void check(const ImplicitShape& shape, const Sampling& sampling) {
     checks.problem("sampling", sampling.spacing ? "both spacing and count are given: one of them"
                                                 : "neither spacing nor count is given: one of them");
   }
-  if (sampling.spacing) checks.number("spacing", *sampling.spacing, *sampling.spacing > 0.0f, "a number > 0");
-  if (sampling.count) {
-    const int count = *sampling.count;
-    checks.number("count", count, count >= 1 && count <= k_most_points, "1 to 100 million points");
-  }
-  checks.number("jitter", sampling.jitter, sampling.jitter >= 0.0f && sampling.jitter <= k_most_jitter,
-                "0 to 0.45");
+  check_fields("", sampling, checks);
   checks.finish();
 }
 
@@ -298,17 +290,10 @@ void check(const ImplicitShape& shape, const Sampling& sampling) {
 
 Body sample(const Lattice& lattice) {
   Checks checks;
+  check_fields("", lattice, checks);
   double points = 1.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int count = lattice.count[axis];
-    checks.number("count[" + std::to_string(axis) + "]", count, count >= 1, "a whole number >= 1");
-    points *= count;
-  }
-  if (points > k_most_points) checks.number("count", points, false, "100 million points at most");
-  checks.number("spacing", lattice.spacing, lattice.spacing > 0.0f, "a number > 0");
-  checks.vector("corner", lattice.corner);
-  checks.number("jitter", lattice.jitter, lattice.jitter >= 0.0f && lattice.jitter <= k_most_jitter,
-                "0 to 0.45");
+  for (const int count : lattice.count) points *= count;
+  if (points > k_most_particles) checks.number("count", points, false, k_too_many);
   checks.finish();
 
   const auto [nx, ny, nz] = lattice.count;
@@ -345,10 +330,8 @@ Body sample(const ImplicitShape& shape, const Sampling& sampling) {
     if (sampling.spacing) text << " at " << *sampling.spacing << ": a smaller spacing";
     throw ConfigError(sampling.spacing ? "spacing" : "count", text.str());
   }
-  if (double(chosen.count) > k_most_points) {
-    throw ConfigError("spacing",
-                      std::to_string(chosen.count) + " points lie inside: 100 million points at most");
-  }
+  if (chosen.count > k_most_particles)
+    throw ConfigError("spacing", std::to_string(chosen.count) + " points lie inside: " + k_too_many);
 
   const Grid grid = grid_within(shape.bounds, chosen.spacing, chosen.alignment);
   const float jitter = sampling.jitter * chosen.spacing;

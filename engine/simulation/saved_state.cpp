@@ -5,10 +5,11 @@
 
 #include "colliders/collider_archive.h"
 #include "colliders/collider_checks.h"
-#include "core/archive.h"
+#include "config/field_archive.h"
+#include "config/field_tables.h"
+#include "config/validation.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
-#include "simulation/validation.h"
 
 namespace mallow {
 namespace {
@@ -17,36 +18,8 @@ namespace {
 constexpr std::uint32_t k_version = 4;
 static_assert(sizeof(std::size_t) == sizeof(std::uint64_t), "sizes are saved as they are");
 
-// One list of members a type, for both ways: see PackingArchive.
-
-/// The values of a list; each takes at least `bytes_each`.
-template <class Archive, class List, class Pass>
-void pass_list(Archive& archive, List& values, std::size_t bytes_each, const Pass& pass) {
-  if constexpr (Archive::k_packs)
-    archive(static_cast<std::uint64_t>(values.size()));
-  else
-    values.resize(archive.count(bytes_each));
-  for (auto& value : values) pass(value);
-}
-
-template <class Archive, class Config>
-void pass_solver(Archive& archive, Config& config) {
-  auto printed = config.formulation == Formulation::printed;
-  archive(config.time_step);
-  archive(config.time_step_factor);
-  archive(config.support_radius);
-  archive(config.gravity);
-  archive(config.update_period);
-  archive(config.update_interval);
-  archive(printed);
-  archive(config.acoustic_limit);
-  archive(config.contact_offset);
-  archive(config.rotation_iterations);
-  archive(config.neighbor_slack);
-  archive(config.memory_limit);
-  if constexpr (!Archive::k_packs)
-    config.formulation = printed ? Formulation::printed : Formulation::conservative;
-}
+// One list of members a type, for both ways: see PackingArchive, and config/field_tables.h for those of
+// configs.
 
 template <class Archive, class State>
 void pass_clock(Archive& archive, State& state) {
@@ -65,36 +38,6 @@ void pass_clock(Archive& archive, State& state) {
       archive.fail("the time step has no such source");
     state.time_step_source = static_cast<TimeStepSource>(source);
   }
-}
-
-template <class Archive>
-void pass_alpha(Archive& archive, const AlphaSchedule& alpha) {
-  pass_list(archive, alpha.keys(), 2 * sizeof(float), [&](const AlphaKey& key) {
-    archive(key.time);
-    archive(key.alpha);
-  });
-}
-void pass_alpha(UnpackingArchive& archive, AlphaSchedule& alpha) {
-  std::vector<AlphaKey> keys;
-  pass_list(archive, keys, 2 * sizeof(float), [&](AlphaKey& key) {
-    archive(key.time);
-    archive(key.alpha);
-  });
-  alpha = AlphaSchedule(std::move(keys));
-}
-
-template <class Archive, class Material>
-void pass_material(Archive& archive, Material& material) {
-  pass_alpha(archive, material.alpha);
-  archive(material.update_threshold);
-  archive(material.pressure_coefficient);
-  archive(material.viscosity);
-  archive(material.elastic_time_step);
-  archive(material.particle_mass);
-  archive(material.rest_density);
-  archive(material.cohesion);
-  archive(material.region_radius);
-  archive(material.region_stride);
 }
 
 /// How much of the chunks with a row a particle or region is a body's.
@@ -177,8 +120,8 @@ void require_valid(const UnpackingArchive& archive, const Simulation::State& sta
   for (const float value : {body.spacing, body.mass, body.rest_density})
     require(std::isfinite(value) && value > 0,
             "spacing, particle mass and rest density must be finite and above 0");
-  require(std::isfinite(body.external_sum) && body.external_sum >= 0 &&
-              std::isfinite(body.external_weight) && body.external_weight >= 0,
+  require(std::isfinite(body.external_sum) && body.external_sum >= 0 && std::isfinite(body.external_weight) &&
+              body.external_weight >= 0,
           "mean acceleration must be finite and 0 or above");
   require(body.shape.spacing >= 0 && std::isfinite(body.shape.spacing),
           "spacing of the regions must be finite and 0 or above");
@@ -195,10 +138,11 @@ void unpack_materials(const SavedState& saved, Simulation::State& state) {
     constexpr std::size_t k_least_bytes = 16;
     pass_list(archive, state.materials, k_least_bytes, [&](MaterialState& material) {
       archive(material.name);
-      pass_material(archive, material.settings);
+      pass_fields(archive, material.settings);
       archive(material.alpha);
-      if (!(material.alpha >= 0 && material.alpha <= 1))
-        archive.fail("material '" + material.name + "': alpha must be in [0, 1]");
+      constexpr Range k_alpha = range_of(&Material::alpha);
+      if (!k_alpha.holds(material.alpha))
+        archive.fail("material '" + material.name + "': alpha must be" + range_text(k_alpha));
       check(material.settings, checks);
       check_stiffness(state.config, material.settings, checks);
     });
@@ -354,12 +298,12 @@ SavedState Simulation::save() const {
   SavedState saved;
   const auto add = [&](Chunk chunk) { saved.chunks.push_back(std::move(chunk)); };
   add(packed("version", [&](PackingArchive& archive) { archive(k_version); }));
-  add(packed("solver", [&](PackingArchive& archive) { pass_solver(archive, s.config); }));
+  add(packed("solver", [&](PackingArchive& archive) { pass_fields(archive, s.config); }));
   add(packed("clock", [&](PackingArchive& archive) { pass_clock(archive, s); }));
   add(packed("materials", [&](PackingArchive& archive) {
     pass_list(archive, s.materials, 0, [&](const MaterialState& material) {
       archive(material.name);
-      pass_material(archive, material.settings);
+      pass_fields(archive, material.settings);
       archive(material.alpha);
     });
   }));
@@ -410,7 +354,7 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
     throw ConfigError("saved state", "is of version " + std::to_string(version) +
                                          "; this build of mallow reads " + std::to_string(k_version));
   SolverConfig config;
-  unpack(saved, "solver", [&](UnpackingArchive& archive) { pass_solver(archive, config); });
+  unpack(saved, "solver", [&](UnpackingArchive& archive) { pass_fields(archive, config); });
   config.threads = threads;
   config.executor = std::move(executor);
   Simulation simulation(config);

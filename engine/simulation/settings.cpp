@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "config/validation.h"
 #include "simulation/state.h"
-#include "simulation/validation.h"
 
 namespace mallow {
 namespace {

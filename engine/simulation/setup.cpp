@@ -3,11 +3,11 @@
 #include <sstream>
 
 #include "colliders/collider_checks.h"
+#include "config/validation.h"
 #include "core/parallel.h"
 #include "simulation/overlaps.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
-#include "simulation/validation.h"
 #include "sph/kernel_functions.h"
 
 namespace mallow {

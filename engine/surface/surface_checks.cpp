@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/checks.h"
+#include "config/field_checks.h"
+#include "config/field_tables.h"
 #include "surface/particle_order.h"
 
 namespace mallow {
@@ -29,7 +30,7 @@ void check_bodies(const SurfaceParticles& particles, Checks& checks) {
   std::vector<std::pair<Simulation::Rows, std::size_t>> taken;
   for (std::size_t b = 0; b < particles.bodies.size(); ++b) {
     const SurfaceBody& body = particles.bodies[b];
-    checks.number(element("bodies", b) + ".spacing", body.spacing, body.spacing > 0, "a number above 0");
+    check_value(element("bodies", b) + ".spacing", body.spacing, k_positive, checks);
     const Simulation::Rows rows = rows_of(body, n);
     if (rows.begin > rows.end || rows.end > n)
       checks.problem(element("bodies", b) + ".rows", std::to_string(rows.begin) + " to " +
@@ -49,27 +50,15 @@ void check_bodies(const SurfaceParticles& particles, Checks& checks) {
 
 void check(const SurfaceConfig& config, int threads) {
   Checks checks;
-  if (config.voxel_size)
-    checks.number("surface.voxel_size", *config.voxel_size, *config.voxel_size > 0, "a number above 0");
-  else if (config.voxels)
-    checks.number("surface.voxels", *config.voxels, *config.voxels >= 8 && *config.voxels <= 1024,
-                  "8 to 1024");
-  else
-    checks.number("surface.voxels_per_spacing", config.voxels_per_spacing,
-                  config.voxels_per_spacing >= 0.5f && config.voxels_per_spacing <= 16, "0.5 to 16");
-  checks.number("surface.kernel_radius", config.kernel_radius,
-                config.kernel_radius >= 1 && config.kernel_radius <= 4, "1 to 4 spacings");
-  if (config.kind == SurfaceKind::anisotropic)
-    checks.number("surface.kernel_radius", config.kernel_radius, config.kernel_radius >= 2,
-                  "2 to 4 spacings for anisotropic kernels: fewer neighbours do not tell a shape");
-  checks.number("surface.particle_radius", config.particle_radius,
-                config.particle_radius >= 0.1f && config.particle_radius <= 1, "0.1 to 1 spacings");
-  checks.number("surface.adaptivity", config.adaptivity, config.adaptivity >= 0 && config.adaptivity <= 1,
-                "0 to 1 voxels");
-  checks.number("surface.smoothing", config.smoothing, config.smoothing >= 0 && config.smoothing <= 100,
-                "0 to 100 rounds");
-  checks.number("surface.memory_limit", config.memory_limit, config.memory_limit > 0, "a number above 0");
-  checks.number("threads", threads, threads >= 0, "0 (all there are) or more");
+  check_fields("surface.", config, checks);
+  if (config.kind == SurfaceKind::anisotropic) {
+    Range radius = range_of(&SurfaceConfig::kernel_radius);
+    radius.lowest = 2;
+    checks.number(
+        "surface.kernel_radius", config.kernel_radius, radius.holds(config.kernel_radius),
+        "a number" + range_text(radius) + " for anisotropic kernels: fewer neighbours do not tell a shape");
+  }
+  check_value("threads", threads, range_of(&SolverConfig::threads), checks);
   checks.finish();
 }
 

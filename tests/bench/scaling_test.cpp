@@ -1,8 +1,8 @@
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "bench_fixture.h"
-#include "mallow/files.h"
 
 namespace mallow::test {
 namespace scaling_test {
@@ -43,7 +43,7 @@ TEST_F(bench_scaling, too_many_particles_are_refused_before_anything_runs) {
 
 TEST_F(bench_scaling, a_file_of_someone_else_is_not_overwritten) {
   const std::filesystem::path notes = folder_ / "notes.json";
-  write_whole(notes, "{\"mine\": 1}\n");
+  std::ofstream(notes) << "{\"mine\": 1}\n";
   expect_refused("scaling", {"--json", notes.string()}, {"--json", "notes.json", "no results of mallow-bench"});
   EXPECT_EQ(read_text(notes), "{\"mine\": 1}\n");
 }

@@ -222,7 +222,7 @@ TEST(mesh_shape, refuses_what_encloses_nothing) {
 
 TEST(mesh_shape, refuses_vertices_that_are_not_finite_and_voxels_out_of_range) {
   Mesh mesh = sphere_mesh({0, 0, 0}, 1, 10);
-  expect_words(config_error([&] { mesh_shape(mesh, 4); }), {"voxels: 4", "8 to 2048"});
+  expect_words(config_error([&] { mesh_shape(mesh, 4); }), {"voxels: 4", "in [8, 2048]"});
   expect_words(config_error([&] { mesh_shape(mesh, 64, -1); }), {"threads: -1"});
   mesh.vertices[7].y() = std::numeric_limits<float>::quiet_NaN();
   expect_words(config_error([&] { mesh_shape(mesh); }), {"mesh.vertices[7]", "nan", "finite"});

@@ -108,8 +108,8 @@ const Case k_cases[] = {
     {{.solver = "support_radius = 2.0\nneighbor_slack = 1.5"},
      "scene.toml:3:18: solver.neighbor_slack: 1.5 is not allowed: a number in [0, 1]"},
     {{.solver = "support_radius = 2.0\ninstruction_level = \"avx\""},
-     "scene.toml:3:21: solver.instruction_level: \"avx\" (a string) is not allowed: one of \"" +
-         std::string(name(InstructionLevel::baseline)) + "\", \"x86-64-v3\", \"x86-64-v4\""},
+     "scene.toml:3:21: solver.instruction_level: \"avx\" (a string) is not allowed: \"" +
+         std::string(name(InstructionLevel::baseline)) + "\", \"x86-64-v3\" or \"x86-64-v4\""},
     {{.material = "name = \"jelly\"\nregion_stride = 0"},
      "scene.toml:5:17: material[0].region_stride: 0 is not allowed: a whole number in [1, 2147483647]"},
     {{.material = "name = \"jelly\"\ncolor = [0, 0, 1.5]"},

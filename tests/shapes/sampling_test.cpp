@@ -26,7 +26,7 @@ TEST(lattice, bad_values_are_named) {
   EXPECT_EQ(problem_of([] {
               sample(Lattice{{2, 0, 2}, 1.0f, Vec3::Zero()});
             }),
-            "count[1]: 0 is not allowed: a whole number >= 1");
+            "count[1]: 0 is not allowed: a whole number in [1, 100000000]");
   EXPECT_EQ(problem_of([] {
               sample(Lattice{{2, 2, 2}, -1.0f, Vec3::Zero()});
             }),
@@ -44,9 +44,13 @@ TEST(lattice, bad_values_are_named) {
 
 TEST(lattice, more_than_100_million_points_are_refused_before_allocation) {
   EXPECT_EQ(problem_of([] {
-              sample(Lattice{{2000000000, 2000000000, 2000000000}, 1.0f, Vec3::Zero()});
+              sample(Lattice{{100'000'000, 100'000'000, 2}, 1.0f, Vec3::Zero()});
             }),
-            "count: 8e+27 is not allowed: 100 million points at most");
+            "count: 2e+16 is not allowed: 100000000 points at most");
+  EXPECT_EQ(problem_of([] {
+              sample(Lattice{{2000000000, 1, 1}, 1.0f, Vec3::Zero()});
+            }),
+            "count[0]: 2000000000 is not allowed: a whole number in [1, 100000000]");
 }
 
 TEST(lattice, all_problems_are_said_at_once) {
@@ -194,7 +198,7 @@ TEST(sampling, bad_values_are_named) {
   };
   EXPECT_EQ(problem({.spacing = 0.0f}), "spacing: 0 is not allowed: a number > 0");
   EXPECT_EQ(problem({.spacing = k_nan}), "spacing: nan is not allowed: a number > 0");
-  EXPECT_EQ(problem({.count = 0}), "count: 0 is not allowed: 1 to 100 million points");
+  EXPECT_EQ(problem({.count = 0}), "count: 0 is not allowed: a whole number in [1, 100000000]");
   EXPECT_EQ(problem({.count = 100000001}).substr(0, 17), "count: 100000001 ");
   EXPECT_EQ(problem({.spacing = 0.1f, .jitter = 0.6f}).substr(0, 11), "jitter: 0.6");
   EXPECT_EQ(problem({}).substr(0, 9), "sampling:");

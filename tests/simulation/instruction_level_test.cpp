@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "levels.h"
+#include "config/validation.h"
 #include "mallow/mallow.h"
-#include "simulation/validation.h"
 
 namespace mallow {
 namespace instruction_level_test {

@@ -539,9 +539,9 @@ TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
   bad.time_step = -1;
   bad.support_radius = std::nanf("");
   bad.rotation_iterations = 9;
-  contains(message_of([&] { Simulation s(bad); }), {"solver.rotation_iterations: 9", "0 to 8"});
+  contains(message_of([&] { Simulation s(bad); }), {"solver.rotation_iterations: 9", "[0, 8]"});
   contains(message_of([&] { Simulation s(bad); }),
-           {"solver.time_step: -1", "above 0", "solver.support_radius: nan"});
+           {"solver.time_step: -1", "a number > 0", "solver.support_radius: nan"});
   Simulation s(config());
   contains(message_of([&] { s.prepare(); }), {"no particles"});
   contains(
@@ -550,7 +550,7 @@ TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
   contains(message_of([&] { s.add_material(Material{.alpha = 1.5f, .cohesion = 2}); }),
            {"material.alpha: 1.5", "material.cohesion: 2", "[0, 1]"});
   contains(message_of([&] { s.add_material(Material{.region_stride = 0}); }),
-           {"material.region_stride: 0", "1 or above"});
+           {"material.region_stride: 0", "a whole number in [1, 2147483647]"});
   contains(message_of([&] { s.add_material(Material{.alpha = {{1, 0}, {1, 1}}}); }), {"material.alpha time: 1"});
   contains(message_of([&] { s.add_body(Body{}, Material{}); }), {"body.positions", "no particles"});
   contains(message_of([&] {

@@ -156,7 +156,7 @@ TEST(anisotropic_surface, refuses_kernels_too_small_to_tell_a_shape) {
   SurfaceConfig config = k_anisotropic;
   config.kernel_radius = 1.5f;
   expect_words(config_error([&] { surface(lattice(3, 3, 3), 1, config); }),
-               {"surface.kernel_radius", "1.5", "2 to 4 spacings for anisotropic kernels"});
+               {"surface.kernel_radius", "1.5", "a number in [2, 4] for anisotropic kernels"});
 }
 
 }  // namespace ellipsoids_test

@@ -248,7 +248,7 @@ TEST(surface, refuses_bad_values_and_says_which) {
   expect_words(config_error([&] { surface({}, 1, {.voxel_size = 0.0f}); }), {"surface.voxel_size: 0"});
   for (const float share : {0.4f, 16.5f, std::numeric_limits<float>::quiet_NaN()})
     expect_words(config_error([&] { surface({}, 1, {.voxels_per_spacing = share}); }),
-                 {"surface.voxels_per_spacing: ", "is not allowed: 0.5 to 16"});
+                 {"surface.voxels_per_spacing: ", "is not allowed: a number in [0.5, 16]"});
 }
 
 }  // namespace surface_test

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/checks.h"
+#include "config/field_checks.h"
+#include "config/field_tables.h"
+#include "config/run_field_tables.h"
 #include "core/parallel.h"
 #include "render/bodies.h"
 #include "render/sampling.h"
@@ -30,8 +32,7 @@ void check(const Camera& camera) {
   checks.vector("camera.eye", camera.eye);
   checks.vector("camera.target", camera.target);
   if (camera.eye == camera.target) checks.problem("camera.target", "must not be where camera.eye is");
-  const float angle = camera.field_of_view;
-  checks.number("camera.field_of_view", angle, angle >= 1 && angle <= 120, "1 to 120 degrees");
+  check_value("camera.field_of_view", camera.field_of_view, range_of(&RenderConfig::field_of_view), checks);
   checks.finish();
 }
 
@@ -199,10 +200,8 @@ Image Renderer::State::draw(std::span<const Collider> colliders, const Camera& c
 
 Renderer::Renderer(const RenderConfig& config, int threads) {
   Checks checks;
-  checks.number("render.width", config.width, config.width >= 16 && config.width <= 8192, "16 to 8192");
-  checks.number("render.height", config.height, config.height >= 16 && config.height <= 8192, "16 to 8192");
-  checks.number("render.samples", config.samples, config.samples >= 1 && config.samples <= 256, "1 to 256");
-  checks.number("threads", threads, threads >= 0, "0 (all processors) or more");
+  check_fields("render.", config, checks);
+  check_value("threads", threads, range_of(&SolverConfig::threads), checks);
   checks.finish();
   state_ = std::make_unique<State>(config, threads);
 }
@@ -221,7 +220,7 @@ Image Renderer::render_points(std::span<const Vec3> positions, float radius,
                               std::span<const std::uint8_t> groups, std::span<const Appearance> palette,
                               std::span<const Collider> colliders, const Camera& camera) {
   Checks checks;
-  checks.number("radius", radius, radius > 0, "more than 0");
+  check_value("radius", radius, k_positive, checks);
   checks.finish();
   state_->bodies.set_points(positions, radius, groups, palette);
   return state_->draw(colliders, camera);

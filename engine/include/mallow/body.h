@@ -33,7 +33,7 @@ inline constexpr float k_default_jitter = 0.2f;
 /// A box of count[0] × count[1] × count[2] cells of side `spacing` from `corner` on; a point in each cell's
 /// centre.
 struct Lattice {
-  std::array<int, 3> count{1, 1, 1};  ///< each >= 1
+  std::array<int, 3> count{1, 1, 1};  ///< each in [1, 100000000]
   float spacing = 1.0f;               ///< [m], > 0
   Vec3 corner{0, 0, 0};               ///< lowest corner of the box, half a cell from the first point
   float jitter = k_default_jitter;    ///< as in Sampling
@@ -42,7 +42,7 @@ struct Lattice {
 /// How a volume is filled: give one of `spacing` and `count`.
 struct Sampling {
   std::optional<float> spacing = {};  ///< h [m], > 0
-  std::optional<int> count = {};  ///< wanted number of points, >= 1; met within 1% where the shape allows it
+  std::optional<int> count = {};  ///< points wanted, in [1, 100000000]; met within 1% where the shape allows it
   /// Random displacement of every lattice point, at most jitter · h per axis and half of that as a rule, in
   /// [0, 0.45], so that points stay a tenth of h apart. It is free of divergence, so that bodies start as
   /// dense as a lattice, and at rest. The same for every run and machine.

@@ -42,8 +42,8 @@ struct SolverConfig {
   /// Distance from a collider at which a particle touches it [m], >= 0; left out: half the spacing of its
   /// group.
   std::optional<float> contact_offset = {};
-  /// Newton iterations for a region's rotation in a step, at most, 0 to 8; each starts where the last step
-  /// ended. With 8, what has not converged is solved exactly, so that every rotation is right to single
+  /// Newton iterations for a region's rotation in a step, at most, in [0, 8]; each starts where the last
+  /// step ended. With 8, what has not converged is solved exactly, so that every rotation is right to single
   /// precision. With fewer it goes on in the next step: where a region turned by θ rad since the last step, 1
   /// leaves about θ³/20 rad (5e-5 of a turn of 0.1; up to θ³ in a region pressed flat), and 2 leave nothing
   /// below 0.3 rad that single precision could show. Linear momentum is kept whatever it is; of its spin an
@@ -56,7 +56,7 @@ struct SolverConfig {
   /// keeps its lists, at the price of longer ones. 0: they are found anew in every step. Results differ by
   /// the order of sums only.
   float neighbor_slack = 0.0f;
-  /// Threads of every phase, >= 1; 0 takes all that the executor has. Results do not depend on it.
+  /// Threads of every phase, in [0, 1024]; 0 takes all that the executor has. Results do not depend on it.
   int threads = 0;
   /// Whose threads run the loops: team_executor() where it is null, openmp_executor(), or an application's
   /// own. Results do not depend on it.

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/checks.h"
-#include "simulation/validation.h"
+#include "config/field_checks.h"
+#include "config/field_tables.h"
+#include "config/validation.h"
 
 namespace mallow {
 namespace {
 
 void check_factor(float factor) {
   Checks checks;
-  checks.number("factor", factor, factor > 0, "a finite number above 0");
+  check_value("factor", factor, k_positive, checks);
   checks.finish();
 }
 
@@ -30,9 +31,10 @@ const Preset& preset(Quality quality) {
   return quality == Quality::realtime ? k_realtime : quality == Quality::balanced ? k_balanced : k_accurate;
 }
 
-/// Voxels that a surface can have along its longest side, and along a spacing.
-constexpr int k_fewest_voxels = 8, k_most_voxels = 1024;
-constexpr float k_fewest_per_spacing = 0.5f, k_most_per_spacing = 16;
+/// The nearest number in a range of both bounds.
+float within(const Range& range, float value) {
+  return std::clamp(value, static_cast<float>(range.lowest), static_cast<float>(range.highest));
+}
 
 }  // namespace
 
@@ -80,10 +82,10 @@ SurfaceConfig with_quality(const SurfaceConfig& config, Quality quality) {
   const Preset& p = preset(quality);
   SurfaceConfig result = config;
   result.voxels_per_spacing =
-      std::clamp(p.voxels * config.voxels_per_spacing, k_fewest_per_spacing, k_most_per_spacing);
+      within(range_of(&SurfaceConfig::voxels_per_spacing), p.voxels * config.voxels_per_spacing);
   if (config.voxels)
-    result.voxels = std::clamp(static_cast<int>(std::lround(p.voxels * static_cast<float>(*config.voxels))),
-                               k_fewest_voxels, k_most_voxels);
+    result.voxels = static_cast<int>(
+        std::lround(within(range_of(&SurfaceConfig::voxels), p.voxels * static_cast<float>(*config.voxels))));
   if (config.voxel_size) result.voxel_size = *config.voxel_size / p.voxels;
   return result;
 }

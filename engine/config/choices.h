@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+
+#include "mallow/appearance.h"
+#include "mallow/instruction_level.h"
+#include "mallow/solver_config.h"
+#include "mallow/surface_config.h"
+
+namespace mallow {
+
+/// Names of the values of a choice, by their numbers.
+constexpr std::array<const char*, 2> choices(Formulation) {
+  return {"conservative", "printed"};
+}
+constexpr std::array<const char*, 3> choices(SurfaceKind) {
+  return {"blended", "anisotropic", "spheres"};
+}
+constexpr std::array<const char*, 2> choices(Finish) {
+  return {"jelly", "clay"};
+}
+inline std::array<const char*, 3> choices(InstructionLevel) {
+  return {name(InstructionLevel::baseline), name(InstructionLevel::v3), name(InstructionLevel::v4)};
+}
+template <class T>
+concept Choice = requires {
+  choices(T{});
+};
+
+}  // namespace mallow

@@ -1,0 +1,159 @@
+#pragma once
+
+#include "config/field.h"
+#include "mallow/body.h"
+#include "mallow/collider.h"
+#include "mallow/material.h"
+#include "mallow/solver_config.h"
+#include "mallow/surface_config.h"
+
+/// The settings of every config of the engine; those of runs are in run_field_tables.h. The order is that of
+/// printed scenes and of saved states: a change to what states hold of SolverConfig, Material, Collider or a
+/// shape counts up their version (saved_state.cpp).
+namespace mallow {
+
+/// Particles of one body and of all together, at most: what 32-bit ids and the memory of one machine leave
+/// room for.
+inline constexpr int k_most_particles = 100'000'000;
+
+template <>
+struct FieldTable<SolverConfig> {
+  using Config = SolverConfig;
+  static constexpr std::tuple k_fields{
+      Field{"time_step", &Config::time_step, k_positive, "s", "upper bound of a step, Δt0",
+            "from spacing and gravity"},
+      Field{"time_step_factor", &Config::time_step_factor, between(0.01, 4), "",
+            "steps are this share of time_step, and the material stays what it is"},
+      Field{"support_radius", &Config::support_radius, k_positive, "m", "radius of the SPH kernels, σ",
+            k_required},
+      Field{"gravity", &Config::gravity, k_finite, "m/s²", "acceleration of every particle"},
+      Field{"update_period", &Config::update_period, k_positive, "s",
+            "time between the checks that update reference shapes, m_u; give this or update_interval",
+            "60 time_step"},
+      Field{"update_interval", &Config::update_interval, at_least(1), "steps",
+            "the same in steps; give this or update_period", "from update_period"},
+      Field{"formulation", &Config::formulation, k_any, "",
+            "SPH sums that keep momentum, or the paper's to the letter"},
+      Field{"acoustic_limit", &Config::acoustic_limit, k_any, "",
+            "also bound the step by the speed of sound and by viscous diffusion"},
+      Field{"contact_offset", &Config::contact_offset, k_not_negative, "m",
+            "distance from a collider at which a particle touches it", "half the spacing"},
+      Field{
+          "rotation_iterations", &Config::rotation_iterations, between(0, 8), "",
+          "most iterations for a region's rotation in a step; it stops when converged; 0 is exact and slow"},
+      Field{"neighbor_slack", &Config::neighbor_slack, between(0, 1), "σ",
+            "extra reach of neighbour lists, which are kept until a particle has moved half of it"},
+      Field{"instruction_level", &Config::instruction_level, k_any, "",
+            "instructions that kernels use; the motion is the same", "the best this machine has",
+            Written::in_scenes},
+      Field{"memory_limit", &Config::memory_limit, k_positive, "GiB",
+            "radii whose neighbour lists would need more are refused"},
+      Field{"threads", &Config::threads, between(0, 1024), "",
+            "threads of every phase; 0: one for each processor; the motion is the same", "",
+            Written::nowhere},
+  };
+};
+
+template <>
+struct FieldTable<Material> {
+  static constexpr std::tuple k_fields{
+      Field{"alpha", &Material::alpha, between(0, 1), "",
+            "elastic solid (0) to fluid (1), or keyframes of it over time"},
+      Field{"update_threshold", &Material::update_threshold, k_not_negative, "m/s²",
+            "mean external acceleration that updates the reference shape, at alpha 0, γ_u",
+            "40 times gravity"},
+      Field{"pressure_coefficient", &Material::pressure_coefficient, k_not_negative, "m²/s²",
+            "pressure by excess density, k", "as a step can carry"},
+      Field{"viscosity", &Material::viscosity, k_not_negative, "Pa s", "viscosity coefficient, μ",
+            "as looks the same at any size"},
+      Field{"elastic_time_step", &Material::elastic_time_step, k_positive, "s", "Δt_SM, shorter is stiffer",
+            "solver.time_step"},
+      Field{"particle_mass", &Material::particle_mass, k_positive, "kg", "mass of a particle, m",
+            "from rest_density, or 1"},
+      Field{"rest_density", &Material::rest_density, k_positive, "kg/m³", "density at rest, ρ0",
+            "from particle_mass"},
+      Field{"cohesion", &Material::cohesion, between(0, 1), "", "share of a negative pressure that acts"},
+      Field{"region_radius", &Material::region_radius, k_positive, "m",
+            "radius of the shape matching regions", "solver.support_radius"},
+      Field{"region_stride", &Material::region_stride, at_least(1), "particles",
+            "one region for this many particles; more is faster and coarser"},
+  };
+};
+
+/// How far points may be moved off their lattice: then they stay a tenth of the spacing apart, which is as
+/// near as a simulation takes them.
+inline constexpr Range k_jitter = between(0, 0.45);
+
+template <>
+struct FieldTable<Sampling> {
+  static constexpr std::tuple k_fields{
+      Field{"spacing", &Sampling::spacing, k_positive, "m",
+            "distance of neighbouring particles, h; give this or count", "from count"},
+      Field{"count", &Sampling::count, between(1, k_most_particles), "",
+            "wanted number of particles, met within 1%; give this or spacing", "from spacing"},
+      Field{"jitter", &Sampling::jitter, k_jitter, "h",
+            "random displacement of every particle along each axis, at most"},
+  };
+};
+
+template <>
+struct FieldTable<Placement> {
+  static constexpr std::tuple k_fields{
+      Field{"rotate", &Placement::rotate, k_finite, "degrees", "turn about x, then y, then z"},
+      Field{"size", &Placement::size, k_positive, "m", "longest side of the bounding box", "as the shape is"},
+      Field{"center", &Placement::center, k_finite, "m", "middle of the bounding box", "where the shape is"},
+  };
+};
+
+template <>
+struct FieldTable<Lattice> {
+  static constexpr std::tuple k_fields{
+      Field{"count", &Lattice::count, between(1, k_most_particles), "",
+            "cells along x, y and z, a particle each", k_required},
+      Field{"spacing", &Lattice::spacing, k_positive, "m", "side of a cell, h", k_required},
+      Field{"corner", &Lattice::corner, k_finite, "m", "lowest corner, half a cell from the first particle"},
+      Field{"jitter", &Lattice::jitter, k_jitter, "h", "random displacement of every particle, per axis"},
+  };
+};
+
+/// Without its shape, which has a table of its own, and its pose.
+template <>
+struct FieldTable<Collider> {
+  static constexpr std::tuple k_fields{
+      Field{"velocity", &Collider::velocity, k_finite, "m/s", "the obstacle moves with it"},
+      Field{"angular_velocity", &Collider::angular_velocity, k_finite, "rad/s",
+            "the obstacle turns with it about the origin of its shape"},
+      Field{"restitution", &Collider::restitution, between(0, 1), "",
+            "share of the normal velocity that bounces back, e"},
+      Field{"friction", &Collider::friction, k_not_negative, "", "Coulomb's μ_f"},
+      Field{"measure_load", &Collider::measure_load, k_any, "", "sum up what particles do to it", "",
+            Written::in_states},
+  };
+};
+
+template <>
+struct FieldTable<SurfaceConfig> {
+  using Config = SurfaceConfig;
+  static constexpr std::tuple k_fields{
+      Field{"voxels_per_spacing", &Config::voxels_per_spacing, between(0.5, 16), "",
+            "voxels along one spacing of the particles, if voxel_size and voxels are left out"},
+      Field{"voxel_size", &Config::voxel_size, k_positive, "m", "side of a voxel", "from voxels_per_spacing"},
+      Field{"voxels", &Config::voxels, between(8, 1024), "",
+            "voxels along the longest side of the box around the particles, if voxel_size is left out",
+            "from voxels_per_spacing"},
+      Field{"kernel_radius", &Config::kernel_radius, between(1, 4), "h",
+            "radius in which particles are blended"},
+      Field{"particle_radius", &Config::particle_radius, between(0.1, 1), "h",
+            "distance of the surface from the outermost particles"},
+      Field{"kind", &Config::kind, k_any, "", "how the surface is drawn around the particles"},
+      Field{"joined", &Config::joined, k_any, "", "one surface around all bodies"},
+      Field{"adaptivity", &Config::adaptivity, between(0, 1), "voxels",
+            "how far merging vertices on even parts may move the surface"},
+      Field{"smoothing", &Config::smoothing, between(0, 100), "",
+            "rounds that smooth the mesh and keep its volume"},
+      Field{"memory_limit", &Config::memory_limit, k_positive, "GiB",
+            "a surface that would need more is refused"},
+  };
+};
+
+}  // namespace mallow
