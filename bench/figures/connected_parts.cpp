@@ -34,9 +34,9 @@ std::vector<std::size_t> connected_parts(std::span<const Vec3> positions, float 
   VectorColumn columns(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) columns.set(i, positions[i]);
   CellGrid grid;
-  build_cell_grid(columns, 0, columns.size(), link_radius, threads, best_instruction_level(), grid);
+  build_cell_grid(columns, 0, columns.size(), link_radius, {threads, best_instruction_level()}, grid);
   NeighborLists lists;
-  build_neighbor_lists(grid, link_radius, threads, best_instruction_level(), lists);
+  build_neighbor_lists(grid, link_radius, {threads, best_instruction_level()}, lists);
 
   // In sorted places throughout: which points make a part is not asked, only how many.
   DisjointSets sets(positions.size());

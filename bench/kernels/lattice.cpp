@@ -18,7 +18,7 @@ VectorColumn lattice_points(const LatticeScene& scene, float jitter) {
   VectorColumn points(body.positions.size());
   for (std::size_t i = 0; i < points.size(); ++i) points.set(i, body.positions[i]);
   CellGrid grid;
-  build_cell_grid(points, 0, points.size(), scene.radius, 1, best_instruction_level(), grid);
+  build_cell_grid(points, 0, points.size(), scene.radius, {1, best_instruction_level()}, grid);
   return reordered(points, grid.order.span());
 }
 

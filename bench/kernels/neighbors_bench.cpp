@@ -40,13 +40,13 @@ struct Search {
     build_clusters(threads, level);
   }
   void build_grid(int threads, InstructionLevel level) {
-    build_cell_grid(points, 0, points.size(), k_radius, threads, level, grid);
+    build_cell_grid(points, 0, points.size(), k_radius, {threads, level}, grid);
   }
   void build_lists(int threads, InstructionLevel level) {
-    build_neighbor_lists(grid, k_radius, threads, level, lists);
+    build_neighbor_lists(grid, k_radius, {threads, level}, lists);
   }
   void build_clusters(int threads, InstructionLevel level) {
-    build_cluster_lists(grid, k_radius, threads, level, cluster_lists);
+    build_cluster_lists(grid, k_radius, {threads, level}, cluster_lists);
   }
   Json about() const {
     return {{"particles", points.size()},

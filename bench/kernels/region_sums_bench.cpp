@@ -28,18 +28,18 @@ struct RegionScene {
     shape.region_radius = scene.radius;
     shape.spacing = scene.spacing;
     update_reference(x, 0, x.size(), 1, scratch, shape);
-    sort_reference(1, best_instruction_level(), scratch.pillars, shape);
+    sort_reference({1, best_instruction_level()}, scratch.pillars, shape);
     x = reordered(x, scratch.pillars.order.span());
-    build_regions(1, level, scratch, shape);
+    build_regions({1, level}, scratch, shape);
     x = bent(x);
     matched.add(shape, 0);
-    sum_regions(x, 1, level, matched);
+    sum_regions(x, {1, level}, matched);
     sums.resize(shape.sums.size());
     std::copy(shape.sums.begin(), shape.sums.end(), sums.begin());
     particle_table.resize(shape.table.size());
     std::copy(shape.table.begin(), shape.table.end(), particle_table.begin());
-    solve_rotations(k_enough_iterations, 1, level, matched);
-    compute_goals(1, level, matched);
+    solve_rotations(k_enough_iterations, {1, level}, matched);
+    compute_goals({1, level}, matched);
     input = shape_input(x, 0, shape);
   }
   const float* region_table() const {
@@ -127,7 +127,7 @@ void add_level(const LatticeScene& scene, int threads, InstructionLevel level, K
   });
   // With the rigid frame and the rows.
   set.add(compared("region_sums_phase"), [=] {
-    return phase(scene, level, [=](RegionScene& of) { sum_regions(of.x, threads, level, of.matched); });
+    return phase(scene, level, [=](RegionScene& of) { sum_regions(of.x, {threads, level}, of.matched); });
   });
   set.add(compared("goals"), [=] {
     return on_rows(scene, threads, level, true,
@@ -136,7 +136,7 @@ void add_level(const LatticeScene& scene, int threads, InstructionLevel level, K
                    });
   });
   set.add(compared("goals_phase"), [=] {
-    return phase(scene, level, [=](RegionScene& of) { compute_goals(threads, level, of.matched); });
+    return phase(scene, level, [=](RegionScene& of) { compute_goals({threads, level}, of.matched); });
   });
 }
 

@@ -59,7 +59,7 @@ struct MatrixRegions {
     }
   }
   void solve(int threads, InstructionLevel level) {
-    solve_rotations(k_enough_iterations, threads, level, matched);
+    solve_rotations(k_enough_iterations, {threads, level}, matched);
   }
   /// As goal positions use them: R − R_g, to which the frame is added here.
   std::vector<Eigen::Matrix3d> rotations() const {

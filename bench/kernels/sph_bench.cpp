@@ -43,10 +43,10 @@ struct SphScene {
       sph.bodies = {{n / 2, 0}, {n, 1}};
     }
     sph.grid.spacing = scene.spacing;
-    find_neighbors(x, threads, level, sph);
-    compute_density(threads, level, sph);
+    find_neighbors(x, {threads, level}, sph);
+    compute_density({threads, level}, sph);
     NeighborLists exact;
-    build_neighbor_lists(sph.grid, scene.radius, threads, level, exact);
+    build_neighbor_lists(sph.grid, scene.radius, {threads, level}, exact);
     pairs = static_cast<double>(exact.total);
   }
   Json about() const {
@@ -66,8 +66,8 @@ void add_scene(const LatticeScene& scene, int threads, InstructionLevel level, K
       return Timed{.run = [=] { run(*data); }, .items = data->pairs, .about = data->about()};
     };
   };
-  const auto density = [=](SphScene& s) { compute_density(threads, level, s.sph); };
-  const auto accelerations = [=](SphScene& s) { compute_accelerations(s.velocity, threads, level, s.sph); };
+  const auto density = [=](SphScene& s) { compute_density({threads, level}, s.sph); };
+  const auto accelerations = [=](SphScene& s) { compute_accelerations(s.velocity, {threads, level}, s.sph); };
   const auto about = [&](const char* kernel) {
     return KernelCase{kernel, scene.name, threads, name(level), "pair"};
   };

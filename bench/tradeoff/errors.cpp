@@ -37,8 +37,8 @@ Eigen::VectorXd relative_density(const Moment& moment, double spacing) {
     positions.set(i, moment.x.row(static_cast<Eigen::Index>(i)).transpose().cast<float>());
   CellGrid grid;
   NeighborLists lists;
-  build_cell_grid(positions, 0, n, static_cast<float>(radius), 1, best_instruction_level(), grid);
-  build_neighbor_lists(grid, static_cast<float>(radius), 1, best_instruction_level(), lists);
+  build_cell_grid(positions, 0, n, static_cast<float>(radius), {1, best_instruction_level()}, grid);
+  build_neighbor_lists(grid, static_cast<float>(radius), {1, best_instruction_level()}, lists);
   const double factor =
       static_cast<double>(kernel_factors(radius).density) / lattice_density(radius, spacing);
   Eigen::VectorXd density(moment.x.rows());

@@ -47,31 +47,30 @@ void scan_counts(std::size_t keys, std::size_t chunks, const Threads& threads, c
 
 }  // namespace
 
-void sort_by_key(const Column<std::uint32_t>& key, std::size_t keys, const Threads& threads,
-                 InstructionLevel level, CountingSort& scratch, Column<std::uint32_t>& start,
-                 Column<std::uint32_t>& order) {
+void sort_by_key(const Column<std::uint32_t>& key, std::size_t keys, const Execution& execution,
+                 CountingSort& scratch, Column<std::uint32_t>& start, Column<std::uint32_t>& order) {
   const std::size_t n = key.size();
   start.resize(keys + 1);
   order.resize(n);
   // A thread counts and places a chunk of the items, in order: the sort is stable whatever the chunks are.
   // More chunks than these would count more keys than items.
   const std::size_t chunks = std::clamp<std::size_t>(std::min(4 * n / keys, n / k_least_chunk), 1,
-                                                     static_cast<std::size_t>(threads.count()));
+                                                     static_cast<std::size_t>(execution.threads.count()));
   const std::size_t chunk = (n + chunks - 1) / chunks;
   scratch.counts.resize(chunks * keys);
   const auto counts_of = [&](std::size_t item) { return scratch.counts.data() + item / chunk * keys; };
   parallel_for(
-      threads, n,
+      execution.threads, n,
       [&](std::size_t first, std::size_t last) {
         std::uint32_t* const counts = counts_of(first);
         std::fill_n(counts, keys, 0u);
         for (std::size_t i = first; i < last; ++i) ++counts[key[i]];
       },
       chunk);
-  scan_counts(keys, (n + chunk - 1) / chunk, threads, MALLOW_SELECT(level, sort_lanes), scratch,
-              start.data());
+  scan_counts(keys, (n + chunk - 1) / chunk, execution.threads, MALLOW_SELECT(execution.level, sort_lanes),
+              scratch, start.data());
   parallel_for(
-      threads, n,
+      execution.threads, n,
       [&](std::size_t first, std::size_t last) {
         std::uint32_t* const next = counts_of(first);
         for (std::size_t i = first; i < last; ++i) order[next[key[i]]++] = static_cast<std::uint32_t>(i);

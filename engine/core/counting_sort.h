@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/column.h"
-#include "core/threads.h"
+#include "core/execution.h"
 #include "mallow/export.h"
 #include "mallow/instruction_level.h"
 
@@ -23,8 +23,8 @@ struct CountingSort {
 /// The sort is stable, so its order is the same for any number of threads.
 /// key: of each item, below `keys`. start: becomes keys + 1 long, the first place of each key. order: becomes
 /// the item of each place.
-MALLOW_EXPORT void sort_by_key(const Column<std::uint32_t>& key, std::size_t keys, const Threads& threads,
-                               InstructionLevel level, CountingSort& scratch, Column<std::uint32_t>& start,
+MALLOW_EXPORT void sort_by_key(const Column<std::uint32_t>& key, std::size_t keys, const Execution& execution,
+                               CountingSort& scratch, Column<std::uint32_t>& start,
                                Column<std::uint32_t>& order);
 
 }  // namespace mallow

@@ -149,8 +149,8 @@ void add_up(MovingBodies& bodies) {
 
 }  // namespace
 
-void move_particles(const MotionPhases& phases, const Threads& threads, InstructionLevel level,
-                    ParticleStore& store, MovingBodies& bodies) {
+void move_particles(const MotionPhases& phases, const Execution& execution, ParticleStore& store,
+                    MovingBodies& bodies) {
   const std::size_t colliders = bodies.loads.size();
   if (phases.predict) {
     bodies.blocks.clear();
@@ -159,9 +159,9 @@ void move_particles(const MotionPhases& phases, const Threads& threads, Instruct
     bodies.partial_loads.assign(bodies.partial.size() * colliders, {});
     if (!phases.collide) bodies.predicted.resize_unset(store.size());
   }
-  parallel_for(threads, bodies.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
+  parallel_for(execution.threads, bodies.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     const MotionInput& in = bodies.inputs[block.range];
-    MovingBlock(in, level, in.begin + block.begin, in.begin + block.end, store)
+    MovingBlock(in, execution.level, in.begin + block.begin, in.begin + block.end, store)
         .move(phases, bodies.predicted,
               std::span(bodies.partial_loads).subspan(number * colliders, colliders), bodies.partial[number]);
   });

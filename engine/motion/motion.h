@@ -5,9 +5,9 @@
 
 #include "colliders/contact.h"
 #include "core/column.h"
+#include "core/execution.h"
 #include "core/isa.h"
 #include "core/range_blocks.h"
-#include "core/threads.h"
 #include "particles/particle_store.h"
 
 namespace mallow {
@@ -37,7 +37,8 @@ struct MotionSums {
   std::size_t bad_row = SIZE_MAX;  ///< first row whose new velocity or position is not finite
 };
 
-/// What of the motion a loop over blocks does, in this order. Phases that nothing stands between go in one loop.
+/// What of the motion a loop over blocks does, in this order. Phases that nothing stands between go in one
+/// loop.
 struct MotionPhases {
   bool predict = false;  ///< all accelerations but contact -> v', the velocities of pins
   bool collide = false;  ///< contact with colliders -> v', loads, |a_ext|
@@ -60,7 +61,7 @@ struct MovingBodies {
 
 /// v' and x' into the store's next columns. Each phase is asked for once, in their order.
 /// [model 4, 5; TK eq. 10, 11, 13]
-void move_particles(const MotionPhases& phases, const Threads& threads, InstructionLevel level,
-                    ParticleStore& store, MovingBodies& bodies);
+void move_particles(const MotionPhases& phases, const Execution& execution, ParticleStore& store,
+                    MovingBodies& bodies);
 
 }  // namespace mallow

@@ -51,9 +51,8 @@ double pressure_limit(const TimeStepLimits::Pressure& pressure, double support_r
 
 }  // namespace
 
-Fastest fastest_particle(const ParticleStore& store, const Threads& threads, InstructionLevel level,
-                         FastestInput& in) {
-  const MotionLanes& lanes = MALLOW_SELECT(level, motion_lanes);
+Fastest fastest_particle(const ParticleStore& store, const Execution& execution, FastestInput& in) {
+  const MotionLanes& lanes = MALLOW_SELECT(execution.level, motion_lanes);
   const auto forces = [&](const FastestInput::Body& body) {
     return ForcesInput{.position = {},
                        .velocity = raw(store.velocity),
@@ -72,7 +71,7 @@ Fastest fastest_particle(const ParticleStore& store, const Threads& threads, Ins
   for (const FastestInput::Body& body : in.bodies) in.blocks.add(body.end - body.begin);
   in.partial.resize(in.blocks.blocks.size());
   // Of each block the speed; only the winning block is searched for the row.
-  parallel_for(threads, in.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
+  parallel_for(execution.threads, in.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     const FastestInput::Body& body = in.bodies[block.range];
     in.partial[number] = {lanes.fastest(forces(body), body.begin + block.begin, body.begin + block.end), 0};
   });

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/execution.h"
 #include "core/isa.h"
 #include "core/range_blocks.h"
-#include "core/threads.h"
 #include "particles/particle_store.h"
 
 namespace mallow {
@@ -37,8 +37,7 @@ struct FastestInput {
   std::vector<Fastest> partial;
 };
 /// V = max |v + Δt0 (share a^SPH + a_ext)|, contact not in a_ext. [model 3, TK eq. 12]
-Fastest fastest_particle(const ParticleStore& store, const Threads& threads, InstructionLevel level,
-                         FastestInput& input);
+Fastest fastest_particle(const ParticleStore& store, const Execution& execution, FastestInput& input);
 
 /// What bounds the step beside V.
 struct TimeStepLimits {

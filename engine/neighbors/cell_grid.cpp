@@ -104,24 +104,24 @@ void cut_clusters(const Threads& threads, CellGrid& grid) {
 }  // namespace
 
 void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size_t end, float radius,
-                     const Threads& threads, InstructionLevel level, CellGrid& grid) {
+                     const Execution& execution, CellGrid& grid) {
   const std::size_t n = end - begin;
-  choose_cells(positions, begin, end, radius, threads, grid);
+  choose_cells(positions, begin, end, radius, execution.threads, grid);
   const std::size_t cells = static_cast<std::size_t>(grid.dims[0]) * grid.pillars();
   grid.cell_of.resize(n);
   grid.sorted.resize(n);
   const ConstVectors x{positions.x() + begin, positions.y() + begin, positions.z() + begin};
 
   const SearchInput input = search_input(grid, radius);
-  const GridLanes& lanes = MALLOW_SELECT(level, grid_lanes);
-  parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
+  const GridLanes& lanes = MALLOW_SELECT(execution.level, grid_lanes);
+  parallel_for(execution.threads, n, [&](std::size_t first, std::size_t last) {
     lanes.cells_of(input, x, first, last, grid.cell_of.data());
   });
 
-  sort_by_key(grid.cell_of, cells, threads, level, grid.sort, grid.cell_start, grid.order);
+  sort_by_key(grid.cell_of, cells, execution, grid.sort, grid.cell_start, grid.order);
   const Vectors sorted = raw(grid.sorted);
   const std::uint32_t* const order = grid.order.data();
-  parallel_for(threads, n, [&](std::size_t first, std::size_t last) {
+  parallel_for(execution.threads, n, [&](std::size_t first, std::size_t last) {
     for (std::size_t place = first; place < last; ++place) {
       const std::size_t i = order[place];
       sorted.x[place] = x.x[i];
@@ -129,7 +129,7 @@ void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size
       sorted.z[place] = x.z[i];
     }
   });
-  cut_clusters(threads, grid);
+  cut_clusters(execution.threads, grid);
 }
 
 SearchInput search_input(const CellGrid& grid, float radius) {

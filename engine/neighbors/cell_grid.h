@@ -7,8 +7,8 @@
 
 #include "core/column.h"
 #include "core/counting_sort.h"
+#include "core/execution.h"
 #include "core/isa.h"
-#include "core/threads.h"
 #include "mallow/export.h"
 
 namespace mallow {
@@ -51,7 +51,6 @@ struct CellGrid {
 /// Count, scan, scatter: a stable sort, the same for any number of threads. positions: finite. radius: > 0,
 /// the largest that will be searched for.
 MALLOW_EXPORT void build_cell_grid(const VectorColumn& positions, std::size_t begin, std::size_t end,
-                                   float radius, const Threads& threads, InstructionLevel level,
-                                   CellGrid& grid);
+                                   float radius, const Execution& execution, CellGrid& grid);
 
 }  // namespace mallow

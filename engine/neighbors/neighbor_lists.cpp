@@ -190,28 +190,29 @@ void build_lists(std::size_t clusters, const Threads& threads, NeighborLists& li
 
 }  // namespace
 
-void build_neighbor_lists(const CellGrid& grid, float radius, const Threads& threads, InstructionLevel level,
+void build_neighbor_lists(const CellGrid& grid, float radius, const Execution& execution,
                           NeighborLists& lists) {
   const std::size_t n = grid.order.size();
   lists.begin.resize(n);
   lists.count.resize(n);
   if (lists.indices.empty()) lists.indices.resize(40 * n);
-  const Searcher searcher(grid, radius, level);
+  const Searcher searcher(grid, radius, execution.level);
   build_lists(
-      grid.clusters(), threads, lists, [&](std::size_t cluster) { return grid.cluster_start[cluster]; },
+      grid.clusters(), execution.threads, lists,
+      [&](std::size_t cluster) { return grid.cluster_start[cluster]; },
       [&](std::size_t cluster, Scratch& scratch) {
         searcher.find_near_points(cluster, scratch, lists.count.data());
       });
 }
 
-void build_cluster_lists(const CellGrid& grid, float radius, const Threads& threads, InstructionLevel level,
+void build_cluster_lists(const CellGrid& grid, float radius, const Execution& execution,
                          NeighborLists& lists) {
   lists.begin.resize(grid.clusters());
   lists.count.resize(grid.clusters());
   if (lists.indices.empty()) lists.indices.resize(128 * grid.clusters());
-  const Searcher searcher(grid, radius, level);
+  const Searcher searcher(grid, radius, execution.level);
   build_lists(
-      grid.clusters(), threads, lists, [](std::size_t cluster) { return cluster; },
+      grid.clusters(), execution.threads, lists, [](std::size_t cluster) { return cluster; },
       [&](std::size_t cluster, Scratch& scratch) {
         searcher.find_near_cluster(cluster, scratch, lists.count.data());
       });

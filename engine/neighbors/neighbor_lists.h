@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/execution.h"
 #include "core/isa.h"
-#include "core/threads.h"
 #include "neighbors/cell_grid.h"
 
 namespace mallow {
@@ -33,13 +33,13 @@ struct NeighborLists {
 /// Per sorted point all points within the radius, itself included.
 /// grid: built with at least `radius`. Grows `indices` as needed. Throws ConfigError where the lists would
 /// need 2^32 entries.
-void build_neighbor_lists(const CellGrid& grid, float radius, const Threads& threads, InstructionLevel level,
+void build_neighbor_lists(const CellGrid& grid, float radius, const Execution& execution,
                           NeighborLists& lists);
 
 /// Per cluster all points within the radius of its box, and so all that are within the radius of one of its
 /// points: about twice as many as a point has, searched once for eight [Pall & Hess 2013]. Otherwise as
 /// above.
-void build_cluster_lists(const CellGrid& grid, float radius, const Threads& threads, InstructionLevel level,
+void build_cluster_lists(const CellGrid& grid, float radius, const Execution& execution,
                          NeighborLists& lists);
 
 }  // namespace mallow

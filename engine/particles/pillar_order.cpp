@@ -89,19 +89,19 @@ void sort_pillar(const float* along, std::uint32_t* first, std::uint32_t* last,
 }  // namespace
 
 void order_by_pillars(const VectorColumn& positions, std::size_t begin, std::size_t end, float width,
-                      const Threads& threads, InstructionLevel level, PillarOrder& pillars) {
+                      const Execution& execution, PillarOrder& pillars) {
   const std::size_t n = end - begin;
-  choose_pillars(positions, begin, end, width, threads, pillars);
+  choose_pillars(positions, begin, end, width, execution.threads, pillars);
   const auto strips =
       static_cast<std::size_t>((pillars.dims[0] + PillarOrder::k_strip - 1) / PillarOrder::k_strip);
   const std::size_t count = strips * PillarOrder::k_strip * static_cast<std::size_t>(pillars.dims[1]);
-  find_pillars(positions, begin, n, threads, pillars);
-  sort_by_key(pillars.pillar_of, count, threads, level, pillars.sort, pillars.start, pillars.order);
+  find_pillars(positions, begin, n, execution.threads, pillars);
+  sort_by_key(pillars.pillar_of, count, execution, pillars.sort, pillars.start, pillars.order);
   pillars.sorted.resize_unset(n);
   const float* const along = positions.axis(static_cast<std::size_t>(pillars.along)) + begin;
   std::atomic<bool> already = true;
   parallel_for(
-      threads, count,
+      execution.threads, count,
       [&](std::size_t first, std::size_t last) {
         thread_local std::vector<std::pair<float, std::uint32_t>> keys;
         std::uint32_t* const order = pillars.order.data();

@@ -6,7 +6,7 @@
 
 #include "core/column.h"
 #include "core/counting_sort.h"
-#include "core/threads.h"
+#include "core/execution.h"
 #include "mallow/vec3.h"
 
 namespace mallow {
@@ -51,6 +51,6 @@ struct PillarOrder {
 /// The same order for any number of threads; points at one place keep theirs. positions: finite. width: > 0
 /// [m].
 void order_by_pillars(const VectorColumn& positions, std::size_t begin, std::size_t end, float width,
-                      const Threads& threads, InstructionLevel level, PillarOrder& pillars);
+                      const Execution& execution, PillarOrder& pillars);
 
 }  // namespace mallow

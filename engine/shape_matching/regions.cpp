@@ -210,43 +210,41 @@ void update_reference(const VectorColumn& positions, std::size_t begin, std::siz
   shape.built = false;
 }
 
-void sort_reference(const Threads& threads, InstructionLevel level, PillarOrder& pillars,
-                    ShapeMatching& shape) {
-  order_by_pillars(shape.reference, 0, shape.reference.size(), pillar_width(shape), threads, level, pillars);
+void sort_reference(const Execution& execution, PillarOrder& pillars, ShapeMatching& shape) {
+  order_by_pillars(shape.reference, 0, shape.reference.size(), pillar_width(shape), execution, pillars);
   shape.reference.swap(pillars.sorted);
 }
 
-void build_regions(const Threads& threads, InstructionLevel level, RegionScratch& scratch,
-                   ShapeMatching& shape) {
+void build_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape) {
   const std::size_t n = shape.reference.size();
   const bool every = shape.region_stride == 1;
-  const MomentLanes& lanes = MALLOW_SELECT(level, moment_lanes);
-  order_by_pillars(shape.reference, 0, n, pillar_width(shape), threads, level, scratch.pillars);
-  find_runs(scratch.pillars, shape.region_radius, threads, level, scratch.near);
+  const MomentLanes& lanes = MALLOW_SELECT(execution.level, moment_lanes);
+  order_by_pillars(shape.reference, 0, n, pillar_width(shape), execution, scratch.pillars);
+  find_runs(scratch.pillars, shape.region_radius, execution, scratch.near);
   scratch.owners.resize(0);
-  if (!every) choose_owners(static_cast<std::uint32_t>(shape.region_stride), threads, scratch);
+  if (!every) choose_owners(static_cast<std::uint32_t>(shape.region_stride), execution.threads, scratch);
   const std::size_t regions = every ? n : scratch.owners.size();
-  encode(scratch.near, scratch.owners.span(), n, threads, shape.regions);
+  encode(scratch.near, scratch.owners.span(), n, execution.threads, shape.regions);
   shape.weight.resize_unset(n);
   shape.average_neighbors =
-      static_cast<double>(weigh_particles(every, threads, scratch, shape)) / static_cast<double>(n);
+      static_cast<double>(weigh_particles(every, execution.threads, scratch, shape)) / static_cast<double>(n);
   // The table is not in use yet, and lends its memory.
   shape.table.resize_unset(std::max(shape.table.size(), n * k_moment_row * sizeof(double) / sizeof(float)));
   auto* const moment_rows = reinterpret_cast<double*>(shape.table.data());
-  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
     lanes.write_rows(raw(std::as_const(shape.reference)), shape.weight.data(), begin, end, moment_rows);
   });
   shape.region_weight.resize_unset(regions);
   shape.center.resize_unset(regions);
   for (Column<float>& column : shape.moment) column.resize_unset(regions);
-  parallel_for(threads, regions, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution.threads, regions, [&](std::size_t begin, std::size_t end) {
     measure_regions(begin, end, lanes, moment_rows, scratch, shape);
   });
   if (!every) {
-    turn_around(threads, scratch);
-    encode(scratch.near, {}, regions, threads, shape.memberships);
+    turn_around(execution.threads, scratch);
+    encode(scratch.near, {}, regions, execution.threads, shape.memberships);
   }
-  make_room(n, regions, threads, shape);
+  make_room(n, regions, execution.threads, shape);
   shape.built = true;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/execution.h"
 #include "core/isa.h"
 #include "core/threads.h"
 #include "particles/pillar_order.h"
@@ -33,13 +34,11 @@ void update_reference(const VectorColumn& positions, std::size_t begin, std::siz
                       const Threads& threads, RegionScratch& scratch, ShapeMatching& shape);
 /// Puts the rows of a reference shape in the order in which regions are fast: row k becomes what row
 /// pillars.order[k] was. The other columns of the particles have to follow.
-void sort_reference(const Threads& threads, InstructionLevel level, PillarOrder& pillars,
-                    ShapeMatching& shape);
+void sort_reference(const Execution& execution, PillarOrder& pillars, ShapeMatching& shape);
 /// Regions of the reference shape: owners, lists, weights, centres, moments. One of every region_stride
 /// particles owns a region, and so does every particle that is in none of theirs. Right for any order of the
 /// particles, fast after sort_reference, and owners are spread evenly then.
-void build_regions(const Threads& threads, InstructionLevel level, RegionScratch& scratch,
-                   ShapeMatching& shape);
+void build_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape);
 /// Whether a row is drawn to own a region: of every `stride` in a row one is, at a scattered place. Every
 /// third row of a lattice of 12 is whole lines of it, and bent ten times as wrongly as every second or
 /// fourth.

@@ -45,9 +45,9 @@ struct Search {
   int reach[2];
   std::vector<PillarBounds> bounds;
 
-  Search(const PillarOrder& order, float radius, const Threads& threads, InstructionLevel level)
+  Search(const PillarOrder& order, float radius, const Execution& execution)
       : pillars(order),
-        lanes(MALLOW_SELECT(level, reach_lanes)),
+        lanes(MALLOW_SELECT(execution.level, reach_lanes)),
         input{order.sorted.axis(static_cast<std::size_t>(order.along)), {}, radius * radius},
         slack(k_slack * input.squared_radius),
         bounds(order.pillars()) {
@@ -57,7 +57,7 @@ struct Search {
       reach[k] =
           static_cast<int>(std::min(static_cast<float>(order.dims[k]), radius * order.inverse_width + 2.0f));
     }
-    parallel_for(threads, bounds.size(), [&](std::size_t begin, std::size_t end) {
+    parallel_for(execution.threads, bounds.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t c = begin; c < end; ++c)
         for (std::size_t k = 0; k < 2; ++k) {
           const auto [low, high] =
@@ -173,17 +173,16 @@ std::size_t estimate_runs(const Search& search, const Threads& threads, RunLists
 
 }  // namespace
 
-void find_runs(const PillarOrder& pillars, float radius, const Threads& threads, InstructionLevel level,
-               RunLists& lists) {
+void find_runs(const PillarOrder& pillars, float radius, const Execution& execution, RunLists& lists) {
   const std::size_t n = pillars.order.size();
   lists.begin.resize_unset(n);
   lists.count.resize_unset(n);
   lists.members.resize_unset(n);
-  const Search search(pillars, radius, threads, level);
-  if (lists.runs.size() < n) lists.runs.resize_unset(estimate_runs(search, threads, lists));
+  const Search search(pillars, radius, execution);
+  if (lists.runs.size() < n) lists.runs.resize_unset(estimate_runs(search, execution.threads, lists));
   for (;;) {
     std::atomic<std::size_t> used = 0;
-    parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
       thread_local Scratch scratch;
       search.search_block(begin, end, scratch, lists);
       const std::size_t place = used.fetch_add(scratch.runs, std::memory_order_relaxed);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/execution.h"
 #include "core/isa.h"
-#include "core/threads.h"
 #include "particles/pillar_order.h"
 #include "shape_matching/shape_lanes.h"
 
@@ -28,7 +28,6 @@ struct RunLists {
 /// before the order sorted it. Where the lists of a block of points lie in `runs` may differ from call to
 /// call, what they hold does not. Of two points each is in the other's list, or none. Throws ConfigError
 /// where there would be 2^32 runs.
-void find_runs(const PillarOrder& pillars, float radius, const Threads& threads, InstructionLevel level,
-               RunLists& lists);
+void find_runs(const PillarOrder& pillars, float radius, const Execution& execution, RunLists& lists);
 
 }  // namespace mallow

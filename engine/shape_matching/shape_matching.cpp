@@ -172,39 +172,38 @@ void MatchedBodies::add(ShapeMatching& shape, std::size_t begin) {
   regions.add(owned);
 }
 
-void match_small_bodies(const VectorColumn& positions, int iterations, const Threads& threads,
-                        InstructionLevel level, MatchedBodies& matched) {
-  const ShapeLanes& lanes = MALLOW_SELECT(level, shape_lanes);
+void match_small_bodies(const VectorColumn& positions, int iterations, const Execution& execution,
+                        MatchedBodies& matched) {
+  const ShapeLanes& lanes = MALLOW_SELECT(execution.level, shape_lanes);
   const auto match = [&](MatchedBodies::Body& body) {
     ShapeMatching& shape = *body.shape;
     const Block particles{0, 0, static_cast<std::uint32_t>(shape.reference.size())};
     const Block regions{0, 0, static_cast<std::uint32_t>(shape.region_weight.size())};
-    const FrameSums sums = sum_frame(positions, body, particles, level);
+    const FrameSums sums = sum_frame(positions, body, particles, execution.level);
     update_frame(positions, body.begin, {&sums, 1}, shape);
     body.input = shape_input(positions, body.begin, shape);
     write_particle_table(body.input, particles, lanes, shape);
     lanes.sum_regions(body.input, regions.begin, regions.end, shape.table.data(), shape.sums.data());
-    solve_block(iterations, regions, level, body);
+    solve_block(iterations, regions, execution.level, body);
     write_region_table(regions, lanes, shape);
     write_goals(body.input, particles, lanes, shape);
   };
   parallel_for(
-      threads, matched.small.size(),
+      execution.threads, matched.small.size(),
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) match(matched.small[b]);
       },
       k_body_block);
 }
 
-void sum_regions(const VectorColumn& positions, const Threads& threads, InstructionLevel level,
-                 MatchedBodies& matched) {
-  const ShapeLanes& lanes = MALLOW_SELECT(level, shape_lanes);
+void sum_regions(const VectorColumn& positions, const Execution& execution, MatchedBodies& matched) {
+  const ShapeLanes& lanes = MALLOW_SELECT(execution.level, shape_lanes);
   matched.partial.resize(matched.particles.blocks.size());
-  parallel_for(threads, matched.particles, [&](const Block& block, std::size_t number) {
-    matched.partial[number] = sum_frame(positions, matched.large[block.range], block, level);
+  parallel_for(execution.threads, matched.particles, [&](const Block& block, std::size_t number) {
+    matched.partial[number] = sum_frame(positions, matched.large[block.range], block, execution.level);
   });
   parallel_for(
-      threads, matched.large.size(),
+      execution.threads, matched.large.size(),
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
           MatchedBodies::Body& body = matched.large[b];
@@ -215,39 +214,39 @@ void sum_regions(const VectorColumn& positions, const Threads& threads, Instruct
         }
       },
       k_body_block);
-  parallel_for(threads, matched.particles, [&](const Block& block, std::size_t) {
+  parallel_for(execution.threads, matched.particles, [&](const Block& block, std::size_t) {
     const MatchedBodies::Body& body = matched.large[block.range];
     write_particle_table(body.input, block, lanes, *body.shape);
   });
-  parallel_for(threads, matched.regions, [&](const Block& block, std::size_t) {
+  parallel_for(execution.threads, matched.regions, [&](const Block& block, std::size_t) {
     const MatchedBodies::Body& body = matched.large[block.range];
     lanes.sum_regions(body.input, block.begin, block.end, body.shape->table.data(), body.shape->sums.data());
   });
 }
 
-void solve_rotations(int iterations, const Threads& threads, InstructionLevel level, MatchedBodies& matched) {
-  parallel_for(threads, matched.regions, [&](const Block& block, std::size_t) {
-    solve_block(iterations, block, level, matched.large[block.range]);
+void solve_rotations(int iterations, const Execution& execution, MatchedBodies& matched) {
+  parallel_for(execution.threads, matched.regions, [&](const Block& block, std::size_t) {
+    solve_block(iterations, block, execution.level, matched.large[block.range]);
   });
 }
 
-void compute_goals(const Threads& threads, InstructionLevel level, MatchedBodies& matched) {
-  const ShapeLanes& lanes = MALLOW_SELECT(level, shape_lanes);
-  parallel_for(threads, matched.regions, [&](const Block& block, std::size_t) {
+void compute_goals(const Execution& execution, MatchedBodies& matched) {
+  const ShapeLanes& lanes = MALLOW_SELECT(execution.level, shape_lanes);
+  parallel_for(execution.threads, matched.regions, [&](const Block& block, std::size_t) {
     write_region_table(block, lanes, *matched.large[block.range].shape);
   });
-  parallel_for(threads, matched.particles, [&](const Block& block, std::size_t) {
+  parallel_for(execution.threads, matched.particles, [&](const Block& block, std::size_t) {
     const MatchedBodies::Body& body = matched.large[block.range];
     write_goals(body.input, block, lanes, *body.shape);
   });
 }
 
-void match_shapes(const VectorColumn& positions, int iterations, const Threads& threads,
-                  InstructionLevel level, MatchedBodies& matched) {
-  match_small_bodies(positions, iterations, threads, level, matched);
-  sum_regions(positions, threads, level, matched);
-  solve_rotations(iterations, threads, level, matched);
-  compute_goals(threads, level, matched);
+void match_shapes(const VectorColumn& positions, int iterations, const Execution& execution,
+                  MatchedBodies& matched) {
+  match_small_bodies(positions, iterations, execution, matched);
+  sum_regions(positions, execution, matched);
+  solve_rotations(iterations, execution, matched);
+  compute_goals(execution, matched);
 }
 
 }  // namespace mallow

@@ -6,9 +6,9 @@
 #include <Eigen/Geometry>
 
 #include "core/column.h"
+#include "core/execution.h"
 #include "core/isa.h"
 #include "core/range_blocks.h"
-#include "core/threads.h"
 #include "shape_matching/regions.h"
 #include "shape_matching/rotation_lanes.h"
 #include "shape_matching/run_tables.h"
@@ -88,18 +88,17 @@ class MatchedBodies {
 };
 
 /// Sums, rotations and goals of the small bodies; the phases below are those of the large ones.
-void match_small_bodies(const VectorColumn& positions, int iterations, const Threads& threads,
-                        InstructionLevel level, MatchedBodies& matched);
+void match_small_bodies(const VectorColumn& positions, int iterations, const Execution& execution,
+                        MatchedBodies& matched);
 /// First sums over the regions. [model 2]
-void sum_regions(const VectorColumn& positions, const Threads& threads, InstructionLevel level,
-                 MatchedBodies& matched);
+void sum_regions(const VectorColumn& positions, const Execution& execution, MatchedBodies& matched);
 /// R_j of every region from last step's, by at most `iterations` of Newton's method: with k_enough_iterations
 /// to single precision, with fewer as near as they come, with 0 exactly, in double. [model 2]
-void solve_rotations(int iterations, const Threads& threads, InstructionLevel level, MatchedBodies& matched);
+void solve_rotations(int iterations, const Execution& execution, MatchedBodies& matched);
 /// g − x of every particle. [TK eq. 7]
-void compute_goals(const Threads& threads, InstructionLevel level, MatchedBodies& matched);
+void compute_goals(const Execution& execution, MatchedBodies& matched);
 /// All of these.
-void match_shapes(const VectorColumn& positions, int iterations, const Threads& threads,
-                  InstructionLevel level, MatchedBodies& matched);
+void match_shapes(const VectorColumn& positions, int iterations, const Execution& execution,
+                  MatchedBodies& matched);
 
 }  // namespace mallow

@@ -30,8 +30,8 @@ bool any_pair(const Simulation::State& state, const std::vector<Vec3>& points, f
   for (std::size_t i = 0; i < points.size(); ++i) column.set(i, points[i]);
   CellGrid grid;
   NeighborLists lists;
-  build_cell_grid(column, 0, points.size(), radius, state.threads, state.level, grid);
-  build_neighbor_lists(grid, radius, state.threads, state.level, lists);
+  build_cell_grid(column, 0, points.size(), radius, state.execution, grid);
+  build_neighbor_lists(grid, radius, state.execution, lists);
   return lists.average() > 1;
 }
 

@@ -61,8 +61,8 @@ void refuse_overlaps(const Simulation::State& state, const BodyState& body, std:
   for (std::size_t k = 0; k < positions.size(); ++k) points.set(rows.size() + k, positions[k]);
   CellGrid grid;
   NeighborLists lists;
-  build_cell_grid(points, 0, points.size(), spacing, state.threads, state.level, grid);
-  build_neighbor_lists(grid, k_overlap * spacing, state.threads, state.level, lists);
+  build_cell_grid(points, 0, points.size(), spacing, state.execution, grid);
+  build_neighbor_lists(grid, k_overlap * spacing, state.execution, lists);
 
   const auto particle = [&](std::uint32_t k) -> Particle {
     if (k >= rows.size()) return {state.store.size() + k - rows.size(), body, spacing};

@@ -125,10 +125,10 @@ void read_alphas(Simulation::State& state) {
 void take_reference(Simulation::State& state, BodyState& body) {
   PillarOrder& pillars = state.region_scratch.pillars;
   body.shape.spacing = body.spacing;
-  update_reference(state.store.position, body.begin, body.end, state.threads, state.region_scratch,
+  update_reference(state.store.position, body.begin, body.end, state.execution.threads, state.region_scratch,
                    body.shape);
-  sort_reference(state.threads, state.level, pillars, body.shape);
-  state.store.permute(body.begin, pillars.order.span(), state.threads);
+  sort_reference(state.execution, pillars, body.shape);
+  state.store.permute(body.begin, pillars.order.span(), state.execution.threads);
   state.rows_moved();
 }
 
@@ -140,10 +140,10 @@ namespace {
 void catch_up_with_pull(Simulation::State& state, BodyState& body) {
   MatchedBodies matched;
   matched.add(body.shape, body.begin);
-  match_shapes(state.store.position, state.config.rotation_iterations, state.threads, state.level, matched);
+  match_shapes(state.store.position, state.config.rotation_iterations, state.execution, matched);
   const float kick = 0.5f * static_cast<float>(state.last_time_step) * state.stiffness(*body.material);
   ParticleStore& store = state.store;
-  parallel_for(state.threads, body.size(), [&](std::size_t begin, std::size_t end) {
+  parallel_for(state.execution.threads, body.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t row = body.begin + i;
       if (!store.pin.empty() && store.pin[row] != 0) continue;
@@ -169,7 +169,7 @@ int update_references(Simulation::State& state) {
       take_reference(state, body);
       ++updated;
     }
-    if (due()) build_regions(state.threads, state.level, state.region_scratch, body.shape);
+    if (due()) build_regions(state.execution, state.region_scratch, body.shape);
   }
   state.matched.clear();
   for (BodyState& body : state.bodies)
@@ -187,7 +187,7 @@ void sort_fluids(Simulation::State& state) {
     for (const std::uint32_t row : grid.order)
       if (row >= body.begin && row < body.end)
         state.fluid_order[count++] = row - static_cast<std::uint32_t>(body.begin);
-    state.store.permute(body.begin, state.fluid_order.span(), state.threads);
+    state.store.permute(body.begin, state.fluid_order.span(), state.execution.threads);
     state.rows_moved();
   }
 }
@@ -225,7 +225,7 @@ Fastest find_fastest(Simulation::State& state) {
     const float share = body.material->settings.pressure_coefficient ? 1.0f : body.material->alpha;
     input.bodies.push_back({body.begin, body.end, share});
   }
-  return fastest_particle(state.store, state.threads, state.level, input);
+  return fastest_particle(state.store, state.execution, input);
 }
 
 /// The longest step that velocities and accelerations allow.
@@ -299,7 +299,7 @@ void plan_motion(Simulation::State& state, float time_step) {
   // its place, steps that a limit varies feed a stiff body. The two are the same where steps are equal.
   const auto last_step = static_cast<float>(state.last_time_step);
   const float pull_time = last_step > 0 ? 0.5f * (last_step + time_step) : time_step;
-  place_colliders(state.colliders, state.origin, time_step, state.level, state.placed_colliders);
+  place_colliders(state.colliders, state.origin, time_step, state.execution.level, state.placed_colliders);
   state.moving.loads.assign(any_measures_load(state.placed_colliders) ? state.colliders.size() : 0, {});
   state.moving.inputs.clear();
   for (BodyState& body : state.bodies) {
@@ -322,7 +322,7 @@ void judge_motion(Simulation::State& state) {
 
 void move_bodies(Simulation::State& state, float time_step, const MotionPhases& phases) {
   if (phases.predict) plan_motion(state, time_step);
-  move_particles(phases, state.threads, state.level, state.store, state.moving);
+  move_particles(phases, state.execution, state.store, state.moving);
   if (phases.advance) judge_motion(state);
 }
 

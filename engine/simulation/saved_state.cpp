@@ -258,7 +258,7 @@ void unpack_shapes(const SavedState& saved, const std::vector<ShapeSizes>& sizes
     for (std::size_t b = 0; b < sizes.size(); ++b) {
       ShapeMatching& shape = state.bodies[b].shape;
       if (!shape.built) continue;
-      build_regions(state.threads, state.level, state.region_scratch, shape);
+      build_regions(state.execution, state.region_scratch, shape);
       if (shape.region_weight.size() != sizes[b].regions)
         archive.fail("this build of mallow makes " + std::to_string(shape.region_weight.size()) +
                      " regions of body '" + state.bodies[b].name + "', not " +
@@ -286,7 +286,7 @@ void unpack_neighbors(const SavedState& saved, Simulation::State& state) {
     archive.columns(searched, n);
     VectorColumn by_row(n);
     for (std::size_t s = 0; s < n; ++s) by_row.set(sph.grid.order[s], searched.get(s));
-    find_neighbors(by_row, state.threads, state.level, sph);
+    find_neighbors(by_row, state.execution, sph);
   });
 }
 

@@ -20,8 +20,8 @@ template <class List, class Id>
 auto& checked(List& list, Id id, const char* kind) {
   const auto index = static_cast<std::size_t>(id);
   if (index >= list.size())
-    throw ConfigError(kind, std::string("there is no ") + kind + ' ' + std::to_string(index) + "; there are " +
-                                std::to_string(list.size()));
+    throw ConfigError(kind, std::string("there is no ") + kind + ' ' + std::to_string(index) +
+                                "; there are " + std::to_string(list.size()));
   return list[index];
 }
 
@@ -99,8 +99,8 @@ Simulation::Simulation(const SolverConfig& config) : state_(std::make_unique<Sta
   check(config, checks);
   checks.finish();
   state_->config = config;
-  state_->threads = Threads(config.threads, config.executor);
-  state_->level = config.instruction_level.value_or(best_instruction_level());
+  state_->execution.threads = Threads(config.threads, config.executor);
+  state_->execution.level = config.instruction_level.value_or(best_instruction_level());
   state_->sph.support_radius = config.support_radius;
   state_->sph.formulation = config.formulation;
   state_->sph.neighbor_slack = config.neighbor_slack;
@@ -330,8 +330,7 @@ void Simulation::prepare() {
   }
   read_alphas(s);
   for (BodyState& body : s.bodies)
-    if (body.matches_shape() && !body.shape.built)
-      build_regions(s.threads, s.level, s.region_scratch, body.shape);
+    if (body.matches_shape() && !body.shape.built) build_regions(s.execution, s.region_scratch, body.shape);
   s.prepared = true;
 }
 

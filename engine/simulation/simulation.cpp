@@ -22,12 +22,11 @@ StepReport Simulation::step_towards(double end) {
 
   s.sph_ran = s.needs_sph();
   if (s.sph_ran) {
-    report.neighbors_found = find_neighbors(x, s.threads, s.level, sph);  // x -> lists within σ
+    report.neighbors_found = find_neighbors(x, s.execution, sph);  // x -> lists within σ
     timer.lap(Phase::neighbors);
-    compute_density(s.threads, s.level, sph);  // lists, x -> ρ, p             [TK eq. 3]
+    compute_density(s.execution, sph);  // lists, x -> ρ, p             [TK eq. 3]
     timer.lap(Phase::density);
-    compute_accelerations(s.store.velocity, s.threads, s.level,
-                          sph);  // ρ, p, x, v -> a^SPH   [TK eq. 1, 2, 4]
+    compute_accelerations(s.store.velocity, s.execution, sph);  // ρ, p, x, v -> a^SPH   [TK eq. 1, 2, 4]
     timer.lap(Phase::accelerations);
   }
 
@@ -36,15 +35,16 @@ StepReport Simulation::step_towards(double end) {
   timer.lap(Phase::time_step);
 
   const int iterations = s.config.rotation_iterations;
-  match_small_bodies(x, iterations, s.threads, s.level, s.matched);  // x, x̄ -> R_j, g − x     [TK eq. 7]
-  sum_regions(x, s.threads, s.level, s.matched);                     // x, x̄ -> sums over N_j
+  match_small_bodies(x, iterations, s.execution, s.matched);  // x, x̄ -> R_j, g − x     [TK eq. 7]
+  sum_regions(x, s.execution, s.matched);                     // x, x̄ -> sums over N_j
   timer.lap(Phase::region_sums);
-  solve_rotations(iterations, s.threads, s.level, s.matched);  // sums -> R_j
+  solve_rotations(iterations, s.execution, s.matched);  // sums -> R_j
   timer.lap(Phase::rotations);
-  compute_goals(s.threads, s.level, s.matched);  // R_j -> g − x       [TK eq. 7]
+  compute_goals(s.execution, s.matched);  // R_j -> g − x       [TK eq. 7]
   timer.lap(Phase::goals);
 
-  // a, g − x -> v', contact with colliders, v' -> x': one loop, as nothing stands between them. [TK eq. 10 to 13]
+  // a, g − x -> v', contact with colliders, v' -> x': one loop, as nothing stands between them. [TK eq. 10 to
+  // 13]
   move_bodies(s, step.time_step, {.predict = true, .collide = true, .advance = true});
   finish_step(s, step);  // v', x' -> v, x; c ← c + 1
   timer.lap(Phase::motion);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/threads.h"
+#include "core/execution.h"
 #include "mallow/simulation.h"
 #include "motion/motion.h"
 #include "motion/time_step.h"
@@ -60,8 +60,7 @@ struct BodyState {
 /// All that a simulation is.
 struct Simulation::State {
   SolverConfig config;
-  Threads threads = 1;  ///< of config.executor
-  InstructionLevel level = InstructionLevel::baseline;
+  Execution execution;  ///< threads of config.executor
   std::int64_t step = 0;
   double time = 0;
   double last_time_step = 0;       ///< Δt of the last step; 0 before the first [s]
@@ -158,8 +157,8 @@ struct ChosenStep {
 /// velocities, accelerations, time left until `end` -> Δt, with V in the report. [TK eq. 12, model 3] Throws
 /// StepError.
 ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& report);
-/// everything -> next positions and velocities, mean |a_ext|; one loop does what is asked for, each phase once
-/// in a step. [TK eq. 10, 11, 13, model 4, 5] Throws StepError.
+/// everything -> next positions and velocities, mean |a_ext|; one loop does what is asked for, each phase
+/// once in a step. [TK eq. 10, 11, 13, model 4, 5] Throws StepError.
 void move_bodies(Simulation::State& state, float time_step, const MotionPhases& phases);
 /// next positions and velocities become the present ones; time, step and colliders move on.
 void finish_step(Simulation::State& state, const ChosenStep& step);

@@ -30,8 +30,8 @@ double count_neighbors(const Simulation::State& s, const BodyState& body) {
   CellGrid grid;
   NeighborLists lists;
   const float radius = body.shape.region_radius;
-  build_cell_grid(s.store.position, body.begin, body.end, radius, s.threads, s.level, grid);
-  build_neighbor_lists(grid, radius, s.threads, s.level, lists);
+  build_cell_grid(s.store.position, body.begin, body.end, radius, s.execution, grid);
+  build_neighbor_lists(grid, radius, s.execution, lists);
   return lists.average();
 }
 
@@ -41,7 +41,7 @@ const VectorColumn& Simulation::State::seen_positions() {
   if (!is_far()) return store.position;
   if (far_step == step) return far_position;
   far_position.resize_unset(store.size());
-  parallel_for(threads, store.size(), [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution.threads, store.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) far_position.set(i, far(store.position.get(i)));
   });
   far_step = step;
@@ -134,8 +134,9 @@ namespace {
 const BodyState& shaped(const Simulation::State& s, std::size_t row) {
   const BodyState& body = s.body_of(row);
   if (!body.shape.built)
-    throw ConfigError("particle", "is of body '" + body.name +
-                                      "', which has no reference shape now: its alpha is 1, or prepare() is due");
+    throw ConfigError("particle",
+                      "is of body '" + body.name +
+                          "', which has no reference shape now: its alpha is 1, or prepare() is due");
   return body;
 }
 
@@ -188,7 +189,7 @@ SimulationInfo Simulation::info() {
   info.sph = s.needs_sph();
   info.viscosity = info.sph && s.sph.viscous;
   info.cross_group = s.sph.groups.size() > 1;
-  info.instruction_level = s.level;
+  info.instruction_level = s.execution.level;
   info.bytes = s.store.bytes() + s.sph.bytes() + s.fluid_order.bytes() + s.user_acceleration.bytes() +
                s.far_position.bytes() + s.region_scratch.bytes();
   info.time_step = s.base_step();

@@ -55,8 +55,8 @@ class Warnings {
       if (key.alpha < 1) alpha = std::max(alpha, key.alpha);
     const float threshold = body.material->update_threshold * (1 - alpha);
     if (alpha < 0 || threshold >= k_resting * gravity) return;
-    add(body, "update_threshold ", body.material->update_threshold, " times 1 - alpha (", alpha, ") is ", threshold,
-        " m/s2, below twice gravity (", k_resting * gravity,
+    add(body, "update_threshold ", body.material->update_threshold, " times 1 - alpha (", alpha, ") is ",
+        threshold, " m/s2, below twice gravity (", k_resting * gravity,
         " m/s2): at rest its own weight updates the reference shape, so that it sinks like clay; 40 times "
         "gravity is ",
         40 * gravity);
@@ -85,12 +85,11 @@ class Warnings {
       return text.str();
     };
     if (limits.by_viscosity < k_short_steps * longest)
-      add(body, "viscosity ", body.viscosity, shortens(limits.by_viscosity),
-          "lower it, or solver.time_step");
+      add(body, "viscosity ", body.viscosity, shortens(limits.by_viscosity), "lower it, or solver.time_step");
     if (limits.by_pressure >= k_short_steps * longest) return;
     if (body.material->settings.pressure_coefficient)
-      add(body, "pressure_coefficient ", *body.material->settings.pressure_coefficient, shortens(limits.by_pressure),
-          "lower it, or solver.time_step, or raise viscosity");
+      add(body, "pressure_coefficient ", *body.material->settings.pressure_coefficient,
+          shortens(limits.by_pressure), "lower it, or solver.time_step, or raise viscosity");
     else if (body.material->settings.viscosity)
       add(body, "viscosity ", body.viscosity, " is too low to calm the pressure that keeps the volume, and",
           shortens(limits.by_pressure), "leave it out, raise it, or give a lower pressure_coefficient");
@@ -121,8 +120,8 @@ class Warnings {
     const std::size_t n = state_.store.size();
     CellGrid grid;
     NeighborLists lists;
-    build_cell_grid(state_.store.position, 0, n, reach, state_.threads, state_.level, grid);
-    build_neighbor_lists(grid, reach, state_.threads, state_.level, lists);
+    build_cell_grid(state_.store.position, 0, n, reach, state_.execution, grid);
+    build_neighbor_lists(grid, reach, state_.execution, lists);
     std::vector<std::size_t> body_of(n);
     for (std::size_t g = 0; g < state_.bodies.size(); ++g)
       for (std::size_t row = state_.bodies[g].begin; row < state_.bodies[g].end; ++row) body_of[row] = g;

@@ -37,18 +37,19 @@ std::size_t Sph::bytes() const {
          cross_group.bytes();
 }
 
-bool find_neighbors(const VectorColumn& positions, const Threads& threads, InstructionLevel level, Sph& sph) {
+bool find_neighbors(const VectorColumn& positions, const Execution& execution, Sph& sph) {
   const std::size_t n = positions.size();
   const bool keeps = sph.neighbor_slack > 0;
-  if (keeps && keep_lists(positions, sph.support_radius, sph.neighbor_slack, threads, sph.grid, sph.kept))
+  if (keeps &&
+      keep_lists(positions, sph.support_radius, sph.neighbor_slack, execution.threads, sph.grid, sph.kept))
     return false;
   const float radius = sph.support_radius * (1.0f + sph.neighbor_slack);
-  build_cell_grid(positions, 0, n, radius, threads, level, sph.grid);
-  build_cluster_lists(sph.grid, radius, threads, level, sph.lists);
+  build_cell_grid(positions, 0, n, radius, execution, sph.grid);
+  build_cluster_lists(sph.grid, radius, execution, sph.lists);
   if (keeps) remember_search(sph.grid, sph.kept);
   if (sph.groups.size() == 1) return true;
   sph.group.resize(n);
-  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       sph.group[i] =
           std::ranges::upper_bound(sph.bodies, std::size_t{sph.grid.order[i]}, {}, &Sph::Body::end)->group;
@@ -57,17 +58,17 @@ bool find_neighbors(const VectorColumn& positions, const Threads& threads, Instr
   return true;
 }
 
-void compute_density(const Threads& threads, InstructionLevel level, Sph& sph) {
+void compute_density(const Execution& execution, Sph& sph) {
   const std::size_t n = sph.grid.order.size();
   for (Column<float>* column : {&sph.density, &sph.pressure, &sph.volume, &sph.density_by_row})
     column->resize(n);
   const SphInput in = input(sph);
-  const SphLanes& lanes = MALLOW_SELECT(level, sph_lanes);
+  const SphLanes& lanes = MALLOW_SELECT(execution.level, sph_lanes);
   // Lists that are kept for steps to come stay as they are.
   const NearLists near = sph.neighbor_slack > 0 ? NearLists{nullptr, nullptr}
                                                 : NearLists{sph.lists.indices.data(), sph.lists.count.data()};
   parallel_for(
-      threads, sph.grid.clusters(),
+      execution.threads, sph.grid.clusters(),
       [&](std::size_t begin, std::size_t end) {
         lanes.density(in, begin, end, near, sph.density.data(), sph.pressure.data(), sph.volume.data(),
                       sph.density_by_row.data());
@@ -75,14 +76,13 @@ void compute_density(const Threads& threads, InstructionLevel level, Sph& sph) {
       k_cluster_block);
 }
 
-void compute_accelerations(const VectorColumn& velocities, const Threads& threads, InstructionLevel level,
-                           Sph& sph) {
+void compute_accelerations(const VectorColumn& velocities, const Execution& execution, Sph& sph) {
   const std::size_t n = sph.grid.order.size();
   sph.acceleration.resize(n);
   if (sph.groups.size() > 1) sph.cross_group.resize(n);
   if (sph.viscous) {
     sph.velocity.resize(n);
-    parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
       for (std::size_t a = 0; a < 3; ++a) {
         const float* from = velocities.axis(a);
         float* to = sph.velocity.axis(a);
@@ -91,10 +91,10 @@ void compute_accelerations(const VectorColumn& velocities, const Threads& thread
     });
   }
   const SphInput in = input(sph);
-  const SphLanes& lanes = MALLOW_SELECT(level, sph_lanes);
+  const SphLanes& lanes = MALLOW_SELECT(execution.level, sph_lanes);
   const auto accelerate = sph.formulation == Formulation::printed ? lanes.printed : lanes.conservative;
   parallel_for(
-      threads, sph.grid.clusters(),
+      execution.threads, sph.grid.clusters(),
       [&](std::size_t begin, std::size_t end) {
         accelerate(in, begin, end, sph.density.data(), sph.pressure.data(), sph.volume.data(),
                    raw(sph.acceleration), raw(sph.cross_group));

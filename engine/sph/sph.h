@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/column.h"
+#include "core/execution.h"
 #include "core/isa.h"
-#include "core/threads.h"
 #include "mallow/solver_config.h"
 #include "neighbors/cell_grid.h"
 #include "neighbors/kept_lists.h"
@@ -50,12 +50,11 @@ struct Sph {
 /// Cell grid and, per cluster of it, the list of all particles within σ. With slack, lists that still hold
 /// all of these are kept, and only their positions are brought up to date. Tells whether lists were found
 /// anew.
-bool find_neighbors(const VectorColumn& positions, const Threads& threads, InstructionLevel level, Sph& sph);
+bool find_neighbors(const VectorColumn& positions, const Execution& execution, Sph& sph);
 /// Density and pressure from the lists, which keep only who is nearer than σ unless they are kept for later
 /// steps. [TK eq. 3, model 1]
-void compute_density(const Threads& threads, InstructionLevel level, Sph& sph);
+void compute_density(const Execution& execution, Sph& sph);
 /// Pressure and viscosity accelerations. [TK eq. 1, 2, 4, model 1]
-void compute_accelerations(const VectorColumn& velocities, const Threads& threads, InstructionLevel level,
-                           Sph& sph);
+void compute_accelerations(const VectorColumn& velocities, const Execution& execution, Sph& sph);
 
 }  // namespace mallow

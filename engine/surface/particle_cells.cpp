@@ -37,7 +37,7 @@ void ParticleCells::sort(const PickedVectors& positions, float spacing, float ra
 }
 
 void ParticleCells::sort_into_cells(const Threads& threads) {
-  build_cell_grid(positions_, 0, positions_.size(), radius_, threads, best_instruction_level(), grid_);
+  build_cell_grid(positions_, 0, positions_.size(), radius_, {threads, best_instruction_level()}, grid_);
   parallel_for(threads, count(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place)
       place_of_[particle(place)] = static_cast<std::uint32_t>(place);

@@ -66,7 +66,7 @@ TEST(fastest_particle, sees_numbers_that_are_not_finite_and_passes_over_pinned_o
   FastestInput input = fastest_input({0, 0, 0}, none);
   input.bodies = {{0, 290, 1}, {290, n, 1}};
   for (const InstructionLevel level : levels()) {
-    const auto find = [&] { return fastest_particle(store, 2, level, input); };
+    const auto find = [&] { return fastest_particle(store, {2, level}, input); };
     store.velocity.set(20, v[20]);
     EXPECT_EQ(find().row, 300u);
     EXPECT_FLOAT_EQ(find().squared_velocity, 25);
@@ -91,7 +91,7 @@ TEST(fastest_particle, is_not_there_where_all_are_pinned) {
   FastestInput input = fastest_input({0, 0, 1}, none);
   input.bodies = {{0, store.size(), 1}};
   for (const InstructionLevel level : levels())
-    EXPECT_EQ(fastest_particle(store, 1, level, input).squared_velocity, -1);
+    EXPECT_EQ(fastest_particle(store, {1, level}, input).squared_velocity, -1);
 }
 
 }  // namespace motion_test

@@ -101,7 +101,7 @@ struct World {
     MovingBodies bodies;
     bodies.inputs = {input};
     bodies.inputs[0].colliders = placed;
-    for (const MotionPhases& phases : loops) move_particles(phases, threads, level, store, bodies);
+    for (const MotionPhases& phases : loops) move_particles(phases, {threads, level}, store, bodies);
     return bodies.sums[0];
   }
 

@@ -35,9 +35,9 @@ std::vector<std::vector<std::uint32_t>> lists_of(const Points& points, float rad
                                                  InstructionLevel level, std::size_t capacity = 0) {
   CellGrid grid;
   NeighborLists lists;
-  build_cell_grid(column(points), 0, points.size(), radius, threads, level, grid);
+  build_cell_grid(column(points), 0, points.size(), radius, {threads, level}, grid);
   if (capacity > 0) lists.indices.resize(capacity);
-  build_neighbor_lists(grid, radius, threads, level, lists);
+  build_neighbor_lists(grid, radius, {threads, level}, lists);
   std::vector<std::vector<std::uint32_t>> result(points.size());
   std::size_t total = 0;
   for (std::size_t s = 0; s < points.size(); ++s) {
@@ -125,9 +125,9 @@ std::size_t cluster_list_faults(const Points& points, float radius, float spacin
   CellGrid grid;
   grid.spacing = spacing;
   NeighborLists lists, exact;
-  build_cell_grid(column(points), 0, points.size(), radius, threads, level, grid);
-  build_cluster_lists(grid, radius, threads, level, lists);
-  build_neighbor_lists(grid, radius, threads, level, exact);
+  build_cell_grid(column(points), 0, points.size(), radius, {threads, level}, grid);
+  build_cluster_lists(grid, radius, {threads, level}, lists);
+  build_neighbor_lists(grid, radius, {threads, level}, exact);
   std::size_t faults = 0, total = 0;
   for (std::size_t c = 0; c < grid.clusters(); ++c) {
     std::vector<std::uint32_t> list(lists.of(c).begin(), lists.of(c).end());
@@ -153,7 +153,7 @@ TEST(neighbors, the_list_of_a_cluster_holds_the_neighbors_of_its_points) {
 TEST(neighbors, clusters_are_all_points_in_order_eight_at_most) {
   const Points points = random_points(3000, 9, 8);
   CellGrid grid;
-  build_cell_grid(column(points), 0, points.size(), 1, 3, best_instruction_level(), grid);
+  build_cell_grid(column(points), 0, points.size(), 1, {3, best_instruction_level()}, grid);
   EXPECT_EQ(grid.cluster_start[0], 0u);
   EXPECT_EQ(grid.cluster_start[grid.clusters()], points.size());
   for (std::size_t c = 0; c < grid.clusters(); ++c) {
@@ -169,8 +169,8 @@ TEST(neighbors, what_is_found_does_not_depend_on_the_size_of_cells) {
     CellGrid grid;
     grid.spacing = spacing;
     NeighborLists lists;
-    build_cell_grid(column(points), 0, points.size(), 1.1f, 2, best_instruction_level(), grid);
-    build_neighbor_lists(grid, 1.1f, 2, best_instruction_level(), lists);
+    build_cell_grid(column(points), 0, points.size(), 1.1f, {2, best_instruction_level()}, grid);
+    build_neighbor_lists(grid, 1.1f, {2, best_instruction_level()}, lists);
     for (std::size_t s = 0; s < points.size(); ++s) {
       std::vector<std::uint32_t> list;
       for (const std::uint32_t t : lists.of(s)) list.push_back(grid.order[t]);
@@ -187,13 +187,13 @@ TEST(neighbors, cell_order_is_stable_at_every_level_and_thread_count) {
     for (int axis = 0; axis < 3; ++axis) points[static_cast<std::size_t>(37 + axis) * 99][axis] = stray;
   const VectorColumn x = column(points);
   CellGrid one, other;
-  build_cell_grid(x, 0, points.size(), 0.5f, 1, InstructionLevel::baseline, one);
+  build_cell_grid(x, 0, points.size(), 0.5f, {1, InstructionLevel::baseline}, one);
   for (std::size_t c = 0; c + 1 < one.cell_start.size(); ++c)
     EXPECT_TRUE(
         std::is_sorted(one.order.begin() + one.cell_start[c], one.order.begin() + one.cell_start[c + 1]));
   for (const InstructionLevel level : levels())
     for (const int threads : {1, 2, 3, 7}) {
-      build_cell_grid(x, 0, points.size(), 0.5f, threads, level, other);
+      build_cell_grid(x, 0, points.size(), 0.5f, {threads, level}, other);
       EXPECT_TRUE(std::equal(one.order.begin(), one.order.end(), other.order.begin(), other.order.end()));
       EXPECT_TRUE(std::equal(one.cell_start.begin(), one.cell_start.end(), other.cell_start.begin(),
                              other.cell_start.end()));
@@ -219,8 +219,8 @@ TEST(neighbors, lattice_averages_are_those_of_table_1) {
           points.push_back(row.spacing * Vec3(Eigen::Vector3i(x, y, z).cast<float>()));
     CellGrid grid;
     NeighborLists lists;
-    build_cell_grid(column(points), 0, points.size(), row.radius, 2, best_instruction_level(), grid);
-    build_neighbor_lists(grid, row.radius, 2, best_instruction_level(), lists);
+    build_cell_grid(column(points), 0, points.size(), row.radius, {2, best_instruction_level()}, grid);
+    build_neighbor_lists(grid, row.radius, {2, best_instruction_level()}, lists);
     EXPECT_NEAR(lists.average(), row.average, 0.005);
   }
 }

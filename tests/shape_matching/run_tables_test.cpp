@@ -83,16 +83,16 @@ TEST(pillar_order, sorts_pillars_and_along_them_and_keeps_what_is_sorted) {
   for (const Points& points : bodies()) {
     PillarOrder pillars, again, threaded;
     const std::size_t n = points.x.size();
-    order_by_pillars(points.x, 0, n, points.spacing, 1, best_instruction_level(), pillars);
+    order_by_pillars(points.x, 0, n, points.spacing, {1, best_instruction_level()}, pillars);
     std::vector<std::uint32_t> order(pillars.order.begin(), pillars.order.end());
     for (std::size_t c = 0; c < pillars.pillars(); ++c) {
       const float* const along = pillars.sorted.axis(static_cast<std::size_t>(pillars.along));
       EXPECT_TRUE(std::is_sorted(along + pillars.start[c], along + pillars.start[c + 1]));
     }
     for (std::size_t s = 0; s < n; ++s) EXPECT_EQ(pillars.sorted.get(s), points.x.get(order[s]));
-    order_by_pillars(points.x, 0, n, points.spacing, 3, best_instruction_level(), threaded);
+    order_by_pillars(points.x, 0, n, points.spacing, {3, best_instruction_level()}, threaded);
     EXPECT_TRUE(std::equal(order.begin(), order.end(), threaded.order.begin()));
-    order_by_pillars(pillars.sorted, 0, n, points.spacing, 2, best_instruction_level(), again);
+    order_by_pillars(pillars.sorted, 0, n, points.spacing, {2, best_instruction_level()}, again);
     EXPECT_TRUE(again.already);
     std::sort(order.begin(), order.end());
     for (std::size_t s = 0; s < n; ++s) EXPECT_EQ(order[s], s);
@@ -102,14 +102,14 @@ TEST(pillar_order, sorts_pillars_and_along_them_and_keeps_what_is_sorted) {
 TEST(run_lists, equal_brute_force_in_any_order_of_rows) {
   for (const Points& points : bodies()) {
     PillarOrder pillars;
-    order_by_pillars(points.x, 0, points.x.size(), points.spacing, 2, best_instruction_level(), pillars);
+    order_by_pillars(points.x, 0, points.x.size(), points.spacing, {2, best_instruction_level()}, pillars);
     const VectorColumn sorted = std::move(pillars.sorted);
     for (const VectorColumn* x : {&points.x, &sorted}) {
       PillarOrder order;
-      order_by_pillars(*x, 0, x->size(), points.spacing, 2, best_instruction_level(), order);
+      order_by_pillars(*x, 0, x->size(), points.spacing, {2, best_instruction_level()}, order);
       for (const InstructionLevel level : levels()) {
         RunLists lists;
-        find_runs(order, points.radius, 2, level, lists);
+        find_runs(order, points.radius, {2, level}, lists);
         for (std::size_t i = 0; i < x->size(); ++i) {
           const auto expected = literal_near(*x, i, points.radius);
           ASSERT_EQ(rows_of(lists.of(i)), expected);
@@ -123,11 +123,12 @@ TEST(run_lists, equal_brute_force_in_any_order_of_rows) {
 /// Lists of points whose rows are in the order of pillars, as the engine keeps them.
 RunLists lists_in_pillar_order(const Points& points, int threads) {
   PillarOrder pillars;
-  order_by_pillars(points.x, 0, points.x.size(), points.spacing, threads, best_instruction_level(), pillars);
+  order_by_pillars(points.x, 0, points.x.size(), points.spacing, {threads, best_instruction_level()},
+                   pillars);
   const VectorColumn x = std::move(pillars.sorted);
-  order_by_pillars(x, 0, x.size(), points.spacing, threads, best_instruction_level(), pillars);
+  order_by_pillars(x, 0, x.size(), points.spacing, {threads, best_instruction_level()}, pillars);
   RunLists lists;
-  find_runs(pillars, points.radius, threads, best_instruction_level(), lists);
+  find_runs(pillars, points.radius, {threads, best_instruction_level()}, lists);
   return lists;
 }
 
@@ -185,14 +186,14 @@ struct Matched {
     shape.spacing = points.spacing;
     shape.region_stride = stride;
     update_reference(points.x, 0, points.x.size(), threads, scratch, shape);
-    sort_reference(threads, best_instruction_level(), scratch.pillars, shape);
+    sort_reference({threads, best_instruction_level()}, scratch.pillars, shape);
     x.resize(points.x.size());
     for (std::size_t i = 0; i < x.size(); ++i)
       x.set(i, deform(points.x.get(scratch.pillars.order[i]).cast<double>()).template cast<float>());
-    build_regions(threads, level, scratch, shape);
+    build_regions({threads, level}, scratch, shape);
     MatchedBodies bodies;
     bodies.add(shape, 0);
-    match_shapes(x, k_enough_iterations, threads, level, bodies);
+    match_shapes(x, k_enough_iterations, {threads, level}, bodies);
   }
 };
 

@@ -35,13 +35,13 @@ struct World {
   void build(float radius) {
     shape.region_radius = radius;
     update_reference(x, 0, x.size(), 2, scratch, shape);
-    build_regions(2, best_instruction_level(), scratch, shape);
+    build_regions({2, best_instruction_level()}, scratch, shape);
   }
   void match(int threads = 2, InstructionLevel level = best_instruction_level(),
              int iterations = k_enough_iterations) {
     MatchedBodies bodies;
     bodies.add(shape, 0);
-    match_shapes(x, iterations, threads, level, bodies);
+    match_shapes(x, iterations, {threads, level}, bodies);
   }
   template <class F>
   void transform(const F& f) {
@@ -422,7 +422,7 @@ struct MatrixRegions {
     MatchedBodies bodies;
     bodies.large.push_back({&shape, 0, shape_input(x, 0, shape)});
     bodies.regions.add(shape.region_weight.size());
-    solve_rotations(k_enough_iterations, 1, level, bodies);
+    solve_rotations(k_enough_iterations, {1, level}, bodies);
   }
   std::vector<float> row(std::size_t j) const {
     std::vector<float> values(shape.sums.data() + j * k_row, shape.sums.data() + (j + 1) * k_row);

@@ -65,7 +65,7 @@ TEST(neighbor_slack, lists_always_hold_every_pair_within_the_radius) {
     Sph sph = sph_with_slack(slack, swarm.x.size());
     int found = 0, kept = 0;
     for (int step = 0; step < 60; ++step) {
-      ++(find_neighbors(swarm.x, 2, best_instruction_level(), sph) ? found : kept);
+      ++(find_neighbors(swarm.x, {2, best_instruction_level()}, sph) ? found : kept);
       ASSERT_EQ(faults(sph, swarm.x), 0u) << "slack " << slack << ", step " << step;
       swarm.move(step % 20 == 19 ? 0.5f : 0.004f, {0.3f, -0.2f, 0.1f});
     }
@@ -77,20 +77,20 @@ TEST(neighbor_slack, lists_always_hold_every_pair_within_the_radius) {
 TEST(neighbor_slack, a_common_motion_keeps_lists_and_one_stray_does_not) {
   Swarm swarm;
   Sph sph = sph_with_slack(0.1f, swarm.x.size());
-  EXPECT_TRUE(find_neighbors(swarm.x, 2, best_instruction_level(), sph));
+  EXPECT_TRUE(find_neighbors(swarm.x, {2, best_instruction_level()}, sph));
   swarm.move(0, {100, -50, 25});
-  EXPECT_FALSE(find_neighbors(swarm.x, 2, best_instruction_level(), sph));
+  EXPECT_FALSE(find_neighbors(swarm.x, {2, best_instruction_level()}, sph));
   swarm.x.set(7, swarm.x.get(7) + Vec3(0.049f, 0, 0));
-  EXPECT_FALSE(find_neighbors(swarm.x, 2, best_instruction_level(), sph)) << "just within half the slack";
+  EXPECT_FALSE(find_neighbors(swarm.x, {2, best_instruction_level()}, sph)) << "just within half the slack";
   swarm.x.set(7, swarm.x.get(7) + Vec3(0.002f, 0, 0));
-  EXPECT_TRUE(find_neighbors(swarm.x, 2, best_instruction_level(), sph)) << "just beyond";
+  EXPECT_TRUE(find_neighbors(swarm.x, {2, best_instruction_level()}, sph)) << "just beyond";
 }
 
 TEST(neighbor_slack, without_it_nothing_is_kept) {
   Swarm swarm;
   Sph sph = sph_with_slack(0, swarm.x.size());
-  EXPECT_TRUE(find_neighbors(swarm.x, 2, best_instruction_level(), sph));
-  EXPECT_TRUE(find_neighbors(swarm.x, 2, best_instruction_level(), sph));
+  EXPECT_TRUE(find_neighbors(swarm.x, {2, best_instruction_level()}, sph));
+  EXPECT_TRUE(find_neighbors(swarm.x, {2, best_instruction_level()}, sph));
   EXPECT_EQ(sph.kept.bytes(), 0u);
 }
 

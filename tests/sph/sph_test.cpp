@@ -72,9 +72,9 @@ struct World {
     sph.bodies = {{n / 2, 0}, {n, 1}};
   }
   void run(int threads, InstructionLevel level) {
-    find_neighbors(x, threads, level, sph);
-    compute_density(threads, level, sph);
-    compute_accelerations(v, threads, level, sph);
+    find_neighbors(x, {threads, level}, sph);
+    compute_density({threads, level}, sph);
+    compute_accelerations(v, {threads, level}, sph);
   }
   double mass(std::size_t row) const {
     return static_cast<double>(sph.groups[row < sph.bodies[0].end ? 0 : 1].mass);
@@ -91,8 +91,8 @@ TEST(density, of_a_full_lattice_is_the_rest_density) {
   const double rho0 = lattice_density(2.9, 1);
   sph.groups = {{1, static_cast<float>(rho0), static_cast<float>(1 / rho0), 16, 1, 0, 0}};
   sph.bodies = {{x.size(), 0}};
-  find_neighbors(x, 2, best_instruction_level(), sph);
-  compute_density(2, best_instruction_level(), sph);
+  find_neighbors(x, {2, best_instruction_level()}, sph);
+  compute_density({2, best_instruction_level()}, sph);
   EXPECT_NEAR(static_cast<double>(sph.density_by_row[5 + 5 * 11 + 5 * 121]) / rho0, 1.0, 1e-6);
 }
 
@@ -136,9 +136,9 @@ TEST(accelerations, have_the_same_bits_at_every_level_and_thread_count) {
 
 TEST(density, leaves_in_the_lists_who_is_within_the_radius_of_the_cluster) {
   World world;
-  find_neighbors(world.x, 2, best_instruction_level(), world.sph);
+  find_neighbors(world.x, {2, best_instruction_level()}, world.sph);
   const std::size_t listed = world.sph.lists.total;
-  compute_density(2, best_instruction_level(), world.sph);
+  compute_density({2, best_instruction_level()}, world.sph);
   std::size_t near = 0;
   const CellGrid& grid = world.sph.grid;
   for (std::size_t c = 0; c < grid.clusters(); ++c) {
