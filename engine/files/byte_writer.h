@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "mallow/vec3.h"
@@ -19,6 +21,20 @@ void append_little_endian(std::string& bytes, T value) {
 
 inline void append_little_endian(std::string& bytes, const Vec3& vector) {
   for (const float value : vector) append_little_endian(bytes, value);
+}
+
+/// Bytes that a file takes for each body of a column: 1 where all are below 256, which more programs read, 4
+/// where not.
+inline std::size_t body_bytes(std::span<const std::uint32_t> bodies) {
+  return std::all_of(bodies.begin(), bodies.end(), [](std::uint32_t body) { return body < 256; }) ? 1 : 4;
+}
+
+/// bytes: of body_bytes()
+inline void append_body(std::string& text, std::uint32_t body, std::size_t bytes) {
+  if (bytes == 1)
+    append_little_endian(text, static_cast<std::uint8_t>(body));
+  else
+    append_little_endian(text, body);
 }
 
 /// printf's %.<digits>g, whatever the locale.

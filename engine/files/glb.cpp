@@ -114,9 +114,9 @@ gltf::Primitive primitive_of(const Mesh& mesh, const Part& part, GltfColumns& co
   return primitive;
 }
 
-/// A node and a mesh for each group, as programs show names of those and not of primitives.
-void add_groups(const Mesh& mesh, std::span<const MeshGroup> groups, gltf::Model& model) {
-  const NamedGroups named = name_groups(groups, [](const std::string& name) { return name; });
+/// A node and a mesh for each body, as programs show names of those and not of primitives.
+void add_bodies(const Mesh& mesh, std::span<const MeshBody> bodies, gltf::Model& model) {
+  const NamedBodies named = name_bodies(bodies, [](const std::string& name) { return name; });
   std::vector<int> material_index(named.materials.size(), -1);
   GltfColumns columns(model);
   for (const auto& [id, triangles] : triangles_by_material(mesh)) {
@@ -141,10 +141,10 @@ void add_groups(const Mesh& mesh, std::span<const MeshGroup> groups, gltf::Model
 
 }  // namespace
 
-void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshGroup> groups) {
+void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshBody> bodies) {
   require_valid(mesh);
   require_finite(mesh);
-  require_groups(mesh, groups);
+  require_bodies(mesh, bodies);
 
   gltf::Model model;
   model.asset.version = "2.0";
@@ -153,7 +153,7 @@ void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::sp
   node.name = "surface";
   constexpr double k_half = 0.5 * std::numbers::sqrt2;
   node.rotation = {-k_half, 0, 0, k_half};  // a quarter turn about x, as x y z w
-  if (!mesh.triangles.empty()) add_groups(mesh, groups, model);
+  if (!mesh.triangles.empty()) add_bodies(mesh, bodies, model);
   model.scenes.emplace_back().nodes.push_back(0);
   model.defaultScene = 0;
 

@@ -1,8 +1,8 @@
 #include "files/mesh_materials.h"
 
 #include <algorithm>
-#include <set>
 #include <string_view>
+#include <tuple>
 
 #include "mallow/errors.h"
 
@@ -35,70 +35,75 @@ void require_utf8(const std::string& field, std::string_view name) {
 }
 
 /// Adds the name, with a number behind it where it is there already.
-std::string add_distinct(std::set<std::string>& names, const std::string& name) {
+/// names: with the first number that was not yet tried behind each, so that many bodies of one name take no
+/// square of their count.
+std::string add_distinct(std::map<std::string, int>& names, const std::string& name) {
+  const auto [known, added] = names.try_emplace(name, 1);
   std::string distinct = name;
-  for (int k = 1; !names.insert(distinct).second; ++k) distinct = name + '_' + std::to_string(k);
+  for (bool is_new = added; !is_new; is_new = names.try_emplace(distinct, 1).second)
+    distinct = name + '_' + std::to_string(known->second++);
   return distinct;
 }
 
-bool look_the_same(const Appearance& a, const Appearance& b) {
-  return a.color == b.color && a.finish == b.finish;
+/// What tells one material from another.
+using MaterialKey = std::tuple<std::string, float, float, float, Finish>;
+MaterialKey key_of(const std::string& title, const Appearance& appearance) {
+  const Vec3& color = appearance.color;
+  return {title, color.x(), color.y(), color.z(), appearance.finish};
 }
 
 }  // namespace
 
-std::uint8_t triangle_material(const Mesh& mesh, std::size_t triangle) {
+std::uint32_t triangle_material(const Mesh& mesh, std::size_t triangle) {
   if (mesh.material_ids.empty()) return 0;
   const auto& corners = mesh.triangles[triangle];
-  const std::uint8_t a = mesh.material_ids[corners[0]], b = mesh.material_ids[corners[1]],
-                     c = mesh.material_ids[corners[2]];
+  const std::uint32_t a = mesh.material_ids[corners[0]], b = mesh.material_ids[corners[1]],
+                      c = mesh.material_ids[corners[2]];
   if (a == b || a == c) return a;
   return b == c ? b : std::min({a, b, c});
 }
 
-std::map<std::uint8_t, std::vector<std::size_t>> triangles_by_material(const Mesh& mesh) {
-  std::map<std::uint8_t, std::vector<std::size_t>> triangles;
+std::map<std::uint32_t, std::vector<std::size_t>> triangles_by_material(const Mesh& mesh) {
+  std::map<std::uint32_t, std::vector<std::size_t>> triangles;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) triangles[triangle_material(mesh, t)].push_back(t);
   return triangles;
 }
 
-void require_groups(std::span<const MeshGroup> groups) {
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::string field = "groups[" + std::to_string(g) + "].";
-    require_utf8(field + "name", groups[g].name);
-    require_utf8(field + "material", groups[g].material);
-    const auto color = groups[g].appearance.color.array();
+void require_bodies(std::span<const MeshBody> bodies) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::string field = "bodies[" + std::to_string(b) + "].";
+    require_utf8(field + "name", bodies[b].name);
+    require_utf8(field + "material", bodies[b].material);
+    const auto color = bodies[b].appearance.color.array();
     if ((color >= 0).all() && (color <= 1).all()) continue;
     throw ConfigError(field + "appearance.color", "is not allowed: linear RGB in [0, 1]");
   }
 }
 
-void require_groups(const Mesh& mesh, std::span<const MeshGroup> groups) {
-  require_groups(groups);
+void require_bodies(const Mesh& mesh, std::span<const MeshBody> bodies) {
+  require_bodies(bodies);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const std::uint8_t id = triangle_material(mesh, t);
-    if (id < groups.size()) continue;
-    throw ConfigError("groups", std::to_string(groups.size()) + " are not allowed: material id " +
+    const std::uint32_t id = triangle_material(mesh, t);
+    if (id < bodies.size()) continue;
+    throw ConfigError("bodies", std::to_string(bodies.size()) + " are not allowed: material id " +
                                     std::to_string(id) + " needs one too");
   }
 }
 
-NamedGroups name_groups(std::span<const MeshGroup> groups, const NameRule& allowed) {
-  NamedGroups named;
-  std::set<std::string> group_names;
-  std::set<std::string> material_names;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    named.titles.push_back(groups[g].name.empty() ? "group " + std::to_string(g) : groups[g].name);
-    named.names.push_back(add_distinct(group_names, allowed(named.titles.back())));
+NamedBodies name_bodies(std::span<const MeshBody> bodies, const NameRule& allowed) {
+  NamedBodies named;
+  std::map<std::string, int> body_names, material_names;
+  std::map<MaterialKey, std::size_t> materials;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    named.titles.push_back(bodies[b].name.empty() ? "group " + std::to_string(b) : bodies[b].name);
+    named.names.push_back(add_distinct(body_names, allowed(named.titles.back())));
     const std::string title =
-        groups[g].material.empty() ? "material " + std::to_string(g) : groups[g].material;
-    const auto known =
-        std::find_if(named.materials.begin(), named.materials.end(), [&](const NamedMaterial& other) {
-          return other.title == title && look_the_same(other.appearance, groups[g].appearance);
-        });
-    named.material_of.push_back(static_cast<std::size_t>(known - named.materials.begin()));
-    if (known != named.materials.end()) continue;
-    named.materials.push_back({add_distinct(material_names, allowed(title)), title, groups[g].appearance});
+        bodies[b].material.empty() ? "material " + std::to_string(b) : bodies[b].material;
+    const auto [known, added] =
+        materials.try_emplace(key_of(title, bodies[b].appearance), named.materials.size());
+    named.material_of.push_back(known->second);
+    if (!added) continue;
+    named.materials.push_back({add_distinct(material_names, allowed(title)), title, bodies[b].appearance});
   }
   return named;
 }

@@ -40,8 +40,8 @@ void append_face(std::string& text, const Mesh& mesh, std::size_t triangle) {
   text += '\n';
 }
 
-void append_groups(std::string& text, const Mesh& mesh, const ObjOptions& options) {
-  const NamedGroups named = name_groups(options.groups, obj_name);
+void append_bodies(std::string& text, const Mesh& mesh, const ObjOptions& options) {
+  const NamedBodies named = name_bodies(options.bodies, obj_name);
   for (const auto& [id, triangles] : triangles_by_material(mesh)) {
     text += "g " + named.names[id] + '\n';
     if (!options.material_library.empty())
@@ -65,7 +65,7 @@ void append_color(std::string& text, const char* keyword, double red, double gre
 
 void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh, const ObjOptions& options) {
   require_valid(mesh);
-  if (!options.groups.empty()) require_groups(mesh, options.groups);
+  if (!options.bodies.empty()) require_bodies(mesh, options.bodies);
   const std::string library = options.material_library.generic_string();
   if (std::any_of(library.begin(), library.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }))
     throw ConfigError("options.material_library", "is not allowed: a name on one line");
@@ -75,19 +75,19 @@ void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh, const O
   if (!library.empty()) text += "mtllib " + library + '\n';
   append_vectors(text, "v", mesh.vertices, options.up);
   append_vectors(text, "vn", mesh.normals, options.up);
-  if (options.groups.empty()) {
+  if (options.bodies.empty()) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) append_face(text, mesh, t);
   } else {
-    append_groups(text, mesh, options);
+    append_bodies(text, mesh, options);
   }
   require_readable_size(file, text.size());
   write_whole(file, text);
 }
 
-void write_mtl(const std::filesystem::path& file, std::span<const MeshGroup> groups) {
-  require_groups(groups);
+void write_mtl(const std::filesystem::path& file, std::span<const MeshBody> bodies) {
+  require_bodies(bodies);
   std::string text = "# mallow materials\n# Kd is sRGB\n";
-  for (const NamedMaterial& material : name_groups(groups, obj_name).materials) {
+  for (const NamedMaterial& material : name_bodies(bodies, obj_name).materials) {
     const auto& [color, finish] = material.appearance;
     text += "\nnewmtl " + material.name + '\n';
     append_color(text, "Kd", srgb(double{color.x()}), srgb(double{color.y()}), srgb(double{color.z()}));

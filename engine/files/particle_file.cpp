@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view k_time_comment = "mallow time ";
 constexpr std::string_view k_step_comment = "mallow step ";
 
-std::string particle_header(const ParticleFrame& frame) {
+std::string particle_header(const ParticleFrame& frame, std::size_t bytes_of_body) {
   std::string header = "ply\nformat binary_little_endian 1.0\ncomment ";
   append_number(header += k_time_comment, frame.time, k_double_digits);
   header += "\ncomment ";
@@ -24,7 +24,7 @@ std::string particle_header(const ParticleFrame& frame) {
   header += std::to_string(frame.step) + "\nelement vertex " + std::to_string(frame.positions.size()) + '\n';
   for (const char* name : {"x", "y", "z", "vx", "vy", "vz"})
     header += std::string("property float ") + name + '\n';
-  return header + "property uchar group\nend_header\n";
+  return header + "property " + ply_body_type(bytes_of_body) + " group\nend_header\n";
 }
 
 std::string_view require_comment(const PlyReader& ply, std::string_view begin) {
@@ -57,15 +57,15 @@ std::int64_t read_step(const PlyReader& ply) {
 
 void write_particles(const std::filesystem::path& file, const ParticleFrame& frame) {
   require_valid(frame);
-  std::string bytes = particle_header(frame);
-  constexpr std::size_t k_particle_bytes = 25;
-  const std::size_t total = bytes.size() + frame.positions.size() * k_particle_bytes;
+  const std::size_t bytes_of_body = body_bytes(frame.bodies);
+  std::string bytes = particle_header(frame, bytes_of_body);
+  const std::size_t total = bytes.size() + frame.positions.size() * (24 + bytes_of_body);
   require_readable_size(file, total);
   bytes.reserve(total);
   for (std::size_t i = 0; i < frame.positions.size(); ++i) {
     append_little_endian(bytes, frame.positions[i]);
     append_little_endian(bytes, frame.velocities[i]);
-    append_little_endian(bytes, frame.groups[i]);
+    append_body(bytes, frame.bodies[i], bytes_of_body);
   }
   write_whole(file, bytes);
 }
@@ -78,17 +78,17 @@ ParticleFrame read_particles(const std::filesystem::path& file) {
   const PlyElement& vertex = ply.require("vertex");
   const auto position = ply.find_vector(vertex, {"x", "y", "z"}, true);
   const auto velocity = ply.find_vector(vertex, {"vx", "vy", "vz"}, true);
-  const auto group = ply.find_scalar(vertex, "group");
-  if (!group) ply.fail("element 'vertex' lacks 'group'");
+  const auto body = ply.find_scalar(vertex, "group");
+  if (!body) ply.fail("element 'vertex' lacks 'group'");
   while (const PlyElement* element = ply.next_element()) {
     if (element != &vertex) continue;
     frame.positions.reserve(element->count);
     frame.velocities.reserve(element->count);
-    frame.groups.reserve(element->count);
+    frame.bodies.reserve(element->count);
     while (ply.next_row()) {
       frame.positions.push_back(ply.finite_vector(*position));
       frame.velocities.push_back(ply.finite_vector(*velocity));
-      frame.groups.push_back(static_cast<std::uint8_t>(ply.index(ply.value(*group), 256, "group")));
+      frame.bodies.push_back(ply.index(ply.value(*body), k_most_bodies, "group"));
     }
   }
   return frame;

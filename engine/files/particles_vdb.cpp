@@ -8,7 +8,7 @@ namespace mallow {
 void write_particles_vdb(const std::filesystem::path& file, const ParticleFrame& frame, float voxel_size,
                          int threads) {
   require_valid(frame);
-  const std::string bytes = points_vdb(frame.positions, frame.velocities, frame.groups, voxel_size, threads);
+  const std::string bytes = points_vdb(frame.positions, frame.velocities, frame.bodies, voxel_size, threads);
   require_readable_size(file, bytes.size());
   write_whole(file, bytes);
 }

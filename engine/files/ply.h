@@ -21,6 +21,13 @@ namespace mallow {
 enum class PlyFormat { ascii, binary_little_endian, binary_big_endian };
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
+/// Bodies are numbered in 32 bits.
+inline constexpr std::uint64_t k_most_bodies = std::uint64_t{1} << 32;
+/// The type of bodies that take so many bytes each, of body_bytes().
+constexpr const char* ply_body_type(std::size_t bytes) {
+  return bytes == 1 ? "uchar" : "uint";
+}
+
 struct PlyProperty {
   std::string name;
   PlyType type = PlyType::float32;

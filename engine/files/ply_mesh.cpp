@@ -21,10 +21,7 @@ void read_vertices(PlyReader& ply, const PlyElement& element, Eigen::Vector3d* o
     mesh.vertices.push_back(near.relative(ply.finite_point(*position)));
     if (normal) mesh.normals.push_back(ply.finite_vector(*normal));
     if (velocity) mesh.velocities.push_back(ply.finite_vector(*velocity));
-    if (material) {
-      mesh.material_ids.push_back(
-          static_cast<std::uint8_t>(ply.index(ply.value(*material), 256, "material_id")));
-    }
+    if (material) mesh.material_ids.push_back(ply.index(ply.value(*material), k_most_bodies, "material_id"));
   }
   // Other programs leave normals zero or unscaled; then the mesh is better off without.
   for (const Vec3& n : mesh.normals) {

@@ -102,49 +102,49 @@ void append_columns(const Mesh& mesh, const UsdOptions& options, bool in_a_serie
 }
 
 /// Colours as an array that programs show without a material. Faces, not vertices, have them: a colour
-/// between two groups is that of neither. There are no indices into a few colours: TinyUSDZ takes none that
+/// between two bodies is that of neither. There are no indices into a few colours: TinyUSDZ takes none that
 /// change.
-void append_primvars(std::string& text, const Mesh& mesh, std::span<const MeshGroup> groups,
+void append_primvars(std::string& text, const Mesh& mesh, std::span<const MeshBody> bodies,
                      Attributes& attributes) {
-  if (groups.size() == 1) {
-    append_value(text += "        color3f[] primvars:displayColor = [", groups[0].appearance.color);
+  if (bodies.size() == 1) {
+    append_value(text += "        color3f[] primvars:displayColor = [", bodies[0].appearance.color);
     append_interpolation(text += ']', {2, "", "constant"});
     text += '\n';
   }
-  if (groups.size() < 2) return;
+  if (bodies.size() < 2) return;
   attributes.add(k_usd_color, mesh.triangles.size(),
-                 [&](std::size_t t) { return groups[triangle_material(mesh, t)].appearance.color; });
+                 [&](std::size_t t) { return bodies[triangle_material(mesh, t)].appearance.color; });
   attributes.add(k_usd_group, mesh.triangles.size(),
-                 [&](std::size_t t) { return std::uint32_t{triangle_material(mesh, t)}; });
+                 [&](std::size_t t) { return triangle_material(mesh, t); });
 }
 
 void append_binding(std::string& text, const std::string& indent, const std::string& material) {
   text += indent + "rel material:binding = </surface/materials/" + material + ">\n";
 }
 
-/// The faces of each group, and its material. Groups without a face are there too, so that all frames have
+/// The faces of each body, and its material. Bodies without a face are there too, so that all frames have
 /// the same prims.
-void append_subsets(std::string& text, const Mesh& mesh, const NamedGroups& named, Attributes& attributes) {
+void append_subsets(std::string& text, const Mesh& mesh, const NamedBodies& named, Attributes& attributes) {
   const auto triangles = triangles_by_material(mesh);
   text += "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";
-  for (std::size_t g = 0; g < named.names.size(); ++g) {
-    text += "\n        def GeomSubset \"" + named.names[g] +
+  for (std::size_t b = 0; b < named.names.size(); ++b) {
+    text += "\n        def GeomSubset \"" + named.names[b] +
             "\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n";
-    append_display_name(text, 3, named.names[g], named.titles[g]);
+    append_display_name(text, 3, named.names[b], named.titles[b]);
     text += "        )\n        {\n";
     text += "            uniform token elementType = \"face\"\n";
     text += "            uniform token familyName = \"materialBind\"\n";
     static const std::vector<std::size_t> k_none;
-    const auto found = triangles.find(static_cast<std::uint8_t>(g));
+    const auto found = triangles.find(static_cast<std::uint32_t>(b));
     const std::vector<std::size_t>& faces = found == triangles.end() ? k_none : found->second;
     attributes.add(k_usd_subset_indices, faces.size(),
                    [&](std::size_t i) { return static_cast<std::uint32_t>(faces[i]); });
-    append_binding(text, "            ", named.materials[named.material_of[g]].name);
+    append_binding(text, "            ", named.materials[named.material_of[b]].name);
     text += "        }\n";
   }
 }
 
-void append_materials(std::string& text, const NamedGroups& named) {
+void append_materials(std::string& text, const NamedBodies& named) {
   if (named.materials.empty()) return;
   text += "\n    def Scope \"materials\"\n    {\n";
   for (std::size_t m = 0; m < named.materials.size(); ++m) {
@@ -169,17 +169,17 @@ void append_materials(std::string& text, const NamedGroups& named) {
 
 }  // namespace
 
-void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshGroup> groups,
+void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshBody> bodies,
                      const UsdOptions& options, std::optional<int> frame) {
   require_valid(mesh);
   require_finite(mesh);
-  require_groups(mesh, groups);
+  require_bodies(mesh, bodies);
   require_valid(options);
   if (frame && *frame < 0) throw ConfigError("frame", std::to_string(*frame) + " is not allowed: from 0 on");
 
-  const NamedGroups named = name_groups(groups, usd_name);
+  const NamedBodies named = name_bodies(bodies, usd_name);
   std::string text = usd_header(options, frame, frame) + "def Xform \"surface\"\n{\n    def Mesh \"mesh\"";
-  if (groups.size() == 1) text += " (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )";
+  if (bodies.size() == 1) text += " (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )";
   text +=
       "\n    {\n"
       "        uniform bool doubleSided = 0\n"  // surfaces are closed
@@ -187,9 +187,9 @@ void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh, std::s
       "        uniform token subdivisionScheme = \"none\"\n";
   Attributes attributes(text, frame);
   append_columns(mesh, options, frame.has_value(), attributes);
-  append_primvars(text, mesh, groups, attributes);
-  if (groups.size() == 1) append_binding(text, "        ", named.materials[0].name);
-  if (groups.size() > 1) append_subsets(text, mesh, named, attributes);
+  append_primvars(text, mesh, bodies, attributes);
+  if (bodies.size() == 1) append_binding(text, "        ", named.materials[0].name);
+  if (bodies.size() > 1) append_subsets(text, mesh, named, attributes);
   text += "    }\n";
   append_materials(text, named);
   text += "}\n";

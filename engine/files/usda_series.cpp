@@ -60,7 +60,7 @@ void append_clips(std::string& text, const std::filesystem::path& manifest,
 
 /// Attributes of which a frame has values, without any. Those that it does not name keep the values of the
 /// first frame.
-std::string manifest_text(std::span<const UsdFrame> frames, std::span<const MeshGroup> groups,
+std::string manifest_text(std::span<const UsdFrame> frames, std::span<const MeshBody> bodies,
                           const UsdOptions& options) {
   std::string text = usd_header(options, frames.front().number, frames.back().number);
   const auto declare = [&](const UsdAttribute& attribute) {
@@ -72,10 +72,10 @@ std::string manifest_text(std::span<const UsdFrame> frames, std::span<const Mesh
   for (const UsdAttribute& attribute :
        {k_usd_extent, k_usd_counts, k_usd_corners, k_usd_points, k_usd_normals, k_usd_velocities})
     declare(attribute);
-  if (groups.size() > 1) {
+  if (bodies.size() > 1) {
     declare(k_usd_color);
     declare(k_usd_group);
-    for (const std::string& name : name_groups(groups, usd_name).names) {
+    for (const std::string& name : name_bodies(bodies, usd_name).names) {
       text += "\n        def GeomSubset \"" + name + "\"\n        {\n";
       declare(k_usd_subset_indices);
       text += "        }\n";
@@ -91,9 +91,9 @@ std::filesystem::path usda_manifest(const std::filesystem::path& series) {
 }
 
 void write_usda_series(const std::filesystem::path& file, std::span<const UsdFrame> frames,
-                       std::span<const MeshGroup> groups, const UsdOptions& options) {
+                       std::span<const MeshBody> bodies, const UsdOptions& options) {
   require_ascending(frames);
-  require_groups(groups);
+  require_bodies(bodies);
   require_valid(options);
   if (frames.empty()) {
     write_whole(file, usd_header(options, {}, {}) + "def Xform \"surface\"\n{\n}\n");
@@ -107,7 +107,7 @@ void write_usda_series(const std::filesystem::path& file, std::span<const UsdFra
   // What no frame changes comes from the first: prims, materials, and which attributes there are.
   text += "    prepend references = " + asset_path(frames.front().file) +
           "\n)\n{\n    def Mesh \"mesh\"\n    {\n    }\n}\n";
-  write_whole(manifest, manifest_text(frames, groups, options));
+  write_whole(manifest, manifest_text(frames, bodies, options));
   write_whole(file, text);
 }
 

@@ -22,7 +22,7 @@ inline constexpr UsdAttribute k_usd_corners = {2, "int[] faceVertexIndices", ""}
 inline constexpr UsdAttribute k_usd_points = {2, "point3f[] points", ""};
 inline constexpr UsdAttribute k_usd_normals = {2, "normal3f[] normals", "vertex"};
 inline constexpr UsdAttribute k_usd_velocities = {2, "vector3f[] velocities", ""};
-/// Of several groups.
+/// Of several bodies.
 inline constexpr UsdAttribute k_usd_color = {2, "color3f[] primvars:displayColor", "uniform"};
 inline constexpr UsdAttribute k_usd_group = {2, "int[] primvars:group", "uniform"};
 inline constexpr UsdAttribute k_usd_subset_indices = {3, "int[] indices", ""};

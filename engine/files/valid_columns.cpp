@@ -53,7 +53,7 @@ void require_valid(const ParticleFrame& frame) {
                                  std::to_string(frame.positions.size()) + ')');
   };
   require("frame.velocities", frame.velocities.size());
-  require("frame.groups", frame.groups.size());
+  require("frame.bodies", frame.bodies.size());
 }
 
 }  // namespace mallow

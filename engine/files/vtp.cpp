@@ -18,6 +18,7 @@ struct ArrayType {
 constexpr ArrayType k_float32 = {"Float32", 4};
 constexpr ArrayType k_int32 = {"Int32", 4};
 constexpr ArrayType k_uint8 = {"UInt8", 1};
+constexpr ArrayType k_uint32 = {"UInt32", 4};
 
 /// The two halves of a file of polygons or points.
 struct PolyData {
@@ -35,9 +36,10 @@ struct PolyData {
     begin_array(name, k_float32, 3, vectors.size());
     for (const Vec3& vector : vectors) append_little_endian(bytes, vector);
   }
-  void add_bytes(const char* name, const std::vector<std::uint8_t>& values) {
-    begin_array(name, k_uint8, 1, values.size());
-    for (const std::uint8_t value : values) append_little_endian(bytes, value);
+  void add_bodies(const char* name, const std::vector<std::uint32_t>& bodies) {
+    const ArrayType& type = body_bytes(bodies) == k_uint8.bytes ? k_uint8 : k_uint32;
+    begin_array(name, type, 1, bodies.size());
+    for (const std::uint32_t body : bodies) append_body(bytes, body, type.bytes);
   }
   /// `first`, `first + stride`, ...
   void add_sequence(const char* name, std::size_t first, std::size_t stride, std::size_t count) {
@@ -101,7 +103,7 @@ void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh) {
   data.xml += "<PointData>\n";
   if (!mesh.normals.empty()) data.add_vectors("Normals", mesh.normals);
   if (!mesh.velocities.empty()) data.add_vectors("Velocity", mesh.velocities);
-  if (!mesh.material_ids.empty()) data.add_bytes("Material", mesh.material_ids);
+  if (!mesh.material_ids.empty()) data.add_bodies("Material", mesh.material_ids);
   data.xml += "</PointData>\n";
   data.add_points(mesh.vertices);
   data.xml += "<Polys>\n";
@@ -120,7 +122,7 @@ void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame&
   PolyData data;
   data.xml += "<PointData>\n";
   data.add_vectors("Velocity", frame.velocities);
-  data.add_bytes("Group", frame.groups);
+  data.add_bodies("Group", frame.bodies);
   data.add_sequence("Id", 0, 1, count);
   data.xml += "</PointData>\n";
   data.add_points(frame.positions);

@@ -21,9 +21,10 @@ namespace points = openvdb::points;
 
 /// The furthest voxel, so that its neighbours still have an index.
 constexpr double k_max_voxel = 1 << 30;
+constexpr std::uint32_t k_max_body = 0x7fffffff;
 
 void check(std::span<const Vec3> positions, std::span<const Vec3> velocities,
-           std::span<const std::uint8_t> groups, float voxel_size, int threads) {
+           std::span<const std::uint32_t> bodies, float voxel_size, int threads) {
   Checks checks;
   check_value("voxel_size", voxel_size, k_positive, checks);
   check_value("threads", threads, range_of(&SolverConfig::threads), checks);
@@ -31,7 +32,13 @@ void check(std::span<const Vec3> positions, std::span<const Vec3> velocities,
   const bool indexable = positions.size() <= 0x7fffffff;
   checks.number("positions", positions.size(), indexable, "at most 2^31 - 1, so that ids fit");
   checks.number("velocities", velocities.size(), velocities.size() == positions.size(), allowed.c_str());
-  checks.number("groups", groups.size(), groups.size() == positions.size(), allowed.c_str());
+  checks.number("bodies", bodies.size(), bodies.size() == positions.size(), allowed.c_str());
+  const auto large =
+      std::find_if(bodies.begin(), bodies.end(), [](std::uint32_t b) { return b > k_max_body; });
+  if (large != bodies.end())
+    checks.problem(
+        "bodies[" + std::to_string(large - bodies.begin()) + ']',
+        std::to_string(*large) + " is not allowed: at most 2^31 - 1, as OpenVDB has signed integers");
   checks.finish();
   const double furthest = k_max_voxel * static_cast<double>(voxel_size);
   const auto wrong = std::find_if(positions.begin(), positions.end(), [&](const Vec3& x) {
@@ -63,7 +70,7 @@ void add_attribute(points::PointDataGrid& grid, const openvdb::tools::PointIndex
 }
 
 points::PointDataGrid::Ptr point_grid(std::span<const Vec3> positions, std::span<const Vec3> velocities,
-                                      std::span<const std::uint8_t> groups, float voxel_size) {
+                                      std::span<const std::uint32_t> bodies, float voxel_size) {
   const auto transform = openvdb::math::Transform::createLinearTransform(static_cast<double>(voxel_size));
   const std::vector<openvdb::Vec3s> places = vectors(positions);
   const points::PointAttributeVector<openvdb::Vec3s> columns(places);
@@ -73,8 +80,9 @@ points::PointDataGrid::Ptr point_grid(std::span<const Vec3> positions, std::span
       points::createPointDataGrid<points::NullCodec, points::PointDataGrid>(*order, columns, *transform);
   grid->setName("particles");
   add_attribute(*grid, *order, "v", vectors(velocities));
-  add_attribute(*grid, *order, "group",
-                converted<std::int32_t>(groups, [](std::uint8_t group) { return std::int32_t{group}; }));
+  add_attribute(*grid, *order, "group", converted<std::int32_t>(bodies, [](std::uint32_t body) {
+    return static_cast<std::int32_t>(body);
+  }));
   std::vector<std::int32_t> ids(positions.size());
   std::iota(ids.begin(), ids.end(), 0);
   add_attribute(*grid, *order, "id", ids);
@@ -84,14 +92,14 @@ points::PointDataGrid::Ptr point_grid(std::span<const Vec3> positions, std::span
 }  // namespace
 
 std::string points_vdb(std::span<const Vec3> positions, std::span<const Vec3> velocities,
-                       std::span<const std::uint8_t> groups, float voxel_size, int threads) {
-  check(positions, velocities, groups, voxel_size, threads);
+                       std::span<const std::uint32_t> bodies, float voxel_size, int threads) {
+  check(positions, velocities, bodies, voxel_size, threads);
   return run_with_threads(threads, [&] {
     openvdb::initialize();
     // Into memory: who writes it finds out about a full disk, and OpenVDB's own file might not.
     std::ostringstream bytes(std::ios::binary);
     openvdb::io::Stream(bytes).write(
-        openvdb::GridCPtrVec{point_grid(positions, velocities, groups, voxel_size)});
+        openvdb::GridCPtrVec{point_grid(positions, velocities, bodies, voxel_size)});
     return std::move(bytes).str();
   });
 }

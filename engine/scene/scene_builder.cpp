@@ -181,7 +181,7 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
   return simulation;
 }
 
-std::vector<std::size_t> group_materials(const Scene& scene) {
+std::vector<std::size_t> body_materials(const Scene& scene) {
   std::vector<std::size_t> materials;
   for (const auto& group : scene_file::groups_of(scene).list) materials.push_back(group.material);
   return materials;

@@ -18,17 +18,17 @@ void ParticleOrder::sort(const SurfaceParticles& particles, bool joined) {
   const auto for_each_row = [&](const auto& visit) {
     for (const SurfaceBody& body : particles.bodies) {
       const Simulation::Rows rows = rows_of(body, n);
-      for (std::size_t row = rows.begin; row < rows.end; ++row) visit(joined ? 0 : body.group, row);
+      for (std::size_t row = rows.begin; row < rows.end; ++row) visit(joined ? 0 : body.body, row);
     }
   };
   std::size_t surfaces = 1;
   if (!joined)
     for (const SurfaceBody& body : particles.bodies)
-      surfaces = std::max(surfaces, std::size_t{body.group} + 1);
+      surfaces = std::max(surfaces, std::size_t{body.body} + 1);
   start_.assign(surfaces + 1, 0);
   for (const SurfaceBody& body : particles.bodies) {
     const Simulation::Rows rows = rows_of(body, n);
-    start_[joined ? 1 : std::size_t{body.group} + 1] += rows.end - rows.begin;
+    start_[joined ? 1 : std::size_t{body.body} + 1] += rows.end - rows.begin;
   }
   for (std::size_t s = 0; s < surfaces; ++s) start_[s + 1] += start_[s];
   next_.assign(start_.begin(), start_.end() - 1);
@@ -48,7 +48,7 @@ void ParticleOrder::sort(const SurfaceParticles& particles, bool joined) {
   surface_of_row_.resize(n);
   for_each_row([&](std::size_t surface, std::size_t row) {
     row_of_slot_[slot_of(particles.ids[row])] = static_cast<std::uint32_t>(row);
-    surface_of_row_[row] = static_cast<std::uint8_t>(surface);
+    surface_of_row_[row] = static_cast<std::uint32_t>(surface);
   });
   std::size_t found = 0;
   for (const std::uint32_t row : row_of_slot_) {
@@ -61,7 +61,7 @@ void ParticleOrder::sort(const SurfaceParticles& particles, bool joined) {
 
 std::size_t ParticleOrder::bytes() const {
   return (start_.capacity() + next_.capacity()) * sizeof(std::size_t) +
-         (rows_.capacity() + row_of_slot_.capacity()) * sizeof(std::uint32_t) + surface_of_row_.capacity();
+         (rows_.capacity() + row_of_slot_.capacity() + surface_of_row_.capacity()) * sizeof(std::uint32_t);
 }
 
 }  // namespace mallow

@@ -12,7 +12,7 @@ namespace mallow {
 /// none. Keeps its memory.
 class ParticleOrder {
  public:
-  /// joined: one surface for all groups. Throws ConfigError where ids are not as said in SurfaceParticles;
+  /// joined: one surface for all bodies. Throws ConfigError where ids are not as said in SurfaceParticles;
   /// all else of the particles has been checked.
   void sort(const SurfaceParticles& particles, bool joined);
 
@@ -32,7 +32,7 @@ class ParticleOrder {
   // Scratch.
   std::vector<std::size_t> next_;
   std::vector<std::uint32_t> row_of_slot_;
-  std::vector<std::uint8_t> surface_of_row_;
+  std::vector<std::uint32_t> surface_of_row_;
 };
 
 /// The rows of a body, where there are so many in all.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/column.h"
@@ -50,6 +51,11 @@ class SurfaceField {
   /// [voxels] from the block's first voxel. values: by particle, as they were given to build().
   void mean_at(std::uint32_t block, ConstVectors points, std::size_t n, const PickedVectors& values,
                Vectors means) const;
+  /// The body with the largest share of the kernel-weighted particles at points as those of mean_at(), the
+  /// smallest of equals; 0 where no particle is near. bodies: by particle. found: as many as there are
+  /// points, without those that fill up to eights.
+  void body_at(std::uint32_t block, ConstVectors points, std::size_t n, std::span<const std::uint32_t> bodies,
+               std::span<std::uint32_t> found) const;
   std::size_t bytes() const;
 
   /// Distances are cut here [voxels].
@@ -63,6 +69,8 @@ class SurfaceField {
 
   void find_blocks(double reach, const SurfaceConfig& config);
   void find_near(std::uint32_t block, Near& near) const;
+  template <class Value>
+  void mean_at(const Near& near, ConstVectors points, std::size_t n, const Value& value, Vectors means) const;
   void drop_out_of_reach(Near& near) const;
   void find_distances(const VoxelLattice& points, const Near& near, float* sums, float* distances) const;
   void probe(const Threads& threads);

@@ -41,14 +41,6 @@ Extent extent_of(const SurfaceParticles& particles, double margin) {
   return {corner, (high.cast<double>() - corner).maxCoeff() + 2 * margin};
 }
 
-/// The widest spacing of the bodies of a surface.
-float widest_spacing(const SurfaceParticles& particles, std::size_t surface, bool joined) {
-  float widest = 0;
-  for (const SurfaceBody& body : particles.bodies)
-    if (joined || body.group == surface) widest = std::max(widest, body.spacing);
-  return widest;
-}
-
 /// Side of the voxels of a surface [m]. A float, where it does not follow the box: a whole number of such
 /// sides is exact in double, and so are places on the grid wherever its origin is.
 double voxel_size(const SurfaceConfig& config, float spacing, const Extent& extent) {
@@ -85,81 +77,80 @@ struct Surfacer::Work {
   DualMesher mesher;
   Mesh mesh;
   MeshCounts counts;
-  std::vector<Vec3> shares;  ///< of three groups in each particle, by row: 0 or 1
+  std::vector<float> spacings;             ///< the widest of each surface [m]
+  std::vector<std::uint32_t> body_of_row;  ///< of joined surfaces
+  std::vector<std::uint32_t> bodies;       ///< the same by particle, in the order of its field
   MeshSmoother smoother;
 
   void draw(const SurfaceParticles& particles);
   void draw_one(const SurfaceParticles& all, std::size_t surface, const Extent& extent);
-  template <class Write>
-  void at_vertices(const SurfaceField& field, const PickedVectors& values, const Write& write);
+  template <class Visit>
+  void at_vertices(const Visit& visit);
   void find_materials(const SurfaceField& field, const SurfaceParticles& all);
+  void find_velocities(const SurfaceField& field, const PickedVectors& velocities);
 };
 
-/// Calls write(vertex, mean) for the vertices of the surface drawn last, with the mean of the particles'
-/// values there.
-template <class Write>
-void Surfacer::Work::at_vertices(const SurfaceField& field, const PickedVectors& values, const Write& write) {
+/// Calls visit(run, points, n) for the vertices of the surface drawn last, a run of them in or next to one
+/// block at a time, as n points for SurfaceField::mean_at().
+template <class Visit>
+void Surfacer::Work::at_vertices(const Visit& visit) {
   const auto& runs = mesher.block_vertices();
   parallel_for(
       threads, runs.size(),
       [&](std::size_t begin, std::size_t end) {
-        thread_local std::vector<float> points[3], means[3];
+        thread_local std::vector<float> points[3];
         for (std::size_t r = begin; r < end; ++r) {
           const std::size_t n = padded(runs[r].count);
           for (std::size_t a = 0; a < 3; ++a) {
             points[a].assign(n, 0.0f);
-            means[a].resize(n);
             for (std::uint32_t v = 0; v < runs[r].count; ++v)
               points[a][v] = mesher.local(runs[r].first + v)[static_cast<Eigen::Index>(a)];
           }
-          field.mean_at(runs[r].block, {points[0].data(), points[1].data(), points[2].data()}, n, values,
-                        {means[0].data(), means[1].data(), means[2].data()});
-          for (std::uint32_t v = 0; v < runs[r].count; ++v)
-            write(runs[r].first + v, Vec3(means[0][v], means[1][v], means[2][v]));
+          visit(runs[r], ConstVectors{points[0].data(), points[1].data(), points[2].data()}, n);
         }
       },
       4);
 }
 
-/// Each vertex of a joined surface belongs to the group that has the largest share of the weight there.
+/// Each vertex of a joined surface belongs to the body that has the largest share of the weight there.
 void Surfacer::Work::find_materials(const SurfaceField& field, const SurfaceParticles& all) {
-  std::size_t groups = 0;
-  for (const SurfaceBody& body : all.bodies) groups = std::max(groups, std::size_t{body.group} + 1);
-  if (groups == 1) return;
-  std::vector<float> largest(mesh.vertices.size(), 0.0f);
-  for (std::size_t first = 0; first < groups; first += 3) {
-    shares.assign(all.positions.size(), Vec3(0, 0, 0));
-    for (const SurfaceBody& body : all.bodies) {
-      if (body.group < first || body.group >= first + 3) continue;
-      const Simulation::Rows rows = rows_of(body, shares.size());
-      for (std::size_t row = rows.begin; row < rows.end; ++row)
-        shares[row][static_cast<Eigen::Index>(body.group - first)] = 1;
-    }
-    at_vertices(field, {shares, order.rows(0)}, [&](std::uint32_t vertex, const Vec3& share) {
-      Eigen::Index which = 0;
-      if (!(share.maxCoeff(&which) > largest[vertex])) return;
-      largest[vertex] = share[which];
-      mesh.material_ids[vertex] = static_cast<std::uint8_t>(first + static_cast<std::size_t>(which));
-    });
+  const auto in_body_0 = [](const SurfaceBody& body) { return body.body == 0; };
+  if (std::all_of(all.bodies.begin(), all.bodies.end(), in_body_0)) return;
+  body_of_row.resize(all.positions.size());
+  for (const SurfaceBody& body : all.bodies) {
+    const Simulation::Rows rows = rows_of(body, body_of_row.size());
+    for (std::size_t row = rows.begin; row < rows.end; ++row) body_of_row[row] = body.body;
   }
+  bodies.clear();
+  for (const std::uint32_t row : order.rows(0)) bodies.push_back(body_of_row[row]);
+  at_vertices([&](const DualMesher::BlockVertices& run, ConstVectors points, std::size_t n) {
+    field.body_at(run.block, points, n, bodies, std::span(mesh.material_ids).subspan(run.first, run.count));
+  });
 }
 
-/// Appends the surface around the particles of a group, or of all where they are joined.
+void Surfacer::Work::find_velocities(const SurfaceField& field, const PickedVectors& velocities) {
+  mesh.velocities.resize(mesh.vertices.size());
+  at_vertices([&](const DualMesher::BlockVertices& run, ConstVectors points, std::size_t n) {
+    thread_local std::vector<float> means[3];
+    for (std::vector<float>& mean : means) mean.resize(n);
+    field.mean_at(run.block, points, n, velocities, {means[0].data(), means[1].data(), means[2].data()});
+    for (std::uint32_t v = 0; v < run.count; ++v)
+      mesh.velocities[run.first + v] = Vec3(means[0][v], means[1][v], means[2][v]);
+  });
+}
+
+/// Appends the surface around the particles of a body, or of all where they are joined.
 void Surfacer::Work::draw_one(const SurfaceParticles& all, std::size_t surface, const Extent& extent) {
   const std::span<const std::uint32_t> rows = order.rows(surface);
   if (rows.empty()) return;
   SurfaceField& field = fields[surface];
   const std::size_t first = counts.vertices;
-  const float spacing = widest_spacing(all, surface, config.joined);
+  const float spacing = spacings[surface];
   field.build({all.positions, rows}, spacing, config, make_frame(config, spacing, extent), threads);
   mesher.append(field, config.adaptivity, threads, counts, mesh);
-  mesh.material_ids.resize(mesh.vertices.size(), static_cast<std::uint8_t>(surface));
+  mesh.material_ids.resize(mesh.vertices.size(), static_cast<std::uint32_t>(surface));
   if (config.joined) find_materials(field, all);
-  if (!all.velocities.empty()) {
-    mesh.velocities.resize(mesh.vertices.size());
-    at_vertices(field, {all.velocities, rows},
-                [&](std::uint32_t vertex, const Vec3& mean) { mesh.velocities[vertex] = mean; });
-  }
+  if (!all.velocities.empty()) find_velocities(field, {all.velocities, rows});
   if (config.smoothing > 0) smoother.smooth(config.smoothing, first, threads, mesh);
 }
 
@@ -175,8 +166,12 @@ void Surfacer::Work::draw(const SurfaceParticles& particles) {
     mesh = {};
     return;
   }
-  float widest = 0;
-  for (const SurfaceBody& body : particles.bodies) widest = std::max(widest, body.spacing);
+  spacings.assign(fields.size(), 0.0f);
+  for (const SurfaceBody& body : particles.bodies) {
+    float& widest = spacings[config.joined ? 0 : body.body];
+    widest = std::max(widest, body.spacing);
+  }
+  const float widest = *std::max_element(spacings.begin(), spacings.end());
   const Extent extent = extent_of(particles, static_cast<double>(config.particle_radius * widest));
   for (std::size_t s = 0; s < fields.size(); ++s) draw_one(particles, s, extent);
 }

@@ -119,6 +119,27 @@ TEST_F(cli_export, groups_and_materials_have_the_names_and_looks_of_the_scene) {
                 "displayName = \"blue \\\"clay\\\"\"", "color3f inputs:diffuseColor = (0.25, 0.5, 0.125)"});
 }
 
+TEST_F(cli_export, a_thousand_bodies_are_told_apart_in_frames_surfaces_and_pictures) {
+  std::string text = read_text(scene_);
+  text.replace(text.find("voxels = 16"), 11, "voxels = 64");
+  for (int b = 1; b < 1000; ++b)
+    text += "[[body]]\nmaterial = \"paste\"\nbox = { count = [2, 2, 2], spacing = 1.0, corner = [" +
+            std::to_string(4 * (b % 10)) + ".0, " + std::to_string(4 * (b / 10 % 10) + 6) + ".0, " +
+            std::to_string(4 * (b / 100)) + ".6] }\n";
+  write("cube.toml", text);
+  const Outcome ran = run({"--out", at("out"), "--frames", "1"}, true);
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_EQ(names_in(at("out/images")).size(), 2u);
+  const std::vector<std::uint32_t> bodies = read_particles(at("out/particles/frame_000001.ply")).bodies;
+  ASSERT_EQ(bodies.size(), 125u + 999 * 8);
+  for (std::size_t i = 0; i < bodies.size(); ++i) ASSERT_EQ(bodies[i], i < 125 ? 0 : 1 + (i - 125) / 8);
+  const Outcome outcome = run_mallow({"export", at("out"), "--surface", "obj", "--particles", "vtp,vdb"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string obj = read_text(at("out/export/surface/frame_000001.obj"));
+  for (const char* name : {"\ng cube\n", "\ng body[256]\n", "\ng body[999]\n"})
+    EXPECT_NE(obj.find(name), std::string::npos) << name;
+}
+
 TEST_F(cli_export, up_turns_surfaces_and_particles_alike) {
   ASSERT_EQ(run({"--out", at("out"), "--frames", "0"}).exit_code, 0);
   ASSERT_EQ(

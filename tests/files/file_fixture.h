@@ -90,7 +90,7 @@ inline ParticleFrame three_particles() {
   ParticleFrame frame;
   frame.positions = {{0.1f, -2.5e-7f, 3.0f}, {1.0f / 3.0f, 1e9f, -0.0f}, {7, 8, 9}};
   frame.velocities = {{0, 0, -0.3f}, {16777217.0f, 1e-40f, 2.0f / 7.0f}, {-1, 0.15f, 1e30f}};
-  frame.groups = {0, 255, 3};
+  frame.bodies = {0, 255, 3};
   frame.time = 0.1 + 0.2;
   frame.step = 123456789012;
   return frame;

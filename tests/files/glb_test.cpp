@@ -9,9 +9,9 @@ namespace glb_test {
 
 namespace gltf = mallow_tinygltf;
 
-const std::vector<MeshGroup> k_groups = {{{{0.8f, 0.24f, 0.09f}}, "left cube", "paste"},
-                                         {{{0, 1, 0.5f}}},
-                                         {{{0.1f, 0.2f, 0.3f}, Finish::clay}, "Würfel \"2\"", "clay"}};
+const std::vector<MeshBody> k_bodies = {{{{0.8f, 0.24f, 0.09f}}, "left cube", "paste"},
+                                        {{{0, 1, 0.5f}}},
+                                        {{{0.1f, 0.2f, 0.3f}, Finish::clay}, "Würfel \"2\"", "clay"}};
 
 gltf::Model read_glb(const std::filesystem::path& file) {
   gltf::Model model;
@@ -54,19 +54,19 @@ Mesh two_tetrahedra() {
   return mesh;
 }
 
-TEST(glb, gives_back_vertices_normals_velocities_and_a_named_mesh_per_group) {
+TEST(glb, gives_back_vertices_normals_velocities_and_a_named_mesh_per_body) {
   const TemporaryFolder folder;
   const Mesh mesh = two_tetrahedra();
-  write_mesh_glb(folder / "a.glb", mesh, k_groups);
+  write_mesh_glb(folder / "a.glb", mesh, k_bodies);
   const gltf::Model model = read_glb(folder / "a.glb");
   ASSERT_EQ(model.meshes.size(), 2u);
   EXPECT_EQ(model.nodes.at(0).name, "surface");
   EXPECT_EQ(model.nodes[0].children, (std::vector<int>{1, 2}));
   for (std::size_t part = 0; part < 2; ++part) {
-    const MeshGroup& group = k_groups[2 * part];
+    const MeshBody& body = k_bodies[2 * part];
     EXPECT_EQ(model.nodes.at(part + 1).mesh, static_cast<int>(part));
-    EXPECT_EQ(model.nodes[part + 1].name, group.name);
-    EXPECT_EQ(model.meshes[part].name, group.name);
+    EXPECT_EQ(model.nodes[part + 1].name, body.name);
+    EXPECT_EQ(model.meshes[part].name, body.name);
     ASSERT_EQ(model.meshes[part].primitives.size(), 1u);
     const gltf::Primitive& primitive = model.meshes[part].primitives[0];
     EXPECT_EQ(primitive.mode, TINYGLTF_MODE_TRIANGLES);
@@ -83,11 +83,11 @@ TEST(glb, gives_back_vertices_normals_velocities_and_a_named_mesh_per_group) {
     for (std::size_t k = 0; k < 12; ++k)
       EXPECT_EQ(corners[k] + 4 * part, mesh.triangles[4 * part + k / 3][k % 3]);
     const gltf::Material& material = model.materials.at(static_cast<std::size_t>(primitive.material));
-    EXPECT_EQ(material.name, group.material);
+    EXPECT_EQ(material.name, body.material);
     for (int k = 0; k < 3; ++k)
       EXPECT_EQ(
           static_cast<float>(material.pbrMetallicRoughness.baseColorFactor.at(static_cast<std::size_t>(k))),
-          group.appearance.color[k]);
+          body.appearance.color[k]);
     const gltf::Accessor& positions = accessor_of(model, primitive.attributes.at("POSITION"));
     Mesh points;
     points.vertices = vertices;
@@ -99,11 +99,11 @@ TEST(glb, gives_back_vertices_normals_velocities_and_a_named_mesh_per_group) {
   }
 }
 
-TEST(glb, groups_share_a_material_of_one_name_and_look) {
+TEST(glb, bodies_share_a_material_of_one_name_and_look) {
   const TemporaryFolder folder;
   const Appearance red{{1, 0, 0}}, blue{{0, 0, 1}};
-  const auto names = [&](const MeshGroup& first, const MeshGroup& last) {
-    write_mesh_glb(folder / "a.glb", two_tetrahedra(), std::array{first, MeshGroup{}, last});
+  const auto names = [&](const MeshBody& first, const MeshBody& last) {
+    write_mesh_glb(folder / "a.glb", two_tetrahedra(), std::array{first, MeshBody{}, last});
     std::vector<std::string> found;
     for (const gltf::Material& material : read_glb(folder / "a.glb").materials)
       found.push_back(material.name);
@@ -116,7 +116,7 @@ TEST(glb, groups_share_a_material_of_one_name_and_look) {
 
 TEST(glb, clay_is_rougher_than_jelly) {
   const TemporaryFolder folder;
-  write_mesh_glb(folder / "a.glb", two_tetrahedra(), k_groups);
+  write_mesh_glb(folder / "a.glb", two_tetrahedra(), k_bodies);
   const gltf::Model model = read_glb(folder / "a.glb");
   ASSERT_EQ(model.materials.size(), 2u);
   EXPECT_EQ(model.materials[0].pbrMetallicRoughness.roughnessFactor, 0.5);
@@ -125,11 +125,11 @@ TEST(glb, clay_is_rougher_than_jelly) {
     EXPECT_EQ(material.pbrMetallicRoughness.metallicFactor, 0);
 }
 
-TEST(glb, a_triangle_is_of_the_group_of_most_of_its_corners) {
+TEST(glb, a_triangle_is_of_the_body_of_most_of_its_corners) {
   const TemporaryFolder folder;
   struct Case {
-    std::array<std::uint8_t, 3> corners;
-    const char* group;
+    std::array<std::uint32_t, 3> corners;
+    const char* body;
   };
   for (const Case& one :
        {Case{{0, 0, 2}, "left cube"}, Case{{0, 2, 0}, "left cube"}, Case{{0, 2, 2}, "Würfel \"2\""},
@@ -139,16 +139,16 @@ TEST(glb, a_triangle_is_of_the_group_of_most_of_its_corners) {
                         .normals = {},
                         .velocities = {},
                         .material_ids = {one.corners.begin(), one.corners.end()}};
-    write_mesh_glb(folder / "a.glb", triangle, k_groups);
+    write_mesh_glb(folder / "a.glb", triangle, k_bodies);
     const gltf::Model model = read_glb(folder / "a.glb");
     ASSERT_EQ(model.materials.size(), 1u);
-    EXPECT_EQ(model.meshes.at(0).name, one.group);
+    EXPECT_EQ(model.meshes.at(0).name, one.body);
   }
 }
 
 TEST(glb, a_bare_mesh_has_positions_only) {
   const TemporaryFolder folder;
-  write_mesh_glb(folder / "a.glb", tetrahedron(), k_groups);
+  write_mesh_glb(folder / "a.glb", tetrahedron(), k_bodies);
   const gltf::Model model = read_glb(folder / "a.glb");
   ASSERT_EQ(model.meshes.at(0).primitives.size(), 1u);
   EXPECT_EQ(model.meshes[0].primitives[0].attributes.size(), 1u);
@@ -169,31 +169,30 @@ TEST(glb, a_mesh_without_triangles_is_a_scene_without_a_mesh) {
 
 TEST(glb, what_gltf_cannot_say_is_refused_by_name) {
   const TemporaryFolder folder;
-  const auto field = [&](const Mesh& mesh, std::span<const MeshGroup> groups) {
+  const auto field = [&](const Mesh& mesh, std::span<const MeshBody> bodies) {
     try {
-      write_mesh_glb(folder / "a.glb", mesh, groups);
+      write_mesh_glb(folder / "a.glb", mesh, bodies);
     } catch (const ConfigError& error) {
       return error.problems().at(0).field;
     }
     return std::string("nothing");
   };
   const Mesh mesh = two_tetrahedra();
-  EXPECT_EQ(field(mesh, std::span(k_groups).first(2)), "groups");
-  EXPECT_EQ(field(mesh, std::array{MeshGroup{}, MeshGroup{{{0, 2, 0}}}, MeshGroup{}}),
-            "groups[1].appearance.color");
+  EXPECT_EQ(field(mesh, std::span(k_bodies).first(2)), "bodies");
+  EXPECT_EQ(field(mesh, std::array{MeshBody{}, MeshBody{{{0, 2, 0}}}, MeshBody{}}),
+            "bodies[1].appearance.color");
   // A byte of its own, a cut character, one longer than need be, a half of a pair, and one beyond the last.
   for (const char* name : {"\x80", "caf\xC3", "\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80"})
-    EXPECT_EQ(field(mesh, std::array{MeshGroup{}, MeshGroup{}, MeshGroup{{}, name}}), "groups[2].name")
-        << name;
+    EXPECT_EQ(field(mesh, std::array{MeshBody{}, MeshBody{}, MeshBody{{}, name}}), "bodies[2].name") << name;
   Mesh wrong = mesh;
   wrong.velocities.pop_back();
-  EXPECT_EQ(field(wrong, k_groups), "mesh.velocities");
+  EXPECT_EQ(field(wrong, k_bodies), "mesh.velocities");
   wrong = mesh;
   wrong.vertices[3].y() = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(field(wrong, k_groups), "mesh.vertices[3]");
+  EXPECT_EQ(field(wrong, k_bodies), "mesh.vertices[3]");
   wrong = mesh;
   wrong.triangles[5][2] = 8;
-  EXPECT_EQ(field(wrong, k_groups), "mesh.triangles[5]");
+  EXPECT_EQ(field(wrong, k_bodies), "mesh.triangles[5]");
   EXPECT_EQ(folder.entries(), 0u);
 }
 

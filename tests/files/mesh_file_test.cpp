@@ -45,16 +45,16 @@ TEST(mesh_file, obj_says_which_axis_is_up_and_turns_to_y) {
   }
 }
 
-TEST(mesh_file, obj_names_groups_and_materials_that_are_in_the_mtl) {
+TEST(mesh_file, obj_names_bodies_and_materials_that_are_in_the_mtl) {
   const TemporaryFolder folder;
   Mesh mesh = tetrahedron();
   mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {3, 2, 1}, {1, 2, 0}};
-  mesh.material_ids = {2, 0, 0, 2};  // triangles of groups 0, 2, 0, 0
-  const std::vector<MeshGroup> groups = {{{{0.5f, 0, 1}}, "left cube", "soft\tjelly#1"},
-                                         {},
-                                         {{{0.2f, 0.2f, 0.2f}, Finish::clay}, "left\ncube", "Ton"}};
-  write_mtl(folder / "m.mtl", groups);
-  write_mesh_obj(folder / "a.obj", mesh, {.groups = groups, .material_library = "m.mtl"});
+  mesh.material_ids = {2, 0, 0, 2};  // triangles of bodies 0, 2, 0, 0
+  const std::vector<MeshBody> bodies = {{{{0.5f, 0, 1}}, "left cube", "soft\tjelly#1"},
+                                        {},
+                                        {{{0.2f, 0.2f, 0.2f}, Finish::clay}, "left\ncube", "Ton"}};
+  write_mtl(folder / "m.mtl", bodies);
+  write_mesh_obj(folder / "a.obj", mesh, {.bodies = bodies, .material_library = "m.mtl"});
   const std::string text = content_of(folder / "a.obj");
   EXPECT_NE(text.find("mtllib m.mtl\n"), std::string::npos);
   EXPECT_NE(text.find("g left_cube\nusemtl soft_jelly_1\nf 1 2 3\nf 4 3 2\nf 2 3 1\n"
@@ -110,7 +110,7 @@ TEST(mesh_file, columns_of_the_wrong_length_are_not_written) {
   mesh.material_ids = {0, 0, 0, 0};
   EXPECT_THROW(write_mesh_obj(folder / "a.obj", mesh, {.material_library = "a\nv 1 2 3"}), ConfigError);
   mesh.material_ids = {1, 1, 1, 1};
-  EXPECT_THROW(write_mesh_obj(folder / "a.obj", mesh, {.groups = std::array{MeshGroup{}}}), ConfigError);
+  EXPECT_THROW(write_mesh_obj(folder / "a.obj", mesh, {.bodies = std::array{MeshBody{}}}), ConfigError);
   EXPECT_EQ(folder.entries(), 0u);
 }
 

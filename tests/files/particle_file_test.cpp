@@ -18,23 +18,23 @@ TEST(particle_file, gives_the_same_frame_back_to_the_bit) {
   const ParticleFrame read = read_particles(folder / "a.ply");
   EXPECT_TRUE(same_bits(read.positions, frame.positions));
   EXPECT_TRUE(same_bits(read.velocities, frame.velocities));
-  EXPECT_EQ(read.groups, frame.groups);
+  EXPECT_EQ(read.bodies, frame.bodies);
   EXPECT_EQ(read.time, frame.time);
   EXPECT_EQ(read.step, frame.step);
   write_particles(folder / "none.ply", ParticleFrame{});
   EXPECT_TRUE(read_particles(folder / "none.ply").positions.empty());
 }
 
-TEST(particle_frame, is_drawn_as_a_body_for_each_stretch_of_a_group_and_refused_where_one_has_no_spacing) {
+TEST(particle_frame, is_drawn_as_a_body_for_each_stretch_of_rows_and_refused_where_one_has_no_spacing) {
   ParticleFrame frame;
   frame.positions.assign(6, Vec3(1, 2, 3));
-  frame.groups = {2, 2, 0, 2, 2, 2};
+  frame.bodies = {2, 2, 0, 2, 2, 2};
   const std::vector<float> spacings{0.5f, 1, 2};
   const SurfaceParticles particles = surface_particles(frame, spacings);
   ASSERT_EQ(particles.bodies.size(), 3u);
   const std::size_t ends[] = {2, 3, 6};
   for (std::size_t b = 0; b < 3; ++b) {
-    EXPECT_EQ(particles.bodies[b].group, b == 1 ? 0 : 2);
+    EXPECT_EQ(particles.bodies[b].body, b == 1 ? 0u : 2u);
     EXPECT_EQ(particles.bodies[b].spacing, b == 1 ? 0.5f : 2.0f);
     EXPECT_EQ(particles.bodies[b].rows.value().begin, b == 0 ? 0 : ends[b - 1]);
     EXPECT_EQ(particles.bodies[b].rows.value().end, ends[b]);
@@ -65,7 +65,7 @@ TEST(particle_file, columns_of_the_wrong_length_are_not_written) {
   EXPECT_THROW(write_particles(folder / "a.ply", frame), ConfigError);
   EXPECT_THROW(write_state_csv(folder / "a.csv", frame), ConfigError);
   frame = three_particles();
-  frame.groups.clear();
+  frame.bodies.clear();
   EXPECT_THROW(write_particles(folder / "a.ply", frame), ConfigError);
   EXPECT_EQ(folder.entries(), 0u);
 }

@@ -10,11 +10,11 @@ namespace mallow {
 namespace usda_test {
 
 const std::vector<Vec3> k_colors = {{0.8f, 0.24f, 0.09f}, {0, 1, 0.5f}, {0.1f, 0.2f, 0.3f}};
-const std::vector<MeshGroup> k_groups = {{{k_colors[0]}, "cube", "jelly"},
-                                         {{k_colors[1]}, "2 \"balls\"", "clay"},
-                                         {{k_colors[2]}, "pool", "jelly"}};
-/// Of one group, whose material is bound to the whole mesh.
-const std::vector<MeshGroup> k_group = {{{k_colors[0], Finish::clay}, "cube", "soft clay"}};
+const std::vector<MeshBody> k_bodies = {{{k_colors[0]}, "cube", "jelly"},
+                                        {{k_colors[1]}, "2 \"balls\"", "clay"},
+                                        {{k_colors[2]}, "pool", "jelly"}};
+/// Of one body, whose material is bound to the whole mesh.
+const std::vector<MeshBody> k_body = {{{k_colors[0], Finish::clay}, "cube", "soft clay"}};
 constexpr const char* k_mesh = "/surface/mesh";
 
 Mesh triangle() {
@@ -24,7 +24,7 @@ Mesh triangle() {
   return mesh;
 }
 
-/// Two triangles of groups 2 and 0, with corners of both in one of them.
+/// Two triangles of bodies 2 and 0, with corners of both in one of them.
 Mesh full_mesh() {
   Mesh mesh = tetrahedron();
   mesh.triangles = {{0, 2, 1}, {3, 1, 0}};
@@ -73,7 +73,7 @@ TEST(usda, a_mesh_is_the_text_that_usd_expects) {
   const TemporaryFolder folder;
   Mesh mesh = triangle();
   mesh.velocities = {{0, 0, 0}, {1, 2, 3}, {0, 0, -9.8f}};
-  write_mesh_usda(folder / "a.usda", mesh, k_group);
+  write_mesh_usda(folder / "a.usda", mesh, k_body);
   EXPECT_EQ(content_of(folder / "a.usda"), R"(#usda 1.0
 (
     defaultPrim = "surface"
@@ -125,13 +125,13 @@ def Xform "surface"
 }
 
 /// Where a frame's values are samples at its time, of all that changes with its topology, and with y up.
-TEST(usda, a_frame_of_several_groups_is_the_text_that_usd_expects) {
+TEST(usda, a_frame_of_several_bodies_is_the_text_that_usd_expects) {
   const TemporaryFolder folder;
   Mesh mesh = triangle();
   mesh.normals = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}};
   mesh.velocities = {{0, 0, 0}, {1, 2, 3}, {0, 0, -9.5f}};
   mesh.material_ids = {1, 1, 0};
-  write_mesh_usda(folder / "a.usda", mesh, std::span(k_groups).first(2),
+  write_mesh_usda(folder / "a.usda", mesh, std::span(k_bodies).first(2),
                   {.up = UpAxis::y, .frames_per_second = 24, .speed = 2}, 12);
   const std::string text = content_of(folder / "a.usda");
   const std::string begin = R"(#usda 1.0
@@ -224,7 +224,7 @@ def Xform "surface"
 TEST(usda, a_series_is_one_mesh_with_the_files_of_its_frames_as_value_clips) {
   const TemporaryFolder folder;
   const std::vector<UsdFrame> frames = {{"s/a.usda", 0}, {"s/b.usda", 1}, {"s/c@.usda", 1000003}};
-  write_usda_series(folder / "a.usda", frames, k_groups, {.frames_per_second = 24});
+  write_usda_series(folder / "a.usda", frames, k_bodies, {.frames_per_second = 24});
   const std::string header = R"(#usda 1.0
 (
     defaultPrim = "surface"
@@ -313,17 +313,17 @@ std::vector<std::string> attributes_of(const std::string& text, const std::strin
 /// A value clip gives what the manifest names and no more, and holds nothing from the clip before.
 TEST(usda, a_manifest_names_what_has_samples_in_frames_of_a_full_mesh_and_of_nothing) {
   const TemporaryFolder folder;
-  for (const std::vector<MeshGroup>& groups : {k_groups, k_group}) {
+  for (const std::vector<MeshBody>& bodies : {k_bodies, k_body}) {
     Mesh mesh = full_mesh();
-    if (groups.size() == 1) mesh.material_ids.clear();
-    write_usda_series(folder / "a.usda", std::vector<UsdFrame>{{"s/a.usda", 0}}, groups);
+    if (bodies.size() == 1) mesh.material_ids.clear();
+    write_usda_series(folder / "a.usda", std::vector<UsdFrame>{{"s/a.usda", 0}}, bodies);
     std::string manifest = content_of(folder / "a.manifest.usda");
     for (std::size_t at = manifest.find(" (\n"); at != std::string::npos; at = manifest.find(" (\n", at))
       manifest.erase(at, 2);
     const std::vector<std::string> named = attributes_of(manifest, "");
-    EXPECT_EQ(named.size(), groups.size() == 1 ? 6u : 11u);
+    EXPECT_EQ(named.size(), bodies.size() == 1 ? 6u : 11u);
     for (const Mesh& frame : {mesh, Mesh{}}) {
-      write_mesh_usda(folder / "b.usda", frame, groups, {}, 0);
+      write_mesh_usda(folder / "b.usda", frame, bodies, {}, 0);
       EXPECT_EQ(attributes_of(content_of(folder / "b.usda"), ".timeSamples = {"), named);
     }
   }
@@ -332,7 +332,7 @@ TEST(usda, a_manifest_names_what_has_samples_in_frames_of_a_full_mesh_and_of_not
 TEST(usda, tinyusdz_reads_the_mesh_that_was_written) {
   const TemporaryFolder folder;
   const Mesh mesh = full_mesh();
-  write_mesh_usda(folder / "a.usda", mesh, k_groups);
+  write_mesh_usda(folder / "a.usda", mesh, k_bodies);
   READ_WITH_TINYUSDZ(read, folder / "a.usda");
   ASSERT_EQ(read.at("error"), "");
   ASSERT_EQ(read.at("meshes").size(), 1u);
@@ -363,10 +363,10 @@ TEST(usda, tinyusdz_finds_one_mesh_in_a_series_and_each_frame_by_itself) {
   other.triangles.pop_back();
   const std::array<Mesh, 2> meshes = {full_mesh(), other};
   const UsdOptions options{.frames_per_second = 25, .speed = 0.5};
-  write_mesh_usda(folder / "s/frame_000000.usda", meshes[0], k_groups, options, 0);
-  write_mesh_usda(folder / "s/frame_000001.usda", meshes[1], k_groups, options, 1);
+  write_mesh_usda(folder / "s/frame_000000.usda", meshes[0], k_bodies, options, 0);
+  write_mesh_usda(folder / "s/frame_000001.usda", meshes[1], k_bodies, options, 1);
   write_usda_series(folder / "a.usda",
-                    std::vector<UsdFrame>{{"s/frame_000000.usda", 0}, {"s/frame_000001.usda", 1}}, k_groups,
+                    std::vector<UsdFrame>{{"s/frame_000000.usda", 0}, {"s/frame_000001.usda", 1}}, k_bodies,
                     options);
   const auto expect_mesh = [](const nlohmann::json& read, const Mesh& mesh) {
     ASSERT_EQ(read.at("error"), "");
@@ -405,19 +405,19 @@ TEST(usda, tinyusdz_refuses_a_frame_with_a_broken_sample_and_a_mesh_with_a_wrong
     text.replace(text.find(right), std::string(right).size(), wrong);
     return folder.file("b.usda", text);
   };
-  write_mesh_usda(folder / "a.usda", triangle(), k_group, {}, 7);
+  write_mesh_usda(folder / "a.usda", triangle(), k_body, {}, 7);
   READ_WITH_TINYUSDZ(no_value, damaged("7: [3]", "7: "));
   EXPECT_NE(no_value.at("error"), "");
   READ_WITH_TINYUSDZ(no_time, damaged("7: [3]", "seven: [3]"));
   EXPECT_NE(no_time.at("error"), "");
-  write_mesh_usda(folder / "a.usda", triangle(), k_group);
+  write_mesh_usda(folder / "a.usda", triangle(), k_body);
   READ_WITH_TINYUSDZ(wrong_corner, damaged("[0, 1, 2]", "[0, 1, 3]"));
   EXPECT_NE(wrong_corner.at("error"), "");
 }
 
 TEST(usda, tinyusdz_reads_a_bare_mesh_and_one_of_nothing) {
   const TemporaryFolder folder;
-  write_mesh_usda(folder / "bare.usda", tetrahedron(), k_group);
+  write_mesh_usda(folder / "bare.usda", tetrahedron(), k_body);
   READ_WITH_TINYUSDZ(bare, folder / "bare.usda");
   EXPECT_EQ(bare.at("error"), "");
   expect_values(bare.at("layer"), "color3f[] primvars:displayColor", {k_colors[0]});
@@ -438,31 +438,31 @@ TEST(usda, what_usd_cannot_say_is_refused_by_name) {
     }
     return std::string("nothing");
   };
-  const auto mesh_field = [&](const Mesh& mesh, std::span<const MeshGroup> groups,
+  const auto mesh_field = [&](const Mesh& mesh, std::span<const MeshBody> bodies,
                               const UsdOptions& options = {}, std::optional<int> frame = {}) {
-    return field([&] { write_mesh_usda(folder / "a.usda", mesh, groups, options, frame); });
+    return field([&] { write_mesh_usda(folder / "a.usda", mesh, bodies, options, frame); });
   };
-  EXPECT_EQ(mesh_field(full_mesh(), std::span(k_groups).first(2)), "groups");
-  EXPECT_EQ(mesh_field(triangle(), {}), "groups");
-  EXPECT_EQ(mesh_field(triangle(), std::array{MeshGroup{{{0, 2, 0}}}}), "groups[0].appearance.color");
-  EXPECT_EQ(mesh_field(triangle(), k_group, {}, -1), "frame");
-  EXPECT_EQ(mesh_field(triangle(), k_group, {.speed = 0}), "options.speed");
+  EXPECT_EQ(mesh_field(full_mesh(), std::span(k_bodies).first(2)), "bodies");
+  EXPECT_EQ(mesh_field(triangle(), {}), "bodies");
+  EXPECT_EQ(mesh_field(triangle(), std::array{MeshBody{{{0, 2, 0}}}}), "bodies[0].appearance.color");
+  EXPECT_EQ(mesh_field(triangle(), k_body, {}, -1), "frame");
+  EXPECT_EQ(mesh_field(triangle(), k_body, {.speed = 0}), "options.speed");
   Mesh wrong = full_mesh();
   wrong.velocities.pop_back();
-  EXPECT_EQ(mesh_field(wrong, k_groups), "mesh.velocities");
+  EXPECT_EQ(mesh_field(wrong, k_bodies), "mesh.velocities");
   wrong = full_mesh();
   wrong.normals[2].y() = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(mesh_field(wrong, k_groups), "mesh.normals[2]");
+  EXPECT_EQ(mesh_field(wrong, k_bodies), "mesh.normals[2]");
 
   const auto series_field = [&](const std::vector<UsdFrame>& frames, const UsdOptions& options) {
-    return field([&] { write_usda_series(folder / "a.usda", frames, k_groups, options); });
+    return field([&] { write_usda_series(folder / "a.usda", frames, k_bodies, options); });
   };
   EXPECT_EQ(series_field({{"a.usda", 1}, {"b.usda", 1}}, {}), "frames[1].number");
   EXPECT_EQ(series_field({{"a.usda", -1}}, {}), "frames[0].number");
   EXPECT_EQ(series_field({}, {.frames_per_second = std::numeric_limits<double>::infinity()}),
             "options.frames_per_second");
   for (const char* name : {"a@@@.usda", "a\n.usda"}) {
-    EXPECT_THROW(write_usda_series(folder / "a.usda", std::vector<UsdFrame>{{name, 0}}, k_groups), IoError);
+    EXPECT_THROW(write_usda_series(folder / "a.usda", std::vector<UsdFrame>{{name, 0}}, k_bodies), IoError);
   }
   EXPECT_EQ(folder.entries(), 0u);
 }

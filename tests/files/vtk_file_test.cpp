@@ -58,7 +58,7 @@ TEST(vtk_file, vtk_reads_the_particles_that_were_written_as_vtp) {
   EXPECT_EQ(as_floats(read.at("points")), rows(frame.positions));
   EXPECT_EQ(read.at("cells"), (nlohmann::json{{0}, {1}, {2}}));
   EXPECT_EQ(as_floats(read.at("arrays").at("Velocity")), rows(frame.velocities));
-  EXPECT_EQ(read.at("arrays").at("Group"), column(frame.groups));
+  EXPECT_EQ(read.at("arrays").at("Group"), column(frame.bodies));
   EXPECT_EQ(read.at("arrays").at("Id"), (Rows{{0}, {1}, {2}}));
 }
 
@@ -87,20 +87,20 @@ TEST(vtk_file, vtk_reads_an_obj_with_its_normals) {
   EXPECT_EQ(as_floats(read.at("arrays").at("Normals")), rows(mesh.normals));
 }
 
-TEST(vtk_file, vtk_reads_an_obj_with_y_up_and_named_groups) {
+TEST(vtk_file, vtk_reads_an_obj_with_y_up_and_named_bodies) {
   const TemporaryFolder folder;
   Mesh mesh = full_tetrahedron();
-  mesh.material_ids = {1, 1, 0, 0};  // two triangles of group 1, then two of group 0
-  const std::array groups = {MeshGroup{{{1, 0, 0}}, "a cube", "clay"}, MeshGroup{{{0, 1, 0}}, "b", "jelly"}};
-  write_mtl(folder / "a.mtl", groups);
-  write_mesh_obj(folder / "a.obj", mesh, {.up = UpAxis::y, .groups = groups, .material_library = "a.mtl"});
+  mesh.material_ids = {1, 1, 0, 0};  // two triangles of body 1, then two of body 0
+  const std::array bodies = {MeshBody{{{1, 0, 0}}, "a cube", "clay"}, MeshBody{{{0, 1, 0}}, "b", "jelly"}};
+  write_mtl(folder / "a.mtl", bodies);
+  write_mesh_obj(folder / "a.obj", mesh, {.up = UpAxis::y, .bodies = bodies, .material_library = "a.mtl"});
   READ_WITH_VTK(read, folder / "a.obj");
   Rows turned;
   for (const Vec3& v : mesh.vertices) turned.push_back({v.x(), v.z(), -v.y()});
   EXPECT_EQ(as_floats(read.at("points")), turned);
-  const std::vector<std::array<std::uint32_t, 3>> by_group = {mesh.triangles[2], mesh.triangles[3],
-                                                              mesh.triangles[0], mesh.triangles[1]};
-  EXPECT_EQ(read.at("cells"), nlohmann::json(by_group));
+  const std::vector<std::array<std::uint32_t, 3>> by_body = {mesh.triangles[2], mesh.triangles[3],
+                                                             mesh.triangles[0], mesh.triangles[1]};
+  EXPECT_EQ(read.at("cells"), nlohmann::json(by_body));
 }
 
 TEST(vtk_file, vtk_reads_a_glb_and_turns_its_z_up) {
@@ -108,7 +108,7 @@ TEST(vtk_file, vtk_reads_a_glb_and_turns_its_z_up) {
   Mesh mesh = full_tetrahedron();
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   mesh.material_ids.clear();
-  write_mesh_glb(folder / "a.glb", mesh, std::array{MeshGroup{{{1, 0.5f, 0}}}});
+  write_mesh_glb(folder / "a.glb", mesh, std::array{MeshBody{{{1, 0.5f, 0}}}});
   READ_WITH_VTK(read, folder / "a.glb");
   EXPECT_EQ(read.at("cells"), nlohmann::json(mesh.triangles));
   ASSERT_EQ(read.at("points").size(), 4u);
@@ -130,7 +130,7 @@ TEST(vtk_file, columns_of_the_wrong_length_are_not_written) {
   mesh.triangles[2][1] = 4;
   EXPECT_THROW(write_mesh_vtp(folder / "a.vtp", mesh), ConfigError);
   ParticleFrame frame = three_particles();
-  frame.groups.clear();
+  frame.bodies.clear();
   EXPECT_THROW(write_particles_vtp(folder / "a.vtp", frame), ConfigError);
   EXPECT_EQ(folder.entries(), 0u);
 }

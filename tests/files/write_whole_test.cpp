@@ -103,7 +103,7 @@ TEST(write_whole, a_full_disk_keeps_the_old_file_and_leaves_no_partial_one) {
   const std::string before = content_of(folder / "a.ply");
   frame.positions.resize(10000, Vec3::Zero());
   frame.velocities.resize(10000, Vec3::Zero());
-  frame.groups.resize(10000);
+  frame.bodies.resize(10000);
   EXPECT_EQ(io_problem([&] { write_particles(folder / "a.ply", frame); }).message,
             "cannot be written: No space left on device");
   EXPECT_EQ(content_of(folder / "a.ply"), before);

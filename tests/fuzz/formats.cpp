@@ -54,7 +54,7 @@ void read_as_points(const std::filesystem::path& file) {
 void read_as_particles(const std::filesystem::path& file) {
   const ParticleFrame frame = read_particles(file);
   require(all_finite(frame.positions) && all_finite(frame.velocities), "particles are not finite");
-  require(frame.velocities.size() == frame.positions.size() && frame.groups.size() == frame.positions.size(),
+  require(frame.velocities.size() == frame.positions.size() && frame.bodies.size() == frame.positions.size(),
           "a column of particles is not as long as their positions");
 }
 

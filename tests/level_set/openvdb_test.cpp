@@ -162,7 +162,7 @@ TEST(openvdb, grids_are_named_by_their_surface_and_there_are_no_others) {
   surfacer.draw({points,
                  {},
                  {{.spacing = 1, .rows = Rows{0, first}},
-                  {.spacing = 1, .group = 1, .rows = Rows{first, points.size()}}}});
+                  {.spacing = 1, .body = 1, .rows = Rows{first, points.size()}}}});
   EXPECT_EQ(level_set(surfacer, 1)->getName(), "surface_1");
   expect_words(config_error([&] { level_set(surfacer, 2); }), {"surface: 2 is not allowed", "has 2"});
   surfacer.draw({points, {}, {{.spacing = 1}}});

@@ -21,7 +21,7 @@ namespace points_vdb_test {
 struct Points {
   std::vector<Vec3> positions;
   std::vector<Vec3> velocities;
-  std::vector<std::uint8_t> groups;
+  std::vector<std::uint32_t> bodies;
 };
 
 Points some_points() {
@@ -30,13 +30,13 @@ Points some_points() {
     const auto t = static_cast<float>(i);
     points.positions.push_back({40 * std::sin(t), 40 * std::cos(1.7f * t), 0.1f * t - 3});
     points.velocities.push_back({t, -t, 0.3f * t});
-    points.groups.push_back(static_cast<std::uint8_t>(i % 256));
+    points.bodies.push_back(static_cast<std::uint32_t>(i));
   }
   return points;
 }
 
 std::string to_vdb(const Points& points, float voxel_size = 2.0f, int threads = 0) {
-  return points_vdb(points.positions, points.velocities, points.groups, voxel_size, threads);
+  return points_vdb(points.positions, points.velocities, points.bodies, voxel_size, threads);
 }
 
 /// The one grid of a file, read as other programs do.
@@ -62,7 +62,7 @@ Points columns_of(const openvdb::points::PointDataGrid& grid) {
   const std::size_t count = openvdb::points::pointCount(grid.tree());
   const float nowhere = std::numeric_limits<float>::quiet_NaN();
   Points points{std::vector<Vec3>(count, Vec3::Constant(nowhere)), std::vector<Vec3>(count),
-                std::vector<std::uint8_t>(count)};
+                std::vector<std::uint32_t>(count)};
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
     const AttributeHandle<openvdb::Vec3f> places(leaf->constAttributeArray("P"));
     const AttributeHandle<openvdb::Vec3f> velocities(leaf->constAttributeArray("v"));
@@ -74,7 +74,7 @@ Points columns_of(const openvdb::points::PointDataGrid& grid) {
       const openvdb::Vec3f v = velocities.get(*index);
       points.positions.at(id) = Eigen::Vector3d(x.x(), x.y(), x.z()).cast<float>();
       points.velocities.at(id) = {v.x(), v.y(), v.z()};
-      points.groups.at(id) = static_cast<std::uint8_t>(groups.get(*index));
+      points.bodies.at(id) = static_cast<std::uint32_t>(groups.get(*index));
     }
   }
   return points;
@@ -89,7 +89,7 @@ TEST(points_vdb, openvdb_reads_the_points_that_were_written) {
   const Points read = columns_of(*grid);
   ASSERT_EQ(read.positions.size(), written.positions.size());
   EXPECT_EQ(read.velocities, written.velocities);
-  EXPECT_EQ(read.groups, written.groups);
+  EXPECT_EQ(read.bodies, written.bodies);
   for (std::size_t i = 0; i < read.positions.size(); ++i) {
     // Places are kept as parts of a voxel, in single precision.
     const float error = (read.positions[i] - written.positions[i]).cwiseAbs().maxCoeff();
@@ -110,7 +110,7 @@ TEST(points_vdb, no_points_and_points_at_one_place_are_files_too) {
   ASSERT_TRUE(none);
   EXPECT_EQ(openvdb::points::pointCount(none->tree()), 0u);
   const Points heap{std::vector<Vec3>(70000, Vec3(1, 2, 3)), std::vector<Vec3>(70000, Vec3(0, 0, 1)),
-                    std::vector<std::uint8_t>(70000, 7)};
+                    std::vector<std::uint32_t>(70000, 7)};
   EXPECT_EQ(columns_of(*read_vdb(to_vdb(heap))).positions, heap.positions);
 }
 
@@ -134,8 +134,11 @@ TEST(points_vdb, what_cannot_be_written_is_refused_by_name) {
   points.velocities.pop_back();
   EXPECT_EQ(field(points, 1), "velocities");
   points = some_points();
-  points.groups.clear();
-  EXPECT_EQ(field(points, 1), "groups");
+  points.bodies.clear();
+  EXPECT_EQ(field(points, 1), "bodies");
+  points = some_points();
+  points.bodies[7] = 0x80000000u;
+  EXPECT_EQ(field(points, 1), "bodies[7]");
 }
 
 }  // namespace points_vdb_test

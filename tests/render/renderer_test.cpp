@@ -19,7 +19,7 @@ namespace mallow::render {
 namespace renderer_test {
 
 // A ball of 2 n² quads.
-Mesh ball(const Vec3& center, float radius, std::uint32_t n, std::uint8_t group) {
+Mesh ball(const Vec3& center, float radius, std::uint32_t n, std::uint32_t body) {
   Mesh mesh;
   for (std::uint32_t row = 0; row <= n; ++row) {
     for (std::uint32_t column = 0; column <= 2 * n; ++column) {
@@ -27,7 +27,7 @@ Mesh ball(const Vec3& center, float radius, std::uint32_t n, std::uint8_t group)
       const float around = std::numbers::pi_v<float> * static_cast<float>(column) / static_cast<float>(n);
       mesh.vertices.push_back(center + radius * Vec3(std::sin(polar) * std::cos(around),
                                                      std::sin(polar) * std::sin(around), std::cos(polar)));
-      mesh.material_ids.push_back(group);
+      mesh.material_ids.push_back(body);
       if (row == n || column == 2 * n) continue;
       const std::uint32_t a = row * (2 * n + 1) + column;
       const std::uint32_t above = a + 2 * n + 1;
@@ -77,14 +77,32 @@ TEST(renderer, same_bits_for_any_thread_count) {
   }
 }
 
-TEST(renderer, bodies_have_the_hue_of_their_group) {
+TEST(renderer, one_of_a_thousand_bodies_has_its_own_appearance) {
+  const Camera camera = frame_camera(k_bounds, small());
+  Renderer renderer(small(), 1);
+  std::vector<Appearance> palette(1000, k_palette[0]);
+  const std::vector<Vec3> center{{0, 0, 3}};
+  for (const std::uint32_t body : std::array<std::uint32_t, 2>{256, 999}) {
+    palette[body] = k_palette[1];
+    const Image mesh = renderer.render(ball(center[0], 3, 40, body), palette, k_floor, camera);
+    const Image points = renderer.render_points(center, 3, std::array{body}, palette, k_floor, camera);
+    for (const Image* image : {&mesh, &points}) {
+      const auto color = pixel(*image, 80, 50);
+      EXPECT_GT(color[2], color[0] + 60);
+    }
+  }
+  for (const std::uint32_t body : std::array<std::uint32_t, 2>{1000, 0xffffffff})
+    EXPECT_THROW(renderer.render_points(center, 3, std::array{body}, palette, k_floor, camera), ConfigError);
+}
+
+TEST(renderer, bodies_have_the_hue_of_their_appearance) {
   const Camera camera = frame_camera(k_bounds, small());
   Renderer renderer(small(), 1);
   const std::vector<Vec3> center{{0, 0, 3}};
-  for (const std::uint8_t group : std::array<std::uint8_t, 2>{0, 1}) {
-    const std::size_t strong = group == 0 ? 0 : 2;
-    const Image mesh = renderer.render(ball(center[0], 3, 40, group), k_palette, k_floor, camera);
-    const Image points = renderer.render_points(center, 3, std::array{group}, k_palette, k_floor, camera);
+  for (const std::uint32_t body : std::array<std::uint32_t, 2>{0, 1}) {
+    const std::size_t strong = body == 0 ? 0 : 2;
+    const Image mesh = renderer.render(ball(center[0], 3, 40, body), k_palette, k_floor, camera);
+    const Image points = renderer.render_points(center, 3, std::array{body}, k_palette, k_floor, camera);
     for (const Image* image : {&mesh, &points}) {
       const auto color = pixel(*image, 80, 50);
       EXPECT_GT(color[strong], 110);
@@ -145,7 +163,7 @@ TEST(renderer, light_shines_through_jelly_and_not_through_clay) {
   EXPECT_LT(red(k_clay, {}), red(k_palette, {}) - 30);
 }
 
-TEST(renderer, a_triangle_between_groups_has_the_finish_of_the_nearer_corner) {
+TEST(renderer, a_triangle_between_bodies_has_the_finish_of_the_nearer_corner) {
   const Camera camera{.eye = {0, -0.5f, 12}, .target = {0, 0, 0}};
   const Mesh quad{.vertices = {{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}},
                   .triangles = {{0, 1, 2}, {0, 2, 3}},

@@ -50,7 +50,7 @@ TEST_F(build_scene, puts_bodies_into_groups_in_the_order_of_the_file) {
   EXPECT_EQ(simulation.colliders().size(), 1u);
   const std::vector<std::uint32_t> expected{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1};
   EXPECT_EQ(simulation.bodies_by_id(), expected);
-  EXPECT_EQ(group_materials(scene), (std::vector<std::size_t>{1, 0}));
+  EXPECT_EQ(body_materials(scene), (std::vector<std::size_t>{1, 0}));
 
   const SimulationInfo info = simulation.info();
   ASSERT_EQ(info.bodies.size(), 2u);

@@ -56,7 +56,7 @@ TEST(surface_particles, columns_and_arrays_are_drawn_alike) {
   expect_same(surfacer.draw({view, view, {{.spacing = 1}}}), expected);
 }
 
-TEST(surface_particles, rows_of_no_body_are_not_drawn_and_bodies_of_a_group_share_a_surface) {
+TEST(surface_particles, rows_of_no_body_are_not_drawn_and_stretches_of_a_body_share_a_surface) {
   std::vector<Vec3> points = shaken_ball({0, 0, 0}, 3);
   const std::size_t first = points.size();
   for (const Vec3& x : shaken_ball({6, 0, 0}, 3)) points.push_back(x);
@@ -74,9 +74,9 @@ TEST(surface_particles, rows_of_no_body_are_not_drawn_and_bodies_of_a_group_shar
   const Mesh& apart = surfacer.draw(
       {two,
        {},
-       {{.spacing = 1, .rows = Rows{0, first}}, {.spacing = 1, .group = 4, .rows = Rows{first, both}}}});
+       {{.spacing = 1, .rows = Rows{0, first}}, {.spacing = 1, .body = 4, .rows = Rows{first, both}}}});
   EXPECT_EQ(component_count(apart), 2u);
-  EXPECT_EQ(apart.material_ids.back(), 4);
+  EXPECT_EQ(apart.material_ids.back(), 4u);
   EXPECT_EQ(surfacer.surface_count(), 5u);
 }
 
@@ -101,11 +101,10 @@ TEST(surface_particles, of_a_simulation_are_drawn_as_copies_in_the_order_of_ids_
     bool sorted = false;
     for (int frame = 0; frame < 4; ++frame) {
       const std::vector<Vec3> x = simulation.positions_by_id(), v = simulation.velocities_by_id();
-      const std::vector<std::uint32_t> groups = simulation.bodies_by_id();
+      const std::vector<std::uint32_t> bodies_of = simulation.bodies_by_id();
       std::vector<SurfaceBody> bodies;
       for (std::size_t i = 0; i < x.size(); ++i)
-        bodies.push_back(
-            {.spacing = 1, .group = static_cast<std::uint8_t>(groups[i]), .rows = Rows{i, i + 1}});
+        bodies.push_back({.spacing = 1, .body = bodies_of[i], .rows = Rows{i, i + 1}});
       expect_same(surfacer.draw(surface_particles(simulation)), other.draw({x, v, bodies}));
       for (int step = 0; step < 10; ++step) simulation.step();
       sorted = sorted || !std::is_sorted(simulation.ids().begin(), simulation.ids().end());

@@ -48,10 +48,10 @@ std::vector<Vec3> ball(float radius, float jitter = 0, const Vec3& center = {0, 
   return sample(sphere_shape(center, radius), {.spacing = 1.0f, .jitter = jitter}).positions;
 }
 
-/// Rows before `first` are of group 0, the others of group 1.
-std::vector<SurfaceBody> two_groups(std::size_t first, std::size_t count, float spacing_0, float spacing_1) {
-  return {{.spacing = spacing_0, .group = 0, .rows = Simulation::Rows{0, first}},
-          {.spacing = spacing_1, .group = 1, .rows = Simulation::Rows{first, count}}};
+/// Rows before `first` are of body 0, the others of body 1.
+std::vector<SurfaceBody> two_bodies(std::size_t first, std::size_t count, float spacing_0, float spacing_1) {
+  return {{.spacing = spacing_0, .body = 0, .rows = Simulation::Rows{0, first}},
+          {.spacing = spacing_1, .body = 1, .rows = Simulation::Rows{first, count}}};
 }
 
 constexpr SurfaceKind k_kinds[] = {SurfaceKind::blended, SurfaceKind::anisotropic, SurfaceKind::spheres};
@@ -134,11 +134,11 @@ TEST(surfacer, vertices_move_with_the_particles) {
   EXPECT_TRUE(surfacer.draw({points, {}, {{.spacing = 1}}}).velocities.empty());
 }
 
-TEST(surfacer, groups_have_surfaces_of_their_own_or_one_that_they_share) {
+TEST(surfacer, bodies_have_surfaces_of_their_own_or_one_that_they_share) {
   std::vector<Vec3> points = ball(4);
   const std::size_t first = points.size();
   for (const Vec3& x : ball(4, 0, {8, 0, 0})) points.push_back(x);
-  const std::vector<SurfaceBody> bodies = two_groups(first, points.size(), 1, 1);
+  const std::vector<SurfaceBody> bodies = two_bodies(first, points.size(), 1, 1);
   Surfacer apart({.voxel_size = 0.25f}), joined({.voxel_size = 0.25f, .joined = true});
   const Mesh two = apart.draw({points, {}, bodies});
   EXPECT_EQ(why_not_manifold(two), "");
@@ -216,12 +216,12 @@ TEST(surfacer, voxels_follow_the_spacing_and_not_the_box) {
   EXPECT_EQ(surface(small, 0.001953125f, {}).vertices.size(), alone.vertices.size());
 }
 
-TEST(surfacer, each_group_has_voxels_for_its_own_spacing_and_joined_ones_for_the_widest) {
+TEST(surfacer, each_body_has_voxels_for_its_own_spacing_and_joined_ones_for_the_widest) {
   const std::vector<Vec3> coarse = ball(4);
   std::vector<Vec3> fine, points = coarse;
   for (const Vec3& x : ball(4)) fine.push_back(0.25f * x + Vec3(20, 0, 0));
   points.insert(points.end(), fine.begin(), fine.end());
-  const std::vector<SurfaceBody> bodies = two_groups(coarse.size(), points.size(), 1, 0.25f);
+  const std::vector<SurfaceBody> bodies = two_bodies(coarse.size(), points.size(), 1, 0.25f);
   const Mesh both = Surfacer({}).draw({points, {}, bodies});
   std::vector<Vec3> expected = surface(coarse, 1, {}).vertices;
   for (const Vec3& x : surface(fine, 0.25f, {}).vertices) expected.push_back(x);
@@ -231,12 +231,12 @@ TEST(surfacer, each_group_has_voxels_for_its_own_spacing_and_joined_ones_for_the
             Surfacer({.voxel_size = 1 / 2.7f, .joined = true}).draw({points, {}, bodies}).vertices);
 }
 
-TEST(surfacer, voxels_are_counted_along_all_groups_together) {
+TEST(surfacer, voxels_are_counted_along_all_bodies_together) {
   std::vector<Vec3> points = ball(3);
   const std::size_t first = points.size();
   const Mesh alone = surface(points, 1, {.voxels = 64});
   points.emplace_back(100.0f, 0.0f, 0.0f);
-  const Mesh both = Surfacer({.voxels = 64}).draw({points, {}, two_groups(first, points.size(), 1, 1)});
+  const Mesh both = Surfacer({.voxels = 64}).draw({points, {}, two_bodies(first, points.size(), 1, 1)});
   EXPECT_LT(both.vertices.size(), alone.vertices.size() / 50);
 }
 

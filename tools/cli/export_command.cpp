@@ -16,9 +16,9 @@
 #include "mallow/files.h"
 #include "mallow/level_set.h"
 #include "mallow/surface.h"
+#include "program/body_appearances.h"
 #include "program/cached_run.h"
 #include "program/failure.h"
-#include "program/group_appearances.h"
 #include "program/input_files.h"
 #include "program/output_files.h"
 #include "program/run_mark.h"
@@ -43,16 +43,16 @@ bool contains(const std::vector<std::string>& formats, const char* format) {
   return std::find(formats.begin(), formats.end(), format) != formats.end();
 }
 
-/// What files say of each group of the scene.
-std::vector<MeshGroup> mesh_groups(const program::CachedRun& run) {
-  const std::vector<Appearance> appearances = program::group_appearances(run.scene);
-  const std::vector<std::size_t> materials = group_materials(run.scene);
-  std::vector<MeshGroup> groups;
-  for (std::size_t g = 0; g < materials.size(); ++g) {
-    groups.push_back({appearances[g], run.report.at("groups").at(g).value("name", ""),
-                      run.scene.materials[materials[g]].name});
+/// What files say of each body of the scene.
+std::vector<MeshBody> mesh_bodies(const program::CachedRun& run) {
+  const std::vector<Appearance> appearances = program::body_appearances(run.scene);
+  const std::vector<std::size_t> materials = body_materials(run.scene);
+  std::vector<MeshBody> bodies;
+  for (std::size_t b = 0; b < materials.size(); ++b) {
+    bodies.push_back({appearances[b], run.report.at("groups").at(b).value("name", ""),
+                      run.scene.materials[materials[b]].name});
   }
-  return groups;
+  return bodies;
 }
 
 /// Simulated seconds from a frame to the next, as the particles say.
@@ -94,11 +94,11 @@ class Series {
     vtp_frames_.push_back({fs::path(kind_) / program::frame_name(number, "vtp"), time});
     usda_frames_.push_back({fs::path(kind_) / program::frame_name(number, "usda"), number});
   }
-  void finish(std::span<const MeshGroup> groups, const UsdOptions& usd) const {
+  void finish(std::span<const MeshBody> bodies, const UsdOptions& usd) const {
     const std::string name = (out_ / kind_).string();
     if (contains(formats_, "vtp")) write_pvd(name + ".pvd", vtp_frames_);
-    if (contains(formats_, "usda")) write_usda_series(name + ".usda", usda_frames_, groups, usd);
-    if (contains(formats_, "obj")) write_mtl(out_ / kind_ / k_materials, groups);
+    if (contains(formats_, "usda")) write_usda_series(name + ".usda", usda_frames_, bodies, usd);
+    if (contains(formats_, "obj")) write_mtl(out_ / kind_ / k_materials, bodies);
     if (!formats_.empty()) std::printf("%s %zu\n", kind_, vtp_frames_.size());
   }
 
@@ -154,12 +154,12 @@ class FrameWriter {
   FrameWriter(const program::CachedRun& run, UpAxis up)
       : run_(run),
         usd_(usd_options(run, up)),
-        groups_(mesh_groups(run)),
+        bodies_(mesh_bodies(run)),
         surfacer_(run.scene.surface, run.threads),
         voxel_size_(2 * *std::max_element(run.spacings.begin(), run.spacings.end())) {}
 
   const UsdOptions& usd() const { return usd_; }
-  std::span<const MeshGroup> groups() const { return groups_; }
+  std::span<const MeshBody> bodies() const { return bodies_; }
 
   ParticleFrame read_particles(int number) const {
     ParticleFrame frame = mallow::read_particles(run_.cache.particles_file(number));
@@ -176,10 +176,10 @@ class FrameWriter {
   /// mesh: as the cache has it
   void write_surface(const Mesh& mesh, int number, const std::string& format, const fs::path& file) const {
     if (format == "obj")
-      write_mesh_obj(file, mesh, {.up = usd_.up, .groups = groups_, .material_library = k_materials});
-    if (format == "glb") write_mesh_glb(file, mesh, groups_);
+      write_mesh_obj(file, mesh, {.up = usd_.up, .bodies = bodies_, .material_library = k_materials});
+    if (format == "glb") write_mesh_glb(file, mesh, bodies_);
     if (format == "vtp") write_mesh_vtp(file, turned(mesh));
-    if (format == "usda") write_mesh_usda(file, mesh, groups_, usd_, number);
+    if (format == "usda") write_mesh_usda(file, mesh, bodies_, usd_, number);
   }
   /// Level sets are no part of a cache: they are drawn again, with the run's settings.
   void write_level_set(const ParticleFrame& frame, const fs::path& file) {
@@ -198,7 +198,7 @@ class FrameWriter {
 
   const program::CachedRun& run_;
   UsdOptions usd_;
-  std::vector<MeshGroup> groups_;
+  std::vector<MeshBody> bodies_;
   Surfacer surfacer_;
   float voxel_size_;
 };
@@ -233,8 +233,8 @@ void export_frames(const ExportOptions& options) {
           writer.write_surface(mesh, number, format, file);
       });
     });
-    surfaces.finish(writer.groups(), writer.usd());
-    particles.finish(writer.groups(), writer.usd());
+    surfaces.finish(writer.bodies(), writer.usd());
+    particles.finish(writer.bodies(), writer.usd());
   } catch (const std::exception& error) {
     throw program::RunFailure(error.what());
   }

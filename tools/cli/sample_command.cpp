@@ -43,7 +43,7 @@ double average_neighbors(const Body& body, float radius, int threads) {
 
 void write_points(const Body& body, const std::filesystem::path& file) {
   const ParticleFrame frame{body.positions, std::vector<Vec3>(body.positions.size(), Vec3::Zero()),
-                            std::vector<std::uint8_t>(body.positions.size(), 0), 0, 0};
+                            std::vector<std::uint32_t>(body.positions.size(), 0), 0, 0};
   if (file.extension() == ".ply") {
     write_particles(file, frame);
   } else {

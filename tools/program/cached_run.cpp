@@ -31,8 +31,8 @@ CachedRun open_cached_run(const CachedRunOptions& options, const std::string& se
   // A cache stands anywhere, its scene's files where they were; from here on none of them is read.
   Scene scene = read_scene(cache.scene_file(), options.overrides, {.allow_outside_paths = true});
   nlohmann::ordered_json report = read_report(cache.report_file());
-  std::vector<float> spacings = group_spacings(report, cache.report_file());
-  if (spacings.size() != group_materials(scene).size()) {
+  std::vector<float> spacings = body_spacings(report, cache.report_file());
+  if (spacings.size() != body_materials(scene).size()) {
     throw IoError({cache.report_file().string(), 0, 0, "groups", "does not list the groups of scene.toml"});
   }
   if (writes) Cache::refuse_inputs(options.folder, InputFiles(scene), "", false);

@@ -23,7 +23,7 @@ struct CachedRun {
   Cache cache;
   Scene scene;
   nlohmann::ordered_json report;
-  std::vector<float> spacings;  ///< h of each group [m]
+  std::vector<float> spacings;  ///< h of each body [m]
   int threads;
 };
 

@@ -182,7 +182,7 @@ void write_report(const std::filesystem::path& file, const nlohmann::ordered_jso
   write_whole(file, report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
-std::vector<float> group_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
+std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
   std::vector<float> spacings;
   try {
     for (const auto& group : report.at("groups")) spacings.push_back(group.at("spacing").get<float>());

@@ -77,8 +77,8 @@ std::string hash_text(std::uint64_t hash);
 nlohmann::ordered_json read_report(const std::filesystem::path& file);
 /// Whole or not at all.
 void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report);
-/// What later commands need of a report: h of each group [m]. Throws IoError where the report does not fit
+/// What later commands need of a report: h of each body [m]. Throws IoError where the report does not fit
 /// the scene.
-std::vector<float> group_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file);
+std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file);
 
 }  // namespace mallow::program

@@ -4,7 +4,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "program/group_appearances.h"
+#include "program/body_appearances.h"
 
 namespace mallow::program {
 namespace {
@@ -80,13 +80,13 @@ Stills::Stills(const Scene& scene, const ParticleFrame& first, std::span<const f
     : scene_(scene),
       renderer_(scene.render, threads),
       camera_(render::frame_camera(view_bounds(scene, first), scene.render)),
-      palette_(group_appearances(scene)),
+      palette_(body_appearances(scene)),
       ball_radius_(0.5f * *std::min_element(spacings.begin(), spacings.end())) {}
 
 void Stills::take(const ParticleFrame& frame, const Mesh& surface, const std::filesystem::path& file) {
   const std::vector<Collider> colliders = colliders_at(scene_, frame.time);
   render::write_png(file, surface.triangles.empty()
-                              ? renderer_.render_points(frame.positions, ball_radius_, frame.groups, palette_,
+                              ? renderer_.render_points(frame.positions, ball_radius_, frame.bodies, palette_,
                                                         colliders, camera_)
                               : renderer_.render(surface, palette_, colliders, camera_));
 }

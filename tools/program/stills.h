@@ -13,7 +13,7 @@ namespace mallow::program {
 /// Takes the pictures of a run: camera and looks are those of frame 0 and stay through the film.
 class Stills {
  public:
-  /// `scene` must outlive the stills. spacings: h of each group [m].
+  /// `scene` must outlive the stills. spacings: h of each body [m].
   Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads);
 
   /// The surface of a frame, or its particles where the surface is empty.
@@ -23,7 +23,7 @@ class Stills {
   const Scene& scene_;
   render::Renderer renderer_;
   render::Camera camera_;
-  std::vector<Appearance> palette_;  ///< appearance of each group
+  std::vector<Appearance> palette_;  ///< appearance of each body
   float ball_radius_;                ///< [m]
 };
 

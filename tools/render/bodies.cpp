@@ -26,11 +26,11 @@ RTCRayHit embree_ray(const Ray& ray, float t_max) {
   return query;
 }
 
-void check_palette(std::span<const std::uint8_t> groups, std::span<const Appearance> palette, bool any) {
+void check_palette(std::span<const std::uint32_t> bodies, std::span<const Appearance> palette, bool any) {
   const std::size_t needed =
-      groups.empty() ? (any ? 1 : 0) : 1u + *std::max_element(groups.begin(), groups.end());
+      bodies.empty() ? (any ? 1 : 0) : std::size_t{1} + *std::max_element(bodies.begin(), bodies.end());
   if (palette.size() >= needed) return;
-  throw ConfigError("palette", std::to_string(palette.size()) + " are not enough: group " +
+  throw ConfigError("palette", std::to_string(palette.size()) + " are not enough: body " +
                                    std::to_string(needed - 1) + " needs one too");
 }
 
@@ -78,7 +78,7 @@ void Bodies::commit(RTCGeometry geometry) {
 void Bodies::set_mesh(const Mesh& mesh, std::span<const Appearance> palette) {
   check_palette(mesh.material_ids, palette, !mesh.triangles.empty());
   mesh_ = &mesh;
-  groups_ = mesh.material_ids;
+  body_of_ = mesh.material_ids;
   palette_ = palette;
   normals_ = mesh.normals.empty() ? vertex_normals(mesh) : std::vector<Vec3>{};
   if (mesh.triangles.empty()) return commit(nullptr);
@@ -95,11 +95,11 @@ void Bodies::set_mesh(const Mesh& mesh, std::span<const Appearance> palette) {
   commit(geometry);
 }
 
-void Bodies::set_points(std::span<const Vec3> positions, float radius, std::span<const std::uint8_t> groups,
+void Bodies::set_points(std::span<const Vec3> positions, float radius, std::span<const std::uint32_t> bodies,
                         std::span<const Appearance> palette) {
-  check_palette(groups, palette, !positions.empty());
+  check_palette(bodies, palette, !positions.empty());
   mesh_ = nullptr;
-  groups_ = groups;
+  body_of_ = bodies;
   palette_ = palette;
   if (positions.empty()) return commit(nullptr);
 
@@ -127,7 +127,7 @@ std::optional<Bodies::Hit> Bodies::nearest(const Ray& ray, float t_max) const {
     fill_mesh_hit(query, hit);
   } else {
     hit.normal = hit.face;
-    const Appearance& appearance = palette_[groups_.empty() ? 0 : groups_[query.hit.primID]];
+    const Appearance& appearance = palette_[body_of_.empty() ? 0 : body_of_[query.hit.primID]];
     hit.albedo = appearance.color;
     hit.finish = appearance.finish;
   }
@@ -146,11 +146,11 @@ void Bodies::fill_mesh_hit(const RTCRayHit& query, Hit& hit) const {
   float clay = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     hit.normal += weights[k] * normals[corners[k]];
-    const Appearance& appearance = palette_[groups_.empty() ? 0 : groups_[corners[k]]];
+    const Appearance& appearance = palette_[body_of_.empty() ? 0 : body_of_[corners[k]]];
     hit.albedo += weights[k] * appearance.color;
     if (appearance.finish == Finish::clay) clay += weights[k];
   }
-  // Where groups are joined the seam runs through the triangles, as colours change there.
+  // Where bodies are joined the seam runs through the triangles, as colours change there.
   hit.finish = clay > 0.5f ? Finish::clay : Finish::jelly;
   hit.normal = hit.normal.squaredNorm() > 1e-12f ? Vec3(hit.normal.normalized()) : hit.face;
   // Meshes without a clear outside are lit from the side that is seen.

@@ -21,7 +21,7 @@ class Bodies {
 
   /// The mesh and palette must outlive the rays. Throws ConfigError where a material id has no appearance.
   void set_mesh(const Mesh& mesh, std::span<const Appearance> palette);
-  void set_points(std::span<const Vec3> positions, float radius, std::span<const std::uint8_t> groups,
+  void set_points(std::span<const Vec3> positions, float radius, std::span<const std::uint32_t> bodies,
                   std::span<const Appearance> palette);
 
   struct Hit {
@@ -53,7 +53,7 @@ class Bodies {
   std::unique_ptr<RTCSceneTy, ReleaseScene> scene_;
   const Mesh* mesh_ = nullptr;  // null: points
   std::vector<Vec3> normals_;   // per vertex, where the mesh has none
-  std::span<const std::uint8_t> groups_;
+  std::span<const std::uint32_t> body_of_;
   std::span<const Appearance> palette_;
 };
 

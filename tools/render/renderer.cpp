@@ -217,12 +217,12 @@ Image Renderer::render(const Mesh& mesh, std::span<const Appearance> palette,
 }
 
 Image Renderer::render_points(std::span<const Vec3> positions, float radius,
-                              std::span<const std::uint8_t> groups, std::span<const Appearance> palette,
+                              std::span<const std::uint32_t> bodies, std::span<const Appearance> palette,
                               std::span<const Collider> colliders, const Camera& camera) {
   Checks checks;
   check_value("radius", radius, k_positive, checks);
   checks.finish();
-  state_->bodies.set_points(positions, radius, groups, palette);
+  state_->bodies.set_points(positions, radius, bodies, palette);
   return state_->draw(colliders, camera);
 }
 

@@ -51,8 +51,8 @@ class Renderer {
   /// where a material id has no appearance or the camera is out of range.
   Image render(const Mesh& mesh, std::span<const Appearance> palette, std::span<const Collider> colliders,
                const Camera& camera);
-  /// The particles themselves as balls of `radius` [m], > 0. `groups` indexes `palette`; empty: all 0.
-  Image render_points(std::span<const Vec3> positions, float radius, std::span<const std::uint8_t> groups,
+  /// The particles themselves as balls of `radius` [m], > 0. `bodies` indexes `palette`; empty: all 0.
+  Image render_points(std::span<const Vec3> positions, float radius, std::span<const std::uint32_t> bodies,
                       std::span<const Appearance> palette, std::span<const Collider> colliders,
                       const Camera& camera);
 

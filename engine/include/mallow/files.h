@@ -26,7 +26,8 @@
 ///   corners of a polygon                   1,048,576
 ///   header of a PLY                        1 MiB, 1000 elements and properties
 ///   memory                                 the file, and 12 bytes for each vertex, normal, velocity,
-///                                          triangle and corner of an STL, twice that while they grow: 10 GB
+///                                          triangle and corner of an STL, 4 for each body or material id,
+///                                          twice that while they grow: 11 GB
 ///
 /// and for scenes (mallow/scene.h)
 ///
@@ -34,7 +35,7 @@
 ///   keys within keys (a.b.c)               9
 ///   values                                 1,000,000, which take 500 MB at the most
 ///   names; paths                           256 bytes; 4096 bytes
-///   materials, bodies, colliders, pins     10,000 each; 256 groups
+///   materials, bodies, colliders, pins     10,000 each
 ///   particles                              100,000,000 in all
 ///   paths of meshes and points             in the scene's folder, see SceneReadOptions
 ///   problems that are listed               1000
@@ -61,20 +62,21 @@ MALLOW_EXPORT Body read_points(const std::filesystem::path& file, float spacing)
 struct ParticleFrame {
   std::vector<Vec3> positions;
   std::vector<Vec3> velocities;
-  std::vector<std::uint8_t> groups;  ///< group of each particle
-  double time = 0;                   ///< simulated time [s]
-  std::int64_t step = 0;             ///< steps taken
+  std::vector<std::uint32_t> bodies;  ///< body of each particle
+  double time = 0;                    ///< simulated time [s]
+  std::int64_t step = 0;              ///< steps taken
 };
 
 /// The particles of a simulation as they are now.
 MALLOW_EXPORT ParticleFrame snapshot(const Simulation& simulation);
 
 /// The particles of a frame for a Surfacer, as views: the meshes are those of surface_particles() of the
-/// simulation that it shows, bit by bit. spacings: h of each group [m]; throws ConfigError where a group has
+/// simulation that it shows, bit by bit. spacings: h of each body [m]; throws ConfigError where a body has
 /// none.
 MALLOW_EXPORT SurfaceParticles surface_particles(const ParticleFrame& frame, std::span<const float> spacings);
 
-/// Binary PLY with x y z vx vy vz group, time and step as comments.
+/// Binary PLY with x y z vx vy vz group, which is the body, time and step as comments. Bodies are `uchar`
+/// where all are below 256, `uint` where not.
 MALLOW_EXPORT void write_particles(const std::filesystem::path& file, const ParticleFrame& frame);
 /// What write_particles() wrote. Throws IoError.
 MALLOW_EXPORT ParticleFrame read_particles(const std::filesystem::path& file);
@@ -82,15 +84,16 @@ MALLOW_EXPORT ParticleFrame read_particles(const std::filesystem::path& file);
 /// `id,x,y,z,vx,vy,vz` with nine significant digits, which give back the same floats.
 MALLOW_EXPORT void write_state_csv(const std::filesystem::path& file, const ParticleFrame& frame);
 
-/// Binary PLY with normals, velocities and material ids where the mesh has them.
+/// Binary PLY with normals, velocities and material ids where the mesh has them; ids are `uchar` where all
+/// are below 256, `uint` where not.
 MALLOW_EXPORT void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh);
 
-/// What files say of a group, to which Mesh::material_ids assign vertices.
-struct MeshGroup {
+/// What files say of a body, to which Mesh::material_ids assign vertices.
+struct MeshBody {
   Appearance appearance;
-  std::string name = {};  ///< of the group; empty: "group 0", by its number
+  std::string name = {};  ///< of the body; empty: "group 0", by its number
   std::string material =
-      {};  ///< of its material, which groups share where it is the same; empty: "material 0"
+      {};  ///< of its material, which bodies share where it is the same; empty: "material 0"
 };
 
 /// The axis that points up in a file; in the engine it is z.
@@ -103,27 +106,27 @@ inline Vec3 with_y_up(const Vec3& v) {
 /// What an OBJ file is to hold beside vertices and triangles.
 struct ObjOptions {
   UpAxis up = UpAxis::z;                        ///< a comment in the file says which one it is
-  std::span<const MeshGroup> groups = {};       ///< `g` and `usemtl` for each; empty: neither
+  std::span<const MeshBody> bodies = {};        ///< `g` and `usemtl` for each; empty: neither
   std::filesystem::path material_library = {};  ///< of write_mtl(), in the OBJ's folder; empty: no `usemtl`
 };
-/// Wavefront OBJ, with normals where the mesh has them. A triangle is of the group that most of its corners
-/// are of, of the smallest id of three that differ; triangles of a group stand together, in their order. What
+/// Wavefront OBJ, with normals where the mesh has them. A triangle is of the body that most of its corners
+/// are of, of the smallest id of three that differ; triangles of a body stand together, in their order. What
 /// a name may not hold there (blanks, #, \) becomes _. Throws ConfigError as write_mesh_glb() where there are
-/// groups.
+/// bodies.
 MALLOW_EXPORT void write_mesh_obj(const std::filesystem::path& file, const Mesh& mesh,
                                   const ObjOptions& options = {});
-/// The materials of groups for OBJ files. Colours are sRGB, as most programs take them (three.js, MeshLab,
+/// The materials of bodies for OBJ files. Colours are sRGB, as most programs take them (three.js, MeshLab,
 /// VTK); Blender takes them as linear. Throws ConfigError where a colour is out of range.
-MALLOW_EXPORT void write_mtl(const std::filesystem::path& file, std::span<const MeshGroup> groups);
+MALLOW_EXPORT void write_mtl(const std::filesystem::path& file, std::span<const MeshBody> bodies);
 
-/// glTF 2.0 binary: for each group that has triangles a node and a mesh with its name, and a material with
-/// that of the scene; velocities as attribute _VELOCITY. A triangle is of a group as in write_mesh_obj(). The
+/// glTF 2.0 binary: for each body that has triangles a node and a mesh with its name, and a material with
+/// that of the scene; velocities as attribute _VELOCITY. A triangle is of a body as in write_mesh_obj(). The
 /// node above them turns z, which is up in the mesh, to glTF's y. A mesh without triangles gives a scene
-/// without a mesh, as glTF knows no empty one. groups: one for each material id; throws ConfigError where one
+/// without a mesh, as glTF knows no empty one. bodies: one for each material id; throws ConfigError where one
 /// is missing, a colour is out of range or a name is not UTF-8, or a number is not finite, as JSON could not
 /// say it.
 MALLOW_EXPORT void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh,
-                                  std::span<const MeshGroup> groups);
+                                  std::span<const MeshBody> bodies);
 
 /// How meshes stand in the space and time of USD, where a time code is a frame.
 struct UsdOptions {
@@ -135,21 +138,21 @@ struct UsdOptions {
 };
 /// USD's text: a Mesh /surface/mesh with normals and velocities where the mesh has them, in metres, and a
 /// UsdPreviewSurface /surface/materials/NAME for each material, which is bound to the mesh or, where there
-/// are several groups, to a GeomSubset of its faces for each, with its name; faces have the primvar
-/// displayColor and, of several groups, the primvar group. Characters that USD does not allow in a name
+/// are several bodies, to a GeomSubset of its faces for each, with its name; faces have the primvar
+/// displayColor and, of several bodies, the primvar group. Characters that USD does not allow in a name
 /// become
 /// _, and displayName keeps the name as it was. frame: its time code, at which all that changes between
-/// frames has time samples; left out: values that always hold. Takes groups and throws as write_mesh_glb()
+/// frames has time samples; left out: values that always hold. Takes bodies and throws as write_mesh_glb()
 /// does.
 MALLOW_EXPORT void write_mesh_usda(const std::filesystem::path& file, const Mesh& mesh,
-                                   std::span<const MeshGroup> groups, const UsdOptions& options = {},
+                                   std::span<const MeshBody> bodies, const UsdOptions& options = {},
                                    std::optional<int> frame = {});
 
 /// VTK's XML PolyData, triangles with the point arrays Normals, Velocity and Material where the mesh has
-/// them.
+/// them. Material and Group are UInt8 where all are below 256, UInt32 where not.
 MALLOW_EXPORT void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh);
 
-/// VTK's XML PolyData, vertices with the point arrays Velocity, Group and Id.
+/// VTK's XML PolyData, vertices with the point arrays Velocity, Group, which is the body, and Id.
 MALLOW_EXPORT void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame& frame);
 /// OpenVDB points, see points_vdb() in mallow/level_set.h for the attributes and for what is thrown.
 /// voxel_size: [m], > 0; twice the spacing gives about 8 points a voxel.
@@ -174,9 +177,9 @@ MALLOW_EXPORT std::filesystem::path usda_manifest(const std::filesystem::path& s
 /// USD's text that plays the files of frames as one Mesh whose values change. The files are value clips of
 /// the prim /surface: a program opens only those of the frames that it shows, and one that knows no value
 /// clips shows the first frame. The manifest, which names the attributes that change, is written too. frames:
-/// ascending; throws ConfigError where not. groups and options: those of the frames.
+/// ascending; throws ConfigError where not. bodies and options: those of the frames.
 MALLOW_EXPORT void write_usda_series(const std::filesystem::path& file, std::span<const UsdFrame> frames,
-                                     std::span<const MeshGroup> groups, const UsdOptions& options = {});
+                                     std::span<const MeshBody> bodies, const UsdOptions& options = {});
 
 /// A saved state as a file, compressed, every bit of it under a checksum. Whole or not at all; the checkpoint
 /// that was there is kept as previous_checkpoint(), so that whenever a writer is killed, one of the two is

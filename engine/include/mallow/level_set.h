@@ -32,10 +32,11 @@ MALLOW_EXPORT ImplicitShape mesh_shape(const Mesh& mesh, int voxels = k_mesh_vox
 MALLOW_EXPORT std::string level_set_vdb(const Surfacer& surfacer);
 
 /// Points as the content of a VDB file: a PointDataGrid "particles" with the attributes v [m/s] (the name
-/// that Houdini knows velocity by), group and id. positions: [m]; ids are their indices. voxel_size: [m], >
-/// 0. Throws ConfigError where columns differ in length, or a position is not finite or further than 2^30
-/// voxels from the origin.
+/// that Houdini knows velocity by), group, which is the body, and id. positions: [m]; ids are their indices.
+/// bodies: below 2^31. voxel_size: [m], > 0. Throws ConfigError where columns differ in length, a body is out
+/// of range, or a position is not finite or further than 2^30 voxels from the origin.
 MALLOW_EXPORT std::string points_vdb(std::span<const Vec3> positions, std::span<const Vec3> velocities,
-                                     std::span<const std::uint8_t> groups, float voxel_size, int threads = 0);
+                                     std::span<const std::uint32_t> bodies, float voxel_size,
+                                     int threads = 0);
 
 }  // namespace mallow

@@ -13,9 +13,9 @@ namespace mallow {
 struct Mesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<Vec3> normals;               ///< per vertex, unit length; empty or as long as `vertices`
-  std::vector<Vec3> velocities;            ///< per vertex [m/s]; empty or as long as `vertices`
-  std::vector<std::uint8_t> material_ids;  ///< per vertex, group the surface belongs to; empty: all 0
+  std::vector<Vec3> normals;                ///< per vertex, unit length; empty or as long as `vertices`
+  std::vector<Vec3> velocities;             ///< per vertex [m/s]; empty or as long as `vertices`
+  std::vector<std::uint32_t> material_ids;  ///< per vertex, body the surface belongs to; empty: all 0
 };
 
 /// The smallest box that holds all vertices; {0, 0} for an empty mesh.

@@ -149,6 +149,6 @@ MALLOW_EXPORT double frame_time(const Scene& scene, const SimulationInfo& info);
 /// almost no time.
 MALLOW_EXPORT std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info);
 /// The material of each body that build() makes, in order of BodyId.
-MALLOW_EXPORT std::vector<std::size_t> group_materials(const Scene& scene);
+MALLOW_EXPORT std::vector<std::size_t> body_materials(const Scene& scene);
 
 }  // namespace mallow

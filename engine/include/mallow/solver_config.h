@@ -40,7 +40,7 @@ struct SolverConfig {
   /// Also bound the step by the speed of sound and by viscous diffusion.
   bool acoustic_limit = true;
   /// Distance from a collider at which a particle touches it [m], >= 0; left out: half the spacing of its
-  /// group.
+  /// body.
   std::optional<float> contact_offset = {};
   /// Newton iterations for a region's rotation in a step, at most, in [0, 8]; each starts where the last
   /// step ended. With 8, what has not converged is solved exactly, so that every rotation is right to single

@@ -59,8 +59,10 @@ class StridedVectors {
 
 /// Particles that a surface is drawn around.
 struct SurfaceBody {
-  float spacing;           ///< h [m], > 0
-  std::uint8_t group = 0;  ///< bodies of one group have one surface, whose material id it is
+  float spacing;  ///< h [m], > 0
+  /// The body that they are part of. Particles of one body have one surface, whose material id it is. Memory
+  /// is taken for each body up to the largest.
+  std::uint32_t body = 0;
   std::optional<Simulation::Rows> rows = {};  ///< its particles; left out: all
 };
 
@@ -74,12 +76,11 @@ struct SurfaceParticles {
   std::span<const ParticleId> ids = {};
 };
 
-/// The particles of a simulation as they are now, a group for each of its bodies; a view, valid until the
-/// next step or change. Throws ConfigError where there are more than 256 bodies.
+/// The particles of a simulation as they are now; a view, valid until the next step or change.
 MALLOW_EXPORT SurfaceParticles surface_particles(const Simulation& simulation);
 
 /// Draws the surfaces of one frame after another, and keeps its memory from frame to frame. A mesh is closed,
-/// manifold and oriented; its vertices have normals, material ids, which are groups, and, where particles
+/// manifold and oriented; its vertices have normals, material ids, which are bodies, and, where particles
 /// have them, velocities. Same particles, same bits, for any number of threads.
 class MALLOW_EXPORT Surfacer {
  public:
@@ -92,11 +93,11 @@ class MALLOW_EXPORT Surfacer {
   /// @copydoc Surfacer(Surfacer&&)
   Surfacer& operator=(Surfacer&&) noexcept;
 
-  /// The surfaces of all groups as one mesh, which holds until the next call; no particles, no mesh. Throws
+  /// The surfaces of all bodies as one mesh, which holds until the next call; no particles, no mesh. Throws
   /// ConfigError where particles are not as said, or the surface would take more than
   /// SurfaceConfig::memory_limit.
   const Mesh& draw(const SurfaceParticles& particles);
-  /// How many surfaces the frame drawn last has: one, or one for each group up to the last that has
+  /// How many surfaces the frame drawn last has: one, or one for each body up to the last that has
   /// particles.
   std::size_t surface_count() const;
   /// Memory it holds [bytes].

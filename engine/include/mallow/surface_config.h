@@ -15,7 +15,7 @@ enum class SurfaceKind {
 
 /// How a surface is drawn around particles.
 struct SurfaceConfig {
-  /// Voxels a spacing, in [0.5, 16], of the particles that a surface is drawn around: where groups have
+  /// Voxels a spacing, in [0.5, 16], of the particles that a surface is drawn around: where bodies have
   /// surfaces of their own each has voxels for its own spacing, and joined ones have them for the widest.
   /// Counts where voxel_size and voxels are left out. A splash of 1,000 particles, in the mean off what fine
   /// voxels show: 2 takes 3.7 ms, 0.028 h; 2.7 takes 4.1 ms, 0.017 h; 3 takes 4.8 ms, 0.014 h; 4 takes 6.1
@@ -34,7 +34,7 @@ struct SurfaceConfig {
   /// Distance of the surface from the outermost particles, in spacings, in [0.1, 1].
   float particle_radius = 0.55f;
   SurfaceKind kind = SurfaceKind::blended;
-  /// One surface around all groups, which melts where they touch, in place of one around each. The widest
+  /// One surface around all bodies, which melts where they touch, in place of one around each. The widest
   /// spacing counts for all.
   bool joined = false;
   /// Where the surface is even, vertices are merged, in cubes of up to eight voxels a side, as long as that

@@ -1,4 +1,4 @@
-#include "program/group_appearances.h"
+#include "program/body_appearances.h"
 
 #include <array>
 
@@ -14,9 +14,9 @@ const std::array<Vec3, 8> k_palette = {
 
 }  // namespace
 
-std::vector<Appearance> group_appearances(const Scene& scene) {
+std::vector<Appearance> body_appearances(const Scene& scene) {
   std::vector<Appearance> appearances;
-  for (const std::size_t index : group_materials(scene)) {
+  for (const std::size_t index : body_materials(scene)) {
     const SceneMaterial& material = scene.materials[index];
     appearances.push_back({material.color.value_or(k_palette[index % k_palette.size()]), material.finish});
   }
