@@ -47,8 +47,11 @@ std::vector<DriftScene> drift_scenes() {
     scene.name = name;
     // The paper's numbers, the same with gravity and without.
     scene.config = {.time_step = 0.15f, .support_radius = 2.1f, .update_interval = 60, .threads = 1};
-    scene.material = {
-        .alpha = alpha, .update_threshold = 12.0f, .pressure_coefficient = 16.0f, .viscosity = 0.5f};
+    scene.material = {.alpha = alpha,
+                      .update_threshold = 12.0f,
+                      .pressure_coefficient = 16.0f,
+                      .viscosity = 0.5f,
+                      .deformation_damping = 0.0f};
     scene.body = sample(Lattice{.count = {5, 5, 5}, .corner = corner, .jitter = 0});
     if (falls)
       scene.colliders = {{.shape = Plane{}, .friction = 0.3f}};

@@ -13,6 +13,9 @@ namespace mallow {
 constexpr std::array<const char*, 2> choices(Formulation) {
   return {"conservative", "printed"};
 }
+constexpr std::array<const char*, 2> choices(BodyContact) {
+  return {"constraint", "pressure"};
+}
 constexpr std::array<const char*, 3> choices(SurfaceKind) {
   return {"blended", "anisotropic", "spheres"};
 }

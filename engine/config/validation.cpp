@@ -34,10 +34,41 @@ void check(const Material& material, Checks& checks) {
   check_fields("material.", material, checks);
 }
 
+namespace {
+
+/// Damping takes its part of the pull that a step carries. With θ = τ/Δt and s = 1 − exp(−ζ Δt), linear
+/// theory has a (1 + 2 θ) < 4 − 2 s; tumbling bodies ask for k_stiffest.
+void check_damping(const SolverConfig& config, const Material& material, Checks& checks) {
+  const double rate = static_cast<double>(material.deformation_damping.value_or(0.0f));
+  if (!config.time_step || !(material.damping_time > 0 || rate > 0)) return;
+  const double base = static_cast<double>(*config.time_step);
+  const double step = static_cast<double>(config.time_step_factor) * base;
+  const double elastic_step = static_cast<double>(material.elastic_time_step.value_or(*config.time_step));
+  const double pull =
+      (1 - static_cast<double>(material.alpha.lowest())) * step * step / (base * elastic_step);
+  const auto refuse = [&](const char* key, double value, double most) {
+    std::ostringstream text;
+    text << value << " is not allowed: at most " << std::max(0.0, most)
+         << ", as a body damped more would gain energy in steps of " << step
+         << " s; a larger material.elastic_time_step, which is softer, allows more";
+    checks.problem(key, text.str());
+  };
+  const double time = static_cast<double>(material.damping_time);
+  const double most_time = 0.5 * step * (static_cast<double>(k_stiffest) / pull - 1);
+  if (time > most_time) refuse("material.damping_time", time, most_time);
+  constexpr double k_linear = 0.9;
+  const double most_share = 2 - 0.5 * pull * (1 + 2 * time / step) / k_linear;
+  if (time <= most_time && most_share < 1 && -std::expm1(-rate * step) > most_share)
+    refuse("material.deformation_damping", rate, -std::log1p(-most_share) / step);
+}
+
+}  // namespace
+
 void check_stiffness(const SolverConfig& config, const Material& material, Checks& checks) {
   constexpr double k_most = static_cast<double>(k_stiffest);
   constexpr double k_rounding = 1e-5;  // of what is typed with six digits
   if (material.alpha.keys().empty()) return;
+  check_damping(config, material, checks);
   // Left out, Δt_SM is Δt0, whatever that is; given, it is judged once that is known.
   if (material.elastic_time_step && !config.time_step) return;
   const double factor = static_cast<double>(config.time_step_factor);

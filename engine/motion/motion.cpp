@@ -15,7 +15,7 @@ ConstVectors raw_or_null(const VectorColumn* column) {
 }
 
 ForcesInput forces(const MotionInput& in, const ParticleStore& store) {
-  return {
+  ForcesInput forces{
       .position = raw(store.position),
       .velocity = raw(store.velocity),
       .sph_acceleration = raw_or_null(in.sph_acceleration),
@@ -28,7 +28,14 @@ ForcesInput forces(const MotionInput& in, const ParticleStore& store) {
       .time_step = in.time_step,
       .sph_factor = in.alpha * in.time_step,
       .elastic_factor = in.elastic_factor,
+      .damping = in.damping,
   };
+  for (int a = 0; a < 3; ++a) {
+    forces.center[a] = static_cast<float>(in.rigid.center[a]);
+    forces.velocity_of_center[a] = static_cast<float>(in.rigid.velocity[a]);
+    forces.spin[a] = static_cast<float>(in.rigid.spin[a]);
+  }
+  return forces;
 }
 
 bool is_pinned(const ForcesInput& forces, std::size_t row) {
@@ -93,6 +100,8 @@ class MovingBlock {
     if (!lanes_.advance(forces_, begin_, end_, raw(std::as_const(store_.next_velocity)),
                         raw(store_.next_position)))
       sums.bad_row = first_bad_row(store_, begin_, end_);
+    if (in_.measure_rigid)
+      sums.rigid = sum_rigid(store_.next_position, store_.next_velocity, begin_, end_, in_.rigid.center);
   }
 
   /// The phases one after the other. predicted: where v' before contact goes in one loop and comes from in
@@ -138,6 +147,7 @@ void add_up(MovingBodies& bodies) {
     MotionSums& sums = bodies.sums[body];
     sums.external += bodies.partial[b].external;
     sums.unpinned += bodies.partial[b].unpinned;
+    sums.rigid += bodies.partial[b].rigid;
     sums.bad_row = std::min(sums.bad_row, bodies.partial[b].bad_row);
     const double mass = static_cast<double>(bodies.inputs[body].mass);
     for (std::size_t c = 0; c < colliders; ++c) {

@@ -8,6 +8,7 @@
 #include "core/execution.h"
 #include "core/isa.h"
 #include "core/range_blocks.h"
+#include "motion/rigid_motion.h"
 #include "particles/particle_store.h"
 
 namespace mallow {
@@ -26,14 +27,18 @@ struct MotionInput {
   std::span<const PlacedCollider> colliders;
   ContactStep contact;
   std::span<const Vec3> pin_velocities;
-  bool measure_external;  ///< sum |a_ext|
-  float mass;             ///< m [kg], by which loads are counted
+  bool measure_external;       ///< sum |a_ext|
+  bool measure_rigid = false;  ///< sum the rigid motion that the body has afterwards
+  float damping = 0;           ///< share of what is not `rigid` that goes in this step [model 2, section 4 B]
+  RigidMotion rigid = {};      ///< of the body at the start of the step
+  float mass;                  ///< m [kg], by which loads are counted
 };
 
 /// What the update rule and the checks want to know of a body's motion.
 struct MotionSums {
   double external = 0;  ///< Σ |a_ext| over unpinned particles, contact included [m/s²]
   std::size_t unpinned = 0;
+  RigidSums rigid;                 ///< near the centre at the start of the step
   std::size_t bad_row = SIZE_MAX;  ///< first row whose new velocity or position is not finite
 };
 

@@ -42,10 +42,18 @@ struct Bounds {
   }
 };
 
+LaneVec3 cross(const LaneVec3& a, const LaneVec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
 BlockBounds blend(const ForcesInput& in, std::size_t begin, std::size_t end, Vectors velocity) noexcept {
   Bounds bounds;
   for_rows(begin, end, [&](auto rows) {
     LaneVec3 v = get(rows, in.velocity);
+    if (in.damping > 0) {
+      const LaneVec3 arm = get(rows, in.position) - all_lanes(in.center);
+      v += in.damping * (all_lanes(in.velocity_of_center) + cross(all_lanes(in.spin), arm) - v);
+    }
     v += in.time_step * external_acceleration(in, rows, all_lanes(in.gravity));
     if (in.sph_acceleration.x) v += in.sph_factor * get(rows, in.sph_acceleration);
     if (in.pull.x) {
@@ -95,7 +103,8 @@ float fastest(const ForcesInput& in, std::size_t begin, std::size_t end) noexcep
   Lanes most = all_lanes(-1);
   LaneMask undefined = {};
   for_rows(begin, end, [&](auto rows) {
-    const LaneVec3 a = in.sph_factor * get(rows, in.sph_acceleration) + all_lanes(in.gravity);
+    LaneVec3 a = all_lanes(in.gravity);
+    if (in.sph_acceleration.x) a = in.sph_factor * get(rows, in.sph_acceleration) + a;
     const LaneVec3 v = get(rows, in.velocity) + in.time_step * external_acceleration(in, rows, a);
     Lanes speed = squared(v);
     if (in.pin) {

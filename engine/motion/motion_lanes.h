@@ -27,6 +27,10 @@ struct ForcesInput {
   float time_step;           ///< Δt [s]
   float sph_factor;          ///< α Δt [s]
   float elastic_factor;      ///< (1 − α) Δt/(Δt0 Δt_SM) [1/s]
+  /// Share of the difference between v and the body's rigid motion that goes in this step; 0 reads no more of
+  /// it.
+  float damping = 0;
+  float center[3] = {}, velocity_of_center[3] = {}, spin[3] = {};  ///< [m], [m/s], [rad/s]
 };
 
 /// All of model section 4 but contact (engine/colliders). They write to no row outside [begin, end).

@@ -56,7 +56,7 @@ Fastest fastest_particle(const ParticleStore& store, const Execution& execution,
   const auto forces = [&](const FastestInput::Body& body) {
     return ForcesInput{.position = {},
                        .velocity = raw(store.velocity),
-                       .sph_acceleration = raw(*in.sph_acceleration),
+                       .sph_acceleration = in.sph_acceleration ? raw(*in.sph_acceleration) : ConstVectors{},
                        .cross_group = in.cross_group ? raw(*in.cross_group) : ConstVectors{},
                        .user = in.user ? raw(*in.user) : ConstVectors{},
                        .pull = {},
@@ -96,7 +96,7 @@ double limited_time_step(const TimeStepLimits& limits, double max_velocity) {
   // V a little above 0.999 σ/Δt0 is where [TK eq. 12] starts to act; 0.999 makes its "<" hold.
   const double radius = static_cast<double>(limits.support_radius);
   double step = static_cast<double>(limits.time_step);
-  if (max_velocity > 0) step = std::min(step, 0.999 * radius / max_velocity);
+  if (max_velocity > 0) step = std::min(step, 0.999 * static_cast<double>(limits.farthest) / max_velocity);
   if (!limits.acoustic) return step;
   for (const TimeStepLimits::Pressure& pressure : limits.pressures)
     step = std::min(step, pressure_limit(pressure, radius));

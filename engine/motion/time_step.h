@@ -28,7 +28,7 @@ struct FastestInput {
   std::vector<Body> bodies;
   float time_step;                       ///< [s]
   Vec3 gravity;                          ///< [m/s²]
-  const VectorColumn* sph_acceleration;  ///< [m/s²]; not null
+  const VectorColumn* sph_acceleration;  ///< [m/s²]
   const VectorColumn* cross_group;       ///< [m/s²]
   const VectorColumn* user;              ///< [m/s²]
 
@@ -43,6 +43,7 @@ Fastest fastest_particle(const ParticleStore& store, const Execution& execution,
 struct TimeStepLimits {
   float time_step;       ///< Δt0 [s]
   float support_radius;  ///< σ [m]
+  float farthest;        ///< way of the fastest particle [m]; σ in [TK eq. 12]
   bool acoustic;         ///< the limits of `pressures` count
   /// Of each body, as it acts.
   struct Pressure {

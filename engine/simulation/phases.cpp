@@ -27,12 +27,20 @@ float viscous_time(const SolverConfig& config, const BodyState& body) {
 TimeStepLimits::Pressure acting_pressure(const Simulation::State& state, const BodyState& body) {
   // Other bodies feel the whole pressure, whatever this one's alpha, unless it follows alpha.
   const bool follows = !body.material->settings.pressure_coefficient;
-  const float push =
-      state.bodies.size() > 1 ? (follows ? contact_share(body.material->alpha) : 1.0f) : body.material->alpha;
-  const float drag = state.bodies.size() > 1 ? 1.0f : body.material->alpha;
+  const bool presses = state.bodies.size() > 1 && !state.sph.apart;
+  const float push = presses ? (follows ? contact_share(body.material->alpha) : 1.0f) : body.material->alpha;
+  const float drag = presses ? 1.0f : body.material->alpha;
   return {.coefficient = push * pressure_coefficient(state, *body.material),
           .kinematic_viscosity = drag * body.viscosity / body.rest_density,
           .stiffness = state.stiffness(*body.material)};
+}
+
+/// How far a particle may move in a step: not beyond what SPH reaches, and where bodies touch not so far that
+/// two could pass each other before either is looked for. [TK eq. 12]
+float farthest_move(const Simulation::State& state) {
+  const float radius = state.config.support_radius;
+  if (!state.bodies_touch()) return radius;
+  return radius - 0.5f * std::ranges::max_element(state.bodies, {}, &BodyState::spacing)->spacing;
 }
 
 /// pressures: where those of the bodies are kept.
@@ -40,6 +48,7 @@ TimeStepLimits limits(const Simulation::State& state, std::vector<TimeStepLimits
   TimeStepLimits limits{
       .time_step = state.longest_step(),
       .support_radius = state.config.support_radius,
+      .farthest = farthest_move(state),
       .acoustic = state.config.acoustic_limit,
       .pressures = {},
       .viscous_time = std::numeric_limits<float>::infinity(),
@@ -95,6 +104,7 @@ void check_damage(const Simulation::State& state) {
 MaterialLimits material_limits(const Simulation::State& state, const BodyState& body) {
   TimeStepLimits none{.time_step = std::numeric_limits<float>::infinity(),
                       .support_radius = state.config.support_radius,
+                      .farthest = farthest_move(state),
                       .acoustic = state.config.acoustic_limit,
                       .pressures = {},
                       .viscous_time = std::numeric_limits<float>::infinity()};
@@ -114,7 +124,8 @@ double unlimited_step(const Simulation::State& state) {
 }
 
 bool Simulation::State::needs_sph() const {
-  return bodies.size() > 1 || bodies.front().material->alpha > 0.0f;
+  if (bodies.size() > 1 && !sph.apart) return true;
+  return std::ranges::any_of(bodies, [](const BodyState& body) { return body.material->alpha > 0; });
 }
 
 void read_alphas(Simulation::State& state) {
@@ -167,6 +178,7 @@ int update_references(Simulation::State& state) {
     if (yields) {
       if (body.matches_shape() && body.shape.built) catch_up_with_pull(state, body);
       take_reference(state, body);
+      body.yielded = true;
       ++updated;
     }
     if (due()) build_regions(state.execution, state.region_scratch, body.shape);
@@ -208,6 +220,26 @@ void call_force(Simulation::State& state) {
               {a.x(), n, a.stride()});
 }
 
+const VectorColumn& lead_positions(Simulation::State& state) {
+  const ParticleStore& store = state.store;
+  const auto damped = [&](const BodyState& body) {
+    return body.matches_shape() && body.material->settings.damping_time > 0;
+  };
+  if (std::ranges::none_of(state.bodies, damped)) return store.position;
+  state.led_position.resize_unset(store.size());
+  for (const BodyState& body : state.bodies) {
+    const float lead = damped(body) ? body.material->settings.damping_time : 0.0f;
+    parallel_for(state.execution.threads, body.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        const float *x = store.position.axis(a) + body.begin, *v = store.velocity.axis(a) + body.begin;
+        float* const to = state.led_position.axis(a) + body.begin;
+        for (std::size_t i = begin; i < end; ++i) to[i] = x[i] + lead * v[i];
+      }
+    });
+  }
+  return state.led_position;
+}
+
 namespace {
 
 /// V, and who is that fast.
@@ -215,7 +247,7 @@ Fastest find_fastest(Simulation::State& state) {
   FastestInput& input = state.fastest;
   input.time_step = state.longest_step();
   input.gravity = state.config.gravity;
-  input.sph_acceleration = &state.sph.acceleration;
+  input.sph_acceleration = state.sph_ran ? &state.sph.acceleration : nullptr;
   input.cross_group = state.cross_group();
   input.user = state.user();
   input.bodies.clear();
@@ -231,7 +263,7 @@ Fastest find_fastest(Simulation::State& state) {
 /// The longest step that velocities and accelerations allow.
 float longest_time_step(Simulation::State& state, StepReport& report) {
   const float longest = state.longest_step();
-  if (!state.sph_ran) return longest;
+  if (!state.sph_ran && !state.bodies_touch()) return longest;
   const Fastest fastest = find_fastest(state);
   const double velocity =
       fastest.squared_velocity == -1 ? 0.0 : std::sqrt(static_cast<double>(fastest.squared_velocity));
@@ -289,6 +321,9 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
                   .least_bounce = 2.0f * config.gravity.norm() * time_step},
       .pin_velocities = state.pin_velocities,
       .measure_external = body.step_weight > 0,
+      .measure_rigid = body.keeps_reference() && state.deformation_damping(body) > 0,
+      .damping = body.matches_shape() ? -std::expm1(-state.deformation_damping(body) * time_step) : 0.0f,
+      .rigid = body.rigid,
       .mass = body.mass,
   };
 }
@@ -309,12 +344,14 @@ void plan_motion(Simulation::State& state, float time_step) {
 }
 
 void judge_motion(Simulation::State& state) {
-  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
-    const MotionSums& sums = state.moving.sums[b];
+  for (const MotionSums& sums : state.moving.sums)
     if (sums.bad_row != SIZE_MAX)
       refuse_damage(state, Phase::motion, static_cast<std::uint32_t>(sums.bad_row));
-    state.bodies[b].step_external =
-        sums.unpinned > 0 ? sums.external / static_cast<double>(sums.unpinned) : 0.0;
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    BodyState& body = state.bodies[b];
+    const MotionSums& sums = state.moving.sums[b];
+    body.step_external = sums.unpinned > 0 ? sums.external / static_cast<double>(sums.unpinned) : 0.0;
+    if (state.moving.inputs[b].measure_rigid) body.rigid = rigid_motion(sums.rigid, body.rigid.center);
   }
 }
 
@@ -324,6 +361,25 @@ void move_bodies(Simulation::State& state, float time_step, const MotionPhases& 
   if (phases.predict) plan_motion(state, time_step);
   move_particles(phases, state.execution, state.store, state.moving);
   if (phases.advance) judge_motion(state);
+}
+
+void resolve_touching(Simulation::State& state, float time_step) {
+  state.touching.clear();
+  for (const BodyState& body : state.bodies)
+    state.touching.push_back({.begin = body.begin,
+                              .end = body.end,
+                              .group = body.sph_group,
+                              .spacing = body.spacing,
+                              .mass = body.mass,
+                              .friction = body.material->settings.friction,
+                              .shape = body.matches_shape() ? &body.shape : nullptr});
+  const ParticleStore& store = state.store;
+  state.contact_pairs.grid.spacing = state.sph.grid.spacing;
+  resolve_body_contacts(store.position, store.pin.empty() ? nullptr : store.pin.data(), state.touching,
+                        {.time_step = time_step,
+                         .reach = 2 * state.config.support_radius,
+                         .max_push = state.config.support_radius / (10.0f * state.base_step())},
+                        state.execution, state.store.next_velocity, state.contact_pairs);
 }
 
 void finish_step(Simulation::State& state, const ChosenStep& step) {

@@ -15,7 +15,7 @@ namespace mallow {
 namespace {
 
 /// Counted up whenever the chunks or what they mean change.
-constexpr std::uint32_t k_version = 4;
+constexpr std::uint32_t k_version = 5;
 static_assert(sizeof(std::size_t) == sizeof(std::uint64_t), "sizes are saved as they are");
 
 // One list of members a type, for both ways: see PackingArchive, and config/field_tables.h for those of
@@ -59,6 +59,10 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   archive(body.external_sum);
   archive(body.external_weight);
   archive(body.grew);
+  archive(body.yielded);
+  for (auto* vector : {&body.rigid.center, &body.rigid.velocity, &body.rigid.spin})
+    archive.array(vector->data(), 3);
+  archive(body.rigid.deformation_speed);
   archive(body.shape.built);
   archive(body.shape.spacing);
   archive(body.shape.total_moment);

@@ -22,8 +22,8 @@ float contact_share(float alpha);
 float cohesive_share(float support_radius, float pressure_coefficient, float time_step);
 
 /// Spacing and speeds -> scale, time_step and its source, if this is the first prepare(); γ_u of every
-/// material and μ of every body. Throws ConfigError where nothing says how long a step is, where steps are too long for a material's
-/// springs, or where a default is beyond single precision.
+/// material and μ of every body. Throws ConfigError where nothing says how long a step is, where steps are
+/// too long for a material's springs, or where a default is beyond single precision.
 void resolve_settings(Simulation::State& state);
 /// α, settings -> k of every body in the sums of SPH.
 void resolve_pressures(Simulation::State& state);

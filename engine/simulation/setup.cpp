@@ -53,6 +53,7 @@ void describe_bodies(Simulation::State& state) {
   sph.groups.clear();
   sph.bodies.clear();
   sph.viscous = false;
+  sph.apart = state.config.contact == BodyContact::constraint;
   double volume = 0;
   std::vector<const BodyState*> merging;  // the first of each group that merges
   for (BodyState& body : state.bodies) {
@@ -325,7 +326,12 @@ void Simulation::prepare() {
   s.sph.kept.forget();
   describe_bodies(s);
   for (BodyState& body : s.bodies) {
-    if (body.grew && body.keeps_reference()) take_reference(s, body);
+    if (body.grew && body.keeps_reference()) {
+      take_reference(s, body);
+      const Eigen::Vector3d near = s.store.position.get(body.begin).cast<double>();
+      body.rigid =
+          rigid_motion(sum_rigid(s.store.position, s.store.velocity, body.begin, body.end, near), near);
+    }
     body.grew = false;
   }
   read_alphas(s);

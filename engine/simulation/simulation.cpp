@@ -35,17 +35,23 @@ StepReport Simulation::step_towards(double end) {
   timer.lap(Phase::time_step);
 
   const int iterations = s.config.rotation_iterations;
-  match_small_bodies(x, iterations, s.execution, s.matched);  // x, x̄ -> R_j, g − x     [TK eq. 7]
-  sum_regions(x, s.execution, s.matched);                     // x, x̄ -> sums over N_j
+  const VectorColumn& led = lead_positions(s);                  // x, v -> x + τ v
+  match_small_bodies(led, iterations, s.execution, s.matched);  // x, x̄ -> R_j, g − x     [TK eq. 7]
+  sum_regions(led, s.execution, s.matched);                     // x, x̄ -> sums over N_j
   timer.lap(Phase::region_sums);
   solve_rotations(iterations, s.execution, s.matched);  // sums -> R_j
   timer.lap(Phase::rotations);
   compute_goals(s.execution, s.matched);  // R_j -> g − x       [TK eq. 7]
   timer.lap(Phase::goals);
 
-  // a, g − x -> v', contact with colliders, v' -> x': one loop, as nothing stands between them. [TK eq. 10 to
-  // 13]
-  move_bodies(s, step.time_step, {.predict = true, .collide = true, .advance = true});
+  // a, g − x -> v', contact, v' -> x': in one loop where nothing stands between them. [TK eq. 10 to 13]
+  if (s.bodies_touch()) {
+    move_bodies(s, step.time_step, {.predict = true});                   // a, g − x -> v'
+    resolve_touching(s, step.time_step);                                 // x, v' -> v' of what touches
+    move_bodies(s, step.time_step, {.collide = true, .advance = true});  // contact with colliders, v' -> x'
+  } else {
+    move_bodies(s, step.time_step, {.predict = true, .collide = true, .advance = true});
+  }
   finish_step(s, step);  // v', x' -> v, x; c ← c + 1
   timer.lap(Phase::motion);
   return report;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "contact/body_contact.h"
 #include "core/execution.h"
 #include "mallow/simulation.h"
 #include "motion/motion.h"
@@ -47,8 +48,10 @@ struct BodyState {
   double external_weight = 0;      ///< Σ of these weights
   double step_external = 0;        ///< mean |a_ext| in the step under way [m/s²], and its weight
   double step_weight = 0;
-  bool grew = true;     ///< has particles that prepare() has not seen
-  ShapeMatching shape;  ///< empty where alpha is never below 1
+  RigidMotion rigid;     ///< kept where deformations are damped towards it
+  bool yielded = false;  ///< its reference shape was updated since it was built
+  bool grew = true;      ///< has particles that prepare() has not seen
+  ShapeMatching shape;   ///< empty where alpha is never below 1
 
   std::size_t size() const { return end - begin; }
   /// Mean |a_ext| before the check that is next [m/s²].
@@ -92,6 +95,9 @@ struct Simulation::State {
   Column<std::uint32_t> fluid_order;
   std::vector<TimeStepLimits::Pressure> pressures;
   std::vector<PlacedCollider> placed_colliders;
+  VectorColumn led_position;  ///< see lead_positions(); empty without damping
+  std::vector<TouchingBody> touching;
+  ContactPairs contact_pairs;
 
   /// Δt0, and what bounds the steps that are taken. Known from the first prepare() on [s].
   float base_step() const { return *config.time_step; }
@@ -121,15 +127,20 @@ struct Simulation::State {
   /// Throws ConfigError where a step cannot lead towards `end`, as that is not after the present time.
   void require_ahead(double end) const;
 
-  /// Some acceleration of SPH counts: pairs within a body that is not purely elastic, or between bodies.
+  /// Some acceleration of SPH counts: pairs within a body that is not purely elastic, or between bodies where
+  /// those are kept apart by pressure.
   bool needs_sph() const;
+  /// There are bodies that do not merge, and contact keeps them apart.
+  bool bodies_touch() const { return sph.apart && sph.groups.size() > 1; }
   /// Of the pull towards goals, (1 − α)/(Δt0 Δt_SM) [1/s²]. [TK eq. 13]
   float stiffness(const MaterialState& material) const {
     const float elastic_step = material.settings.elastic_time_step.value_or(base_step());
     return (1.0f - material.alpha) / (base_step() * elastic_step);
   }
+  /// Rate at which deformations are damped, ζ [1/s].
+  float deformation_damping(const BodyState& body) const;
   const VectorColumn* cross_group() const {
-    return sph_ran && sph.groups.size() > 1 ? &sph.cross_group : nullptr;
+    return sph_ran && sph.groups.size() > 1 && !sph.apart ? &sph.cross_group : nullptr;
   }
   const VectorColumn* user() const { return force ? &user_acceleration : nullptr; }
 };
@@ -149,6 +160,9 @@ int update_references(Simulation::State& state);
 void sort_fluids(Simulation::State& state);
 /// positions, velocities -> user accelerations.
 void call_force(Simulation::State& state);
+/// positions, velocities -> those at which shapes are matched, x + τ v: the positions themselves where
+/// nothing is damped. [model 2, section 4 B]
+const VectorColumn& lead_positions(Simulation::State& state);
 /// Δt [s] and the time that it leads to.
 struct ChosenStep {
   float time_step;
@@ -160,6 +174,8 @@ ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& re
 /// everything -> next positions and velocities, mean |a_ext|; one loop does what is asked for, each phase
 /// once in a step. [TK eq. 10, 11, 13, model 4, 5] Throws StepError.
 void move_bodies(Simulation::State& state, float time_step, const MotionPhases& phases);
+/// positions, predicted velocities -> those of bodies that touch. [model 2, section 4 C]
+void resolve_touching(Simulation::State& state, float time_step);
 /// next positions and velocities become the present ones; time, step and colliders move on.
 void finish_step(Simulation::State& state, const ChosenStep& step);
 

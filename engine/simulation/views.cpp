@@ -191,7 +191,8 @@ SimulationInfo Simulation::info() {
   info.cross_group = s.sph.groups.size() > 1;
   info.instruction_level = s.execution.level;
   info.bytes = s.store.bytes() + s.sph.bytes() + s.fluid_order.bytes() + s.user_acceleration.bytes() +
-               s.far_position.bytes() + s.region_scratch.bytes();
+               s.far_position.bytes() + s.region_scratch.bytes() + s.led_position.bytes() +
+               s.contact_pairs.bytes();
   info.time_step = s.base_step();
   info.time_step_source = s.time_step_source;
   info.longest_step = s.longest_step();

@@ -19,6 +19,7 @@ SphInput input(const Sph& sph) {
       .row_of = sph.grid.order.data(),
       .group = sph.group.empty() ? nullptr : sph.group.data(),
       .groups = sph.groups.data(),
+      .apart = sph.apart,
       .position = raw(sph.grid.sorted),
       .velocity = sph.viscous ? raw(sph.velocity) : ConstVectors{},
       .radius = sph.support_radius,
@@ -79,7 +80,7 @@ void compute_density(const Execution& execution, Sph& sph) {
 void compute_accelerations(const VectorColumn& velocities, const Execution& execution, Sph& sph) {
   const std::size_t n = sph.grid.order.size();
   sph.acceleration.resize(n);
-  if (sph.groups.size() > 1) sph.cross_group.resize(n);
+  if (sph.groups.size() > 1 && !sph.apart) sph.cross_group.resize(n);
   if (sph.viscous) {
     sph.velocity.resize(n);
     parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {

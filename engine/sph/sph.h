@@ -25,6 +25,7 @@ struct Sph {
   /// Constants of particles that act on each other as parts of one body: that of one body, or of several
   /// that merge.
   std::vector<SphGroup> groups;
+  bool apart = false;  ///< pairs of two groups add nothing
   /// The rows up to `end`, behind those of the body before.
   struct Body {
     std::size_t end;
@@ -42,7 +43,8 @@ struct Sph {
   // By row of the particle store.
   Column<float> density_by_row;
   VectorColumn acceleration;  ///< a^SPH: pairs of one group [m/s²]
-  VectorColumn cross_group;   ///< pairs of two groups, part of a_ext [m/s²]; empty where there is one group
+  VectorColumn cross_group;   ///< pairs of two groups, part of a_ext [m/s²]; empty where there is one group,
+                              ///< or they are apart
 
   std::size_t bytes() const;
 };

@@ -15,9 +15,18 @@ MALLOW_INLINE Floats not_negative(const Floats& value) {
   return larger(value, Floats{});
 }
 
+/// Of each particle of a cluster; lanes without one have that of the first.
+Ints groups_of(const SphInput& in, std::size_t cluster) {
+  const std::size_t first = in.cluster_start[cluster];
+  Ints own = Ints{} + static_cast<int>(in.group[first]);
+  for (std::size_t i = first; i < in.cluster_start[cluster + 1]; ++i)
+    own[i - first] = static_cast<int>(in.group[i]);
+  return own;
+}
+
 /// Σ_j of the densities of a cluster. `near`: null, or where to write who of the list is near some particle
 /// of the cluster, which may be the list itself; their number is written to `count`.
-template <bool grouped, bool listed>
+template <bool grouped, bool apart, bool listed>
 Floats sum_density(const SphInput& in, std::size_t cluster, std::uint32_t* near, std::uint32_t& count) {
   const std::uint32_t* const list = in.indices + in.list_begin[cluster];
   const std::uint32_t n = in.list_count[cluster];
@@ -25,9 +34,12 @@ Floats sum_density(const SphInput& in, std::size_t cluster, std::uint32_t* near,
   const float inverse_square = in.inverse_radius * in.inverse_radius;
   Floats sum = {};
   std::uint32_t found = 0;
+  Ints own = {};
+  if (apart) own = groups_of(in, cluster);
   for (std::uint32_t k = 0; k < n; ++k) {
     const std::uint32_t j = list[k];
-    const Floats t = not_negative(1.0f - squared_length(difference(in.position, j, x)) * inverse_square);
+    Floats t = not_negative(1.0f - squared_length(difference(in.position, j, x)) * inverse_square);
+    if (apart) t = where(is_equal(own, static_cast<int>(in.group[j])), t);
     const Floats w = t * t * t;
     sum += grouped ? in.groups[in.group[j]].rest_volume * w : w;
     if (!listed) continue;
@@ -42,8 +54,12 @@ Floats sum_density(const SphInput& in, std::size_t cluster, std::uint32_t* near,
 void density(const SphInput& in, std::size_t begin, std::size_t end, const NearLists& near, float* rho,
              float* pressure, float* volume, float* rho_by_row) noexcept {
   const bool grouped = in.group != nullptr, listed = near.indices != nullptr;
-  const auto sum = listed ? (grouped ? sum_density<true, true> : sum_density<false, true>)
-                          : (grouped ? sum_density<true, false> : sum_density<false, false>);
+  const auto sum = listed ? (!grouped   ? sum_density<false, false, true>
+                             : in.apart ? sum_density<true, true, true>
+                                        : sum_density<true, false, true>)
+                          : (!grouped   ? sum_density<false, false, false>
+                             : in.apart ? sum_density<true, true, false>
+                                        : sum_density<true, false, false>);
   for (std::size_t cluster = begin; cluster < end; ++cluster) {
     std::uint32_t unused = 0;
     const Floats sums = sum(in, cluster, listed ? near.indices + in.list_begin[cluster] : nullptr,
@@ -171,6 +187,7 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
     const Ints alike = is_equal(own, number);
     if (grouped && any(~alike)) {
       same += where(alike, a);
+      if (in.apart) return;
       sides.own_pressure = touching_pressure;
       sides.pressure *= group.contact_share;
       cross += where(~alike, Formula::template acceleration<viscous>(in, apart, sides));
@@ -213,7 +230,7 @@ void sum_clusters(const SphInput& in, std::size_t begin, std::size_t end, const 
     // Plus 0, or what is not a number where the density is infinite and the quotient would hide it.
     const Floats scale = Formula::factor(in) / density + (density - density);
     write_by_row(in, cluster, scale, own, same);
-    if (grouped) write_by_row(in, cluster, scale, other, cross);
+    if (grouped && !in.apart) write_by_row(in, cluster, scale, other, cross);
   }
 }
 

@@ -34,6 +34,7 @@ struct SphInput {
   const std::uint32_t* row_of;  ///< sorted place -> row of the particle store
   const std::uint32_t* group;   ///< null: all in group 0
   const SphGroup* groups;
+  bool apart;  ///< pairs of two groups add nothing: contact between bodies is not by pressure
   ConstVectors position;
   ConstVectors velocity;  ///< accelerations only; null without viscosity
   float radius;           ///< σ [m]
@@ -58,8 +59,8 @@ struct SphLanes {
                   float* pressure, float* volume, float* density_by_row) noexcept;
   /// a_i = (1/ρ_i) Σ_j V_j [ (p_i + p_j)/2 |∇W_spiky| r̂ + 5 μ ((v_j − v_i)·r̂) r̂ ∇²W_visc ], by row: pairs of
   /// one group into `same`, pairs of two groups, μ the mean of theirs and pressures times their
-  /// contact_share, into `cross` (null where there is one group). In the viscous term ρ is at least ρ0.
-  /// [model 1; model 2, section 0]
+  /// contact_share, into `cross` (null where there is one group, or where groups are apart). In the viscous
+  /// term ρ is at least ρ0. [model 1; model 2, section 0]
   void (*conservative)(const SphInput&, std::size_t begin, std::size_t end, const float* density,
                        const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept;
   /// [TK eq. 1, 2] to the letter: a_i = (1/ρ_i) Σ_j V_j [ −p_j ∇W_poly6 + μ v_j ∇²W_poly6 ], j = i included.

@@ -11,8 +11,12 @@ namespace motion_test {
 
 TEST(time_step, is_the_full_one_for_slow_particles_and_0_999_of_a_radius_for_fast_ones) {
   const TimeStepLimits::Pressure stiff[] = {{1e6f, 0, 0}};
-  const TimeStepLimits limits{
-      .time_step = 0.15f, .support_radius = 2, .acoustic = false, .pressures = stiff, .viscous_time = 0.001f};
+  const TimeStepLimits limits{.time_step = 0.15f,
+                              .support_radius = 2,
+                              .farthest = 2,
+                              .acoustic = false,
+                              .pressures = stiff,
+                              .viscous_time = 0.001f};
   EXPECT_DOUBLE_EQ(limited_time_step(limits, 0), static_cast<double>(0.15f));
   EXPECT_DOUBLE_EQ(limited_time_step(limits, 10), static_cast<double>(0.15f));
   EXPECT_DOUBLE_EQ(limited_time_step(limits, 100), 0.999 * 2 / 100);
@@ -23,6 +27,7 @@ TEST(time_step,
   TimeStepLimits::Pressure pressure[] = {{1, 0, 0}, {400, 0, 0}, {0, 0, 1e6f}};
   TimeStepLimits limits{.time_step = 0.15f,
                         .support_radius = 2,
+                        .farthest = 2,
                         .acoustic = true,
                         .pressures = pressure,
                         .viscous_time = std::numeric_limits<float>::infinity()};

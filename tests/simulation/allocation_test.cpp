@@ -64,10 +64,12 @@ struct Setup {
 
 /// Two groups that lie on each other in a box, with a pin, a force and a collider that moves. The box is
 /// there because the cell grid grows with what it spans, and a body that slides away spans ever more.
-/// Reference shapes are never updated.
+/// Reference shapes are never updated. Fluids go on to spread on each other, and what their contact needs
+/// grows for thousands of steps: they press on each other instead.
 Simulation scene(const Setup& setup) {
   Simulation s({.support_radius = 2.1f,
                 .update_interval = 7,
+                .contact = setup.alpha == 1 ? BodyContact::pressure : BodyContact::constraint,
                 .neighbor_slack = setup.neighbor_slack,
                 .threads = setup.threads});
   const auto cube = [](int side, const Vec3& corner) {

@@ -26,6 +26,7 @@ Simulation make(int stride = 1, float slack = 0) {
                 .support_radius = 2.9f,
                 .gravity = {0, 0, -0.5f},
                 .update_interval = 3,
+                .contact = BodyContact::pressure,
                 .neighbor_slack = slack,
                 .threads = 2});
   const auto cube = [](float height) {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "levels.h"
 #include "config/validation.h"
+#include "levels.h"
 #include "mallow/mallow.h"
 
 namespace mallow {

@@ -18,15 +18,23 @@ constexpr int k_steps = 40;
 /// What everything in a case must do to some position at least, in units of h.
 constexpr double k_significant = 0.05;
 
+Material undamped(Material material) {
+  material.deformation_damping = 0.0f;
+  return material;
+}
+
 Simulation engine_of(const Case& scene) {
-  Simulation engine(scene.solver);
+  // The oracle knows the paper's rules: bodies press on each other by SPH, and nothing is damped.
+  SolverConfig solver = scene.solver;
+  solver.contact = BodyContact::pressure;
+  Simulation engine(solver);
   BodyId last{};
   for (const Blob& blob : scene.blobs) {
     const Body points{.positions = points_of(blob), .spacing = blob.spacing, .velocity = blob.velocity};
     if (blob.joins_the_one_before)
       engine.extend_body(last, points);
     else
-      last = engine.add_body(points, blob.material);
+      last = engine.add_body(points, undamped(blob.material));
   }
   for (const Collider& collider : scene.colliders) engine.add_collider(collider);
   for (const Pinned& pin : scene.pins) engine.pin(pin.box, pin.velocity);

@@ -51,7 +51,7 @@ TEST(time_step, a_body_swings_the_same_at_half_the_step) {
 /// second. threshold, period: left out where 0.
 double height_at_rest(bool accurate, float alpha, float threshold, float period, int& updates) {
   SolverConfig config{.support_radius = 0.21f, .gravity = {0, 0, -9.81f}, .threads = 1};
-  Material material{.alpha = alpha, .rest_density = 1000.0f};
+  Material material{.alpha = alpha, .rest_density = 1000.0f, .deformation_damping = 0.0f};
   if (period > 0) config.update_period = period;
   if (threshold > 0) material.update_threshold = threshold;
   if (accurate) {

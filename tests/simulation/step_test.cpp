@@ -544,14 +544,18 @@ TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
            {"solver.time_step: -1", "a number > 0", "solver.support_radius: nan"});
   Simulation s(config());
   contains(message_of([&] { s.prepare(); }), {"no particles"});
-  contains(
-      message_of([&] { s.add_material(Material{.alpha = std::vector<AlphaKey>{}, .elastic_time_step = 0.1f}); }),
-      {"material.alpha", "no keys"});
+  contains(message_of([&] {
+             s.add_material(Material{.alpha = std::vector<AlphaKey>{}, .elastic_time_step = 0.1f});
+           }),
+           {"material.alpha", "no keys"});
   contains(message_of([&] { s.add_material(Material{.alpha = 1.5f, .cohesion = 2}); }),
            {"material.alpha: 1.5", "material.cohesion: 2", "[0, 1]"});
   contains(message_of([&] { s.add_material(Material{.region_stride = 0}); }),
            {"material.region_stride: 0", "a whole number in [1, 2147483647]"});
-  contains(message_of([&] { s.add_material(Material{.alpha = {{1, 0}, {1, 1}}}); }), {"material.alpha time: 1"});
+  contains(message_of([&] {
+             s.add_material(Material{.alpha = {{1, 0}, {1, 1}}});
+           }),
+           {"material.alpha time: 1"});
   contains(message_of([&] { s.add_body(Body{}, Material{}); }), {"body.positions", "no particles"});
   contains(message_of([&] {
              s.add_body(Body{.positions = {{0, 0, std::nanf("")}}}, Material{});

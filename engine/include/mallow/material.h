@@ -66,6 +66,18 @@ struct Material {
   /// Share of a negative pressure that acts, in [0, 1]. Where pressure_coefficient is left out it is that of
   /// a k of 0.08 σ²/Δt² at most, as soft as the paper's: the pull of a stiffer one tears bodies apart.
   float cohesion = 0.0f;
+  /// Coulomb's μ_f where it touches other bodies, >= 0; that of a pair is √(μ μ'). Colliders have their own.
+  float friction = 0.5f;
+  /// Damping time of elasticity, τ [s], >= 0: the pull is that at x + τ v, so that a mode of frequency ω
+  /// [rad/s] has a damping ratio of ω τ/2. With the longest step Δt and a = (1 − alpha) Δt²/(time_step
+  /// elastic_time_step), a (1 + 2 τ/Δt) may be 2.5 at most. It slows spin a little, by τ ω² a second.
+  /// [model 2, section 4 B]
+  float damping_time = 0.0f;
+  /// Rate at which particles take on their body's motion as a rigid whole, ζ [1/s], >= 0: damps slow modes,
+  /// keeps momentum and spin. Left out: what hardly moves comes to rest, at 0.3/time_step, and what moves
+  /// faster than 0.02 spacings in a time_step is left alone more and more; a body whose reference shape was
+  /// updated, and which may have come apart, is not damped. [model 2, section 4 B]
+  std::optional<float> deformation_damping = {};
   /// Radius of the shape matching regions [m], > 0; left out: the solver's support_radius. [TK eq. 7]
   std::optional<float> region_radius = {};
   /// Of this many particles, in the cell order of the reference shape, one owns a region, >= 1; particles

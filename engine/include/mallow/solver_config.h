@@ -16,6 +16,14 @@ enum class Formulation {
   printed,       ///< [TK] eq. 1 and 2 to the letter: poly6 everywhere, p_j alone, v_j alone
 };
 
+/// How bodies that do not merge keep out of each other.
+enum class BodyContact {
+  constraint,  ///< velocities at which particles of two bodies would come nearer than a spacing end at that
+               ///< distance, with friction: bodies touch, stack and slide
+  pressure,    ///< they are parts of one fluid to each other, whose pressure and viscosity act between them:
+             ///< the paper's rule
+};
+
 /// What holds for a whole simulation. Copied when given to a Simulation.
 struct SolverConfig {
   /// Δt0 [s], > 0: the upper bound of a step, and what elasticity, the update rule and contact measure time
@@ -39,6 +47,8 @@ struct SolverConfig {
   Formulation formulation = Formulation::conservative;
   /// Also bound the step by the speed of sound and by viscous diffusion.
   bool acoustic_limit = true;
+  /// Bodies that merge (Body::merges) are parts of one whatever it says. [model 2, section 4 C]
+  BodyContact contact = BodyContact::constraint;
   /// Distance from a collider at which a particle touches it [m], >= 0; left out: half the spacing of its
   /// body.
   std::optional<float> contact_offset = {};

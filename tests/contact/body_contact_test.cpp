@@ -1,0 +1,225 @@
+#include "mallow/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+namespace mallow {
+namespace body_contact_test {
+
+using Vec = Eigen::Vector3d;
+
+SolverConfig solver(float gravity) {
+  return {.time_step = 0.15f, .support_radius = 2.1f, .gravity = {0, 0, -gravity}, .threads = 2};
+}
+Body box(const std::array<int, 3>& count, const Vec3& corner, const Vec3& velocity = {0, 0, 0}) {
+  Body body = sample(Lattice{.count = count, .spacing = 1, .corner = corner, .jitter = 0.02f});
+  body.velocity = velocity;
+  return body;
+}
+Material material(float alpha) {
+  return {.alpha = alpha, .update_threshold = 1e9f};
+}
+void run(Simulation& s, double seconds) {
+  const double end = s.time() + seconds;
+  while (s.time() < end) s.step();
+}
+
+std::vector<Vec> centers(const Simulation& s) {
+  const std::vector<Vec3> x = s.positions_by_id();
+  const std::vector<std::uint32_t> body = s.bodies_by_id();
+  std::vector<Vec> sum;
+  std::vector<double> count;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (body[i] >= sum.size()) {
+      sum.resize(body[i] + 1, Vec::Zero());
+      count.resize(body[i] + 1, 0);
+    }
+    sum[body[i]] += x[i].cast<double>();
+    count[body[i]] += 1;
+  }
+  for (std::size_t b = 0; b < sum.size(); ++b) sum[b] /= count[b];
+  return sum;
+}
+/// The smallest distance between particles of two bodies.
+double nearest(const Simulation& s, std::size_t first_of_other) {
+  const std::vector<Vec3> x = s.positions_by_id();
+  double least = 1e9;
+  for (std::size_t i = 0; i < first_of_other; ++i)
+    for (std::size_t j = first_of_other; j < x.size(); ++j)
+      least = std::min(least, static_cast<double>((x[i] - x[j]).norm()));
+  return least;
+}
+double fastest(const Simulation& s) {
+  float most = 0;
+  for (const Vec3& v : s.velocities_by_id()) most = std::max(most, v.norm());
+  return static_cast<double>(most);
+}
+
+TEST(body_contact, cubes_stand_on_each_other) {
+  for (const float alpha : {0.0f, 0.3f}) {
+    Simulation s(solver(0.3f));
+    for (const float height : {0.0f, 8.2f}) s.add_body(box({8, 8, 8}, {-4, -4, height}), material(alpha));
+    s.add_collider({.shape = Plane{}, .friction = 0.5f});
+    run(s, 150);
+    const std::vector<Vec> at = centers(s);
+    EXPECT_NEAR(at[0].z(), 3.62, 0.05) << alpha;
+    EXPECT_NEAR(at[1].z(), 11.15, 0.1) << alpha;
+    EXPECT_LT(at[1].head<2>().norm(), 0.1) << alpha;
+    EXPECT_LT(fastest(s) * 0.15, 1e-3) << alpha;
+  }
+}
+
+TEST(body_contact, four_cubes_stand_where_their_weight_is_small) {
+  for (const float alpha : {0.0f, 0.3f}) {
+    Simulation s(solver(0.03f));
+    for (int k = 0; k < 4; ++k)
+      s.add_body(box({8, 8, 8}, {-4, -4, 8.2f * static_cast<float>(k)}), material(alpha));
+    s.add_collider({.shape = Plane{}, .friction = 0.5f});
+    run(s, 150);
+    const std::vector<Vec> at = centers(s);
+    const double heights[] = {3.9, 11.8, 19.7, 27.7};
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_NEAR(at[k].z(), heights[k], 0.3) << alpha;
+      EXPECT_LT(at[k].head<2>().norm(), 0.5) << alpha;
+    }
+  }
+}
+
+/// How far a cube slides in 10 s on a block that is held, where gravity leans by this tangent.
+double slide(float alpha, float friction, float tangent) {
+  const float length = std::sqrt(1 + tangent * tangent);
+  SolverConfig config = solver(0);
+  config.gravity = Vec3(tangent, 0, -1) * (0.1f / length);
+  Simulation s(config);
+  Material m = material(alpha);
+  m.friction = friction;
+  s.add_body(box({24, 12, 4}, {-7, -6, -4}), m);
+  s.add_body(box({6, 6, 6}, {-3, -3, 0}), m);
+  s.pin(Aabb{{-100, -100, -5}, {100, 100, -2}}, {0, 0, 0});
+  run(s, 20);
+  const double before = centers(s)[1].x();
+  run(s, 10);
+  return centers(s)[1].x() - before;
+}
+
+TEST(body_contact, a_cube_starts_to_slide_at_the_friction_of_both_within_a_tenth) {
+  for (const float alpha : {0.0f, 0.7f})
+    for (const float friction : {0.3f, 0.5f}) {
+      EXPECT_LT(std::abs(slide(alpha, friction, 0.9f * friction)), 0.15) << alpha << ' ' << friction;
+      EXPECT_GT(slide(alpha, friction, 1.1f * friction), 0.8) << alpha << ' ' << friction;
+    }
+}
+
+TEST(body_contact,
+     of_bodies_that_meet_head_on_leaves_them_half_a_spacing_apart_keeps_momentum_and_adds_no_energy) {
+  for (const float alpha : {0.0f, 1.0f})
+    for (const float mass : {1.0f, 100.0f})
+      for (const float speed : {1.0f, 6.0f, 40.0f}) {
+        SCOPED_TRACE(testing::Message() << alpha << ' ' << mass << ' ' << speed);
+        Simulation s(solver(0));
+        s.add_body(box({6, 6, 6}, {-7, -3, -3}, {speed / 2, 0, 0}), material(alpha));
+        Material heavy = material(alpha);
+        heavy.particle_mass = mass;
+        s.add_body(box({6, 6, 6}, {1.3f, -2.8f, -3.1f}, {-speed / 2, 0, 0}), heavy);
+        const auto momentum = [&] {
+          Vec sum = Vec::Zero();
+          const std::vector<Vec3> v = s.velocities_by_id();
+          for (std::size_t i = 0; i < v.size(); ++i)
+            sum += static_cast<double>(i < 216 ? 1 : mass) * v[i].cast<double>();
+          return sum;
+        };
+        const Vec before = momentum();
+        const double start = s.energy().conserved,
+                     scale = 216.0 * (1 + static_cast<double>(mass)) * static_cast<double>(speed) / 2;
+        double least = 1e9, most = 0;
+        while (s.time() < 10 / static_cast<double>(speed) + 2) {
+          s.step();
+          least = std::min(least, nearest(s, 216));
+          most = std::max(most, s.energy().conserved);
+        }
+        EXPECT_GT(least, 0.5);
+        EXPECT_LT((momentum() - before).norm() / scale, 1e-6);
+        EXPECT_LT(most, start * (1 + 5e-5));
+      }
+}
+
+TEST(body_contact, a_fluid_does_not_leak_through_an_elastic_block) {
+  Simulation s(solver(0.3f));
+  s.add_body(box({14, 14, 6}, {-7, -7, 0}), material(0));
+  s.add_body(box({12, 12, 6}, {-6, -6, 8}), material(1));
+  s.add_collider({.shape = Plane{}, .friction = 0.5f});
+  s.add_collider({.shape = Box{{-7, -7, -5}, {7, 7, 100}, true}});
+  run(s, 40);
+  const std::vector<Vec3> x = s.positions_by_id();
+  for (std::size_t i = 14 * 14 * 6; i < x.size(); ++i) EXPECT_GT(x[i].z(), 4) << i;
+}
+
+TEST(body_contact, a_body_on_a_conveyor_of_pinned_particles_is_carried_along) {
+  Simulation s(solver(0.1f));
+  s.add_body(box({40, 10, 3}, {-30, -5, -3}), material(0));
+  s.add_body(box({5, 5, 5}, {-2.5f, -2.5f, 0}), material(0));
+  const PinId belt = s.pin(Aabb{{-100, -100, -5}, {100, 100, -0.2f}}, {0, 0, 0});
+  run(s, 10);
+  s.set_velocity(belt, {0.5f, 0, 0});
+  run(s, 20);
+  const double before = centers(s)[1].x();
+  run(s, 10);
+  EXPECT_NEAR(centers(s)[1].x() - before, 5, 0.1);
+}
+
+TEST(body_contact, has_the_same_bits_on_any_number_of_threads_and_after_a_restore) {
+  const auto pile = [](int threads) {
+    SolverConfig config = solver(0.3f);
+    config.threads = threads;
+    Simulation s(config);
+    for (int k = 0; k < 12; ++k)
+      s.add_body(box({4, 4, 4}, {2.1f * static_cast<float>(k % 3), static_cast<float>(k % 2),
+                                 4.1f * static_cast<float>(k)}),
+                 material(k % 2 == 0 ? 0.0f : 0.5f));
+    s.add_collider({.shape = Plane{}, .friction = 0.5f});
+    return s;
+  };
+  Simulation one = pile(1), two = pile(2), three = pile(3);
+  for (int step = 0; step < 150; ++step)
+    for (Simulation* s : {&one, &two, &three}) s->step();
+  EXPECT_EQ(one.state_hash(), two.state_hash());
+  EXPECT_EQ(one.state_hash(), three.state_hash());
+  Simulation restored = Simulation::restore(one.save(), 2);
+  for (int step = 0; step < 20; ++step)
+    for (Simulation* s : {&one, &restored}) s->step();
+  EXPECT_EQ(one.state_hash(), restored.state_hash());
+}
+
+TEST(body_contact, between_bodies_that_are_far_apart_changes_no_bit) {
+  const auto fall = [](bool beside) {
+    Simulation s(solver(0.3f));
+    s.add_body(box({5, 5, 5}, {0, 0, 4}, {0.1f, 0, 0}), material(0));
+    if (beside) s.add_body(box({5, 5, 5}, {100, 0, 4}), material(0));
+    s.add_collider({.shape = Plane{}, .friction = 0.5f});
+    run(s, 15);
+    std::vector<Vec3> x = s.positions_by_id();
+    x.resize(125);
+    return x;
+  };
+  EXPECT_EQ(fall(false), fall(true));
+}
+
+TEST(body_contact, by_pressure_is_still_there_and_bodies_that_merge_do_not_touch) {
+  SolverConfig config = solver(0.3f);
+  config.contact = BodyContact::pressure;
+  Simulation pressed(config);
+  for (const float height : {0.0f, 5.0f}) pressed.add_body(box({5, 5, 5}, {0, 0, height}), material(0));
+  pressed.step();
+  EXPECT_TRUE(pressed.info().sph);
+
+  Simulation touching(solver(0.3f));
+  for (const float height : {0.0f, 5.0f}) touching.add_body(box({5, 5, 5}, {0, 0, height}), material(0));
+  touching.step();
+  EXPECT_FALSE(touching.info().sph) << "elastic bodies that touch need no sums over neighbours";
+}
+
+}  // namespace body_contact_test
+}  // namespace mallow
