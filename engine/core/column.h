@@ -75,7 +75,8 @@ class Column {
       release();
       grow(capacity);
     }
-    std::memset(static_cast<void*>(data_ + size), 0, (padded(size) - size) * sizeof(T));
+    // An empty column may have no memory at all, which memset may not be given.
+    if (size > 0) std::memset(static_cast<void*>(data_ + size), 0, (padded(size) - size) * sizeof(T));
     size_ = size;
   }
   /// Opens a gap of `count` zeros before the value `at`.
