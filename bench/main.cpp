@@ -1,11 +1,10 @@
 #include <CLI/CLI.hpp>
-#include <cstdio>
 
 #include "drift/drift_command.h"
 #include "figures/figures_command.h"
 #include "kernels/kernels_command.h"
 #include "mallow/version.h"
-#include "program/failure.h"
+#include "program/parse_and_run.h"
 #include "scaling/scaling_command.h"
 #include "stability/stability_command.h"
 #include "table1/table1_command.h"
@@ -26,14 +25,5 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
   add_drift_command(app);
   add_threads_command(app);
   app.require_subcommand(0, 1);  // none is answered below, with the list of what there is
-  return mallow::program::run_main(app.get_name(), [&] {
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? mallow::program::k_exit_done : mallow::program::k_exit_bad_input;
-    }
-    if (!app.get_subcommands().empty()) return mallow::program::k_exit_done;
-    std::fputs(app.help().c_str(), stderr);
-    return mallow::program::k_exit_bad_input;
-  });
+  return mallow::program::parse_and_run(app, argc, argv);
 }

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <fstream>
 
+#include "config/field_tables.h"
 #include "mallow/errors.h"
+#include "program/machine.h"
 #include "scaling/cube.h"
 
 namespace mallow::bench {
@@ -23,19 +25,6 @@ constexpr double k_body_bytes = 36;
 /// What counts the neighbours of a group that keeps none, for the report: a grid and lists [bytes a
 /// particle].
 constexpr double k_count_bytes = 210;
-/// Points that sample() gives at most.
-constexpr std::size_t k_most_particles = 100'000'000;
-
-/// A line of /proc/self/status [bytes]; 0 where there is none.
-std::size_t status(const std::string& name) {
-  std::ifstream file("/proc/self/status");
-  for (std::string key; file >> key;) {
-    std::size_t kibibytes = 0;
-    if (key == name + ":" && file >> kibibytes) return 1024 * kibibytes;
-    std::getline(file, key);
-  }
-  return 0;
-}
 
 std::string gibibytes(double bytes) {
   char text[64];
@@ -50,11 +39,11 @@ PeakMemory::PeakMemory() {
   ::malloc_trim(0);
   std::ofstream clear("/proc/self/clear_refs");
   counted_ = static_cast<bool>(clear << "5" << std::flush);  // 5: the peak starts anew, proc(5)
-  before_ = status("VmRSS");
+  before_ = program::proc_bytes("/proc/self/status", "VmRSS");
 }
 
 std::optional<std::size_t> PeakMemory::bytes() const {
-  const std::size_t peak = status("VmHWM");
+  const std::size_t peak = program::proc_bytes("/proc/self/status", "VmHWM");
   if (!counted_ || before_ == 0 || peak < before_) return {};
   return peak - before_;
 }
@@ -82,7 +71,7 @@ void check_memory(const std::vector<std::size_t>& sizes, double bytes_per_partic
                           " of memory and " + gibibytes(static_cast<double>(available)) +
                           " are available: --max-particles " + std::to_string(fits) + " fits");
   }
-  if (sizes.back() > k_most_particles)
+  if (sizes.back() > static_cast<std::size_t>(k_most_particles))
     throw ConfigError("--max-particles", std::to_string(sizes.back()) + " is not allowed: at most " +
                                              std::to_string(k_most_particles));
 }

@@ -50,7 +50,7 @@ float count_pushes(const Threads& threads, float time_step, ContactPairs& pairs)
           float pushes = 0;
           for_pushing_pairs(pairs, i, [&](const ContactPair& pair, const Vec3&, float along) {
             ++pushes;
-            most = std::max(most, (pair.target - along) / pairs.points[i].half_spacing);
+            most = std::max(most, (pair.target - along) / pairs.half_spacing[i]);
           });
           pairs.velocity[i].pushes = pushes;
         }

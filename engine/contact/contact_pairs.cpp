@@ -38,10 +38,9 @@ Vec3 outward(const TouchingBody& body, std::size_t row) {
          rest_outward(*body.shape, i);
 }
 
-/// How near to touching two points are that may touch in this step: they come nearer by what they move, and
-/// by some of what others push them.
-float farthest(float speed, float other_speed, const BodyContactStep& step) {
-  return step.time_step * (speed + other_speed + 0.25f * step.max_push);
+/// How far a point may come in this step: by what it moves, and by some of what others push it.
+float way(float speed, const BodyContactStep& step) {
+  return step.time_step * (speed + 0.125f * step.max_push);
 }
 
 /// The mean of the velocities that are numbers: all speeds are seen from it, as what moves together does not
@@ -99,13 +98,11 @@ void gather(const VectorColumn& velocities, const Vec3& mean, const std::uint16_
           pairs.row[p] = row;
           pairs.group[p] = body.group;
           pairs.half_spacing[p] = 0.5f * body.spacing;
-          pairs.half_reach[p] = 0.5f * body.spacing + farthest((v - mean).norm(), 0, step);
+          pairs.half_reach[p] = 0.5f * body.spacing + way((v - mean).norm(), step);
           pairs.velocity[p] = {v, 0};
           pairs.points[p] = {.position = pairs.grid.sorted.get(p),
-                             .speed = (v - mean).norm(),
                              .outward = depth > 0 ? Vec3(out / depth) : Vec3(0, 0, 0),
                              .depth = depth,
-                             .half_spacing = 0.5f * body.spacing,
                              .inverse_mass = pin && pin[row] != 0 ? 0.0f : 1.0f / body.mass,
                              .friction = std::sqrt(body.friction)};
         }
@@ -185,9 +182,9 @@ void find_meeting(std::size_t p, const BodyContactStep& step, ContactPairs& pair
     const ContactPoint& other = pairs.points[q];
     if (own.inverse_mass == 0 && other.inverse_mass == 0) continue;
     Vec3 normal = Vec3::Zero();
-    const float gap =
-        gap_between(own, other, own.position - other.position, own.half_spacing + other.half_spacing, normal);
-    if (!(gap <= farthest(own.speed, other.speed, step))) continue;
+    const float spacing = pairs.half_spacing[p] + pairs.half_spacing[q];
+    const float gap = gap_between(own, other, own.position - other.position, spacing, normal);
+    if (!(gap <= pairs.half_reach[p] + pairs.half_reach[q] - spacing)) continue;
     float target = -gap / step.time_step;
     if (gap < 0) target = std::min(target, step.max_push);
     found.push_back({normal, target, q});
@@ -236,12 +233,14 @@ bool find_contact_pairs(const VectorColumn& positions, const VectorColumn& veloc
   const Vec3 mean = mean_velocity(velocities, execution.threads, pairs);
   const float fastest = fastest_of(velocities, mean, execution.threads, pairs);
   const float spacing = std::ranges::max(bodies, {}, &TouchingBody::spacing).spacing;
-  const float reach = std::min(step.reach, meeting_distance(spacing, farthest(fastest, fastest, step)));
+  const float reach = std::min(step.reach, meeting_distance(spacing, 2 * way(fastest, step)));
   find_near_bodies(positions, bodies, reach, execution, pairs.near);
   const std::size_t n = pairs.near.row.size();
   if (n == 0) return false;
   pairs.positions.resize_unset(n);
-  for (std::size_t p = 0; p < n; ++p) pairs.positions.set(p, positions.get(pairs.near.row[p]));
+  parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) pairs.positions.set(p, positions.get(pairs.near.row[p]));
+  });
   build_cell_grid(pairs.positions, 0, n, reach, execution, pairs.grid);
   // Of few points any thread may search all: room for that, or who is first decides whether memory is taken.
   if (pairs.lists.indices.size() < 128 * n) pairs.lists.indices.resize_unset(256 * n);

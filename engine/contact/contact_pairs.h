@@ -16,10 +16,8 @@ struct BodyContactStep {
 /// A particle near another body. In one piece, as pairs read it whole.
 struct ContactPoint {
   Vec3 position;       ///< [m]
-  float speed;         ///< before contact, seen from the mean motion of all [m/s]
   Vec3 outward;        ///< N/|N|, which way out of its body it lies; 0 where nothing says it
   float depth;         ///< |N|, from the middle of its region to it [m]
-  float half_spacing;  ///< h/2 [m]
   float inverse_mass;  ///< 1/m, 0 where it is pinned [1/kg]
   float friction;      ///< √μ_f
 };

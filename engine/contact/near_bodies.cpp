@@ -1,23 +1,12 @@
 #include "contact/near_bodies.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "core/bounds.h"
 #include "core/parallel.h"
 
 namespace mallow {
 namespace {
-
-constexpr float k_infinity = std::numeric_limits<float>::infinity();
-const Aabb k_empty{Vec3::Constant(k_infinity), Vec3::Constant(-k_infinity)};
-
-/// Leaves out what is not a number.
-void include(const Vec3& x, Aabb& box) {
-  for (int a = 0; a < 3; ++a) {
-    if (x[a] < box.min[a]) box.min[a] = x[a];
-    if (x[a] > box.max[a]) box.max[a] = x[a];
-  }
-}
 
 bool are_near(const Aabb& a, const Aabb& b, float reach) {
   return (a.min.array() <= b.max.array() + reach).all() && (b.min.array() <= a.max.array() + reach).all();
@@ -34,15 +23,12 @@ void find_boxes(const VectorColumn& positions, const std::vector<TouchingBody>& 
   near.block_box.resize(near.blocks.blocks.size());
   parallel_for(threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     const std::size_t first = bodies[block.range].begin;
-    Aabb box = k_empty;
-    for (std::size_t i = block.begin; i < block.end; ++i) include(positions.get(first + i), box);
-    near.block_box[number] = box;
+    near.block_box[number] = box_around(positions, first + block.begin, first + block.end);
   });
-  near.body_box.assign(bodies.size(), k_empty);
+  near.body_box.assign(bodies.size(), empty_box());
   for (std::size_t b = 0; b < near.block_box.size(); ++b) {
     Aabb& box = near.body_box[near.blocks.blocks[b].range];
-    box.min = box.min.cwiseMin(near.block_box[b].min);
-    box.max = box.max.cwiseMax(near.block_box[b].max);
+    box = box_around(box, near.block_box[b]);
   }
 }
 
@@ -51,11 +37,11 @@ void find_others(const std::vector<TouchingBody>& bodies, float reach, NearBodie
   const std::size_t n = bodies.size();
   near.others.resize(n);
   near.by_place.resize(n);
-  Aabb all = k_empty;
+  Aabb all = empty_box();
   for (std::uint32_t b = 0; b < n; ++b) {
     near.others[b].clear();
     near.by_place[b] = b;
-    include(near.body_box[b].min, all);
+    all = box_around(all, {near.body_box[b].min, near.body_box[b].min});
   }
   int axis = 0;
   (all.max - all.min).maxCoeff(&axis);

@@ -7,7 +7,13 @@
 
 namespace mallow {
 
-/// Smallest box around the points [begin, end), which must not be empty. partial: scratch.
+/// What holds no point: every union with it is the other box.
+Aabb empty_box();
+/// Smallest box around two boxes.
+Aabb box_around(const Aabb& a, const Aabb& b);
+/// Smallest box around the points [begin, end), numbers that are none left out.
+Aabb box_around(const VectorColumn& points, std::size_t begin, std::size_t end);
+/// The same for many points, which must not be none. partial: scratch.
 Aabb bounds_of(const VectorColumn& points, std::size_t begin, std::size_t end, const Threads& threads,
                std::vector<Aabb>& partial);
 

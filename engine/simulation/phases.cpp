@@ -227,16 +227,17 @@ const VectorColumn& lead_positions(Simulation::State& state) {
   };
   if (std::ranges::none_of(state.bodies, damped)) return store.position;
   state.led_position.resize_unset(store.size());
-  for (const BodyState& body : state.bodies) {
+  state.led_blocks.clear();
+  for (const BodyState& body : state.bodies) state.led_blocks.add(body.size());
+  parallel_for(state.execution.threads, state.led_blocks, [&](const RangeBlocks::Block& block, std::size_t) {
+    const BodyState& body = state.bodies[block.range];
     const float lead = damped(body) ? body.material->settings.damping_time : 0.0f;
-    parallel_for(state.execution.threads, body.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        const float *x = store.position.axis(a) + body.begin, *v = store.velocity.axis(a) + body.begin;
-        float* const to = state.led_position.axis(a) + body.begin;
-        for (std::size_t i = begin; i < end; ++i) to[i] = x[i] + lead * v[i];
-      }
-    });
-  }
+    for (std::size_t a = 0; a < 3; ++a) {
+      const float *x = store.position.axis(a) + body.begin, *v = store.velocity.axis(a) + body.begin;
+      float* const to = state.led_position.axis(a) + body.begin;
+      for (std::size_t i = block.begin; i < block.end; ++i) to[i] = x[i] + lead * v[i];
+    }
+  });
   return state.led_position;
 }
 

@@ -95,6 +95,7 @@ struct Simulation::State {
   Column<std::uint32_t> fluid_order;
   std::vector<TimeStepLimits::Pressure> pressures;
   std::vector<PlacedCollider> placed_colliders;
+  RangeBlocks led_blocks;
   VectorColumn led_position;  ///< see lead_positions(); empty without damping
   std::vector<TouchingBody> touching;
   ContactPairs contact_pairs;

@@ -4,7 +4,10 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <vector>
+
+#include "mallow/errors.h"
 
 namespace mallow {
 namespace body_contact_test {
@@ -191,6 +194,29 @@ TEST(body_contact, has_the_same_bits_on_any_number_of_threads_and_after_a_restor
   for (int step = 0; step < 20; ++step)
     for (Simulation* s : {&one, &restored}) s->step();
   EXPECT_EQ(one.state_hash(), restored.state_hash());
+}
+
+TEST(body_contact, with_what_is_no_number_ends_the_step_names_the_particle_and_leaves_the_state) {
+  for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity(), 1e38f}) {
+    Simulation s(solver(0.3f));
+    for (const float height : {0.0f, 4.1f}) s.add_body(box({4, 4, 4}, {0, 0, height}), material(0));
+    s.add_collider({.shape = Plane{}});
+    run(s, 5);
+    const std::uint64_t before = s.state_hash();
+    s.set_force([&](const ForceInput& in, VectorSpan a) {
+      for (std::size_t i = 0; i < in.ids.size(); ++i)
+        if (in.ids[i] == 70) a.x()[i] = bad;
+    });
+    try {
+      s.step();
+      ADD_FAILURE() << bad;
+    } catch (const StepError& error) {
+      EXPECT_EQ(error.particle_id(), 70u) << error.what();
+    }
+    EXPECT_EQ(s.state_hash(), before) << bad;
+    s.set_force({});
+    s.step();
+  }
 }
 
 TEST(body_contact, between_bodies_that_are_far_apart_changes_no_bit) {

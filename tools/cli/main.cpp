@@ -9,7 +9,7 @@
 #include "cli/surface_command.h"
 #include "mallow/scene.h"
 #include "mallow/version.h"
-#include "program/failure.h"
+#include "program/parse_and_run.h"
 
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 throws where two options clash
   using namespace mallow::cli;
@@ -26,14 +26,5 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
     std::fputs(mallow::describe_scene_keys().c_str(), stdout);
   });
   app.require_subcommand(0, 1);  // none is answered below, with the list of what there is
-  return mallow::program::run_main(app.get_name(), [&] {
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? mallow::program::k_exit_done : mallow::program::k_exit_bad_input;
-    }
-    if (!app.get_subcommands().empty()) return mallow::program::k_exit_done;
-    std::fputs(app.help().c_str(), stderr);
-    return mallow::program::k_exit_bad_input;
-  });
+  return mallow::program::parse_and_run(app, argc, argv);
 }

@@ -18,31 +18,30 @@ std::string processor_name() {
   return "unknown";
 }
 
-/// A line of /proc/meminfo [bytes]; 0 where there is none.
-std::size_t memory(const std::string& name) {
-  std::ifstream file("/proc/meminfo");
-  for (std::string key; file >> key;) {
-    std::size_t kibibytes = 0;
-    if (key == name + ":" && file >> kibibytes) return 1024 * kibibytes;
-    std::getline(file, key);
-  }
-  return 0;
-}
-
 }  // namespace
 
 nlohmann::ordered_json machine_json() {
   return {{"processor", processor_name()},
           {"cores", std::thread::hardware_concurrency()},
-          {"memory_gib", static_cast<double>(memory("MemTotal") >> 20) / 1024}};
+          {"memory_gib", static_cast<double>(proc_bytes("/proc/meminfo", "MemTotal") >> 20) / 1024}};
 }
 
 std::size_t available_memory() {
-  return memory("MemAvailable");
+  return proc_bytes("/proc/meminfo", "MemAvailable");
 }
 
 int resolve_threads(int threads) {
   return threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+std::size_t proc_bytes(const char* file, const std::string& line) {
+  std::ifstream lines(file);
+  for (std::string key; lines >> key;) {
+    std::size_t kibibytes = 0;
+    if (key == line + ":" && lines >> kibibytes) return 1024 * kibibytes;
+    std::getline(lines, key);
+  }
+  return 0;
 }
 
 }  // namespace mallow::program

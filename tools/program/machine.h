@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 namespace mallow::program {
 
@@ -10,6 +11,9 @@ nlohmann::ordered_json machine_json();
 
 /// Memory that can be had without swapping [bytes]; 0 where the system does not say.
 std::size_t available_memory();
+
+/// A line of a file of the system's in /proc that counts kB [bytes]; 0 where there is none.
+std::size_t proc_bytes(const char* file, const std::string& line);
 
 /// Threads that a command line's 0 stands for: all the machine has.
 int resolve_threads(int threads);
