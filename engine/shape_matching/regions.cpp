@@ -215,10 +215,9 @@ void sort_reference(const Execution& execution, PillarOrder& pillars, ShapeMatch
   shape.reference.swap(pillars.sorted);
 }
 
-void build_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape) {
+void list_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape) {
   const std::size_t n = shape.reference.size();
   const bool every = shape.region_stride == 1;
-  const MomentLanes& lanes = MALLOW_SELECT(execution.level, moment_lanes);
   order_by_pillars(shape.reference, 0, n, pillar_width(shape), execution, scratch.pillars);
   find_runs(scratch.pillars, shape.region_radius, execution, scratch.near);
   scratch.owners.resize(0);
@@ -228,23 +227,34 @@ void build_regions(const Execution& execution, RegionScratch& scratch, ShapeMatc
   shape.weight.resize_unset(n);
   shape.average_neighbors =
       static_cast<double>(weigh_particles(every, execution.threads, scratch, shape)) / static_cast<double>(n);
+  shape.region_weight.resize_unset(regions);
+}
+
+void measure_regions(const Execution& execution, const RegionScratch& scratch, ShapeMatching& shape) {
+  const std::size_t n = shape.reference.size(), regions = shape.region_weight.size();
+  const MomentLanes& lanes = MALLOW_SELECT(execution.level, moment_lanes);
   // The table is not in use yet, and lends its memory.
   shape.table.resize_unset(std::max(shape.table.size(), n * k_moment_row * sizeof(double) / sizeof(float)));
   auto* const moment_rows = reinterpret_cast<double*>(shape.table.data());
   parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
     lanes.write_rows(raw(std::as_const(shape.reference)), shape.weight.data(), begin, end, moment_rows);
   });
-  shape.region_weight.resize_unset(regions);
   shape.center.resize_unset(regions);
   for (Column<float>& column : shape.moment) column.resize_unset(regions);
   parallel_for(execution.threads, regions, [&](std::size_t begin, std::size_t end) {
     measure_regions(begin, end, lanes, moment_rows, scratch, shape);
   });
-  if (!every) {
+}
+
+void build_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape) {
+  list_regions(execution, scratch, shape);
+  measure_regions(execution, scratch, shape);
+  const std::size_t regions = shape.region_weight.size();
+  if (shape.region_stride > 1) {
     turn_around(execution.threads, scratch);
     encode(scratch.near, {}, regions, execution.threads, shape.memberships);
   }
-  make_room(n, regions, execution.threads, shape);
+  make_room(shape.reference.size(), regions, execution.threads, shape);
   shape.built = true;
 }
 

@@ -375,7 +375,6 @@ void resolve_touching(Simulation::State& state, float time_step) {
                               .friction = body.material->settings.friction,
                               .shape = body.matches_shape() ? &body.shape : nullptr});
   const ParticleStore& store = state.store;
-  state.contact_pairs.grid.spacing = state.sph.grid.spacing;
   resolve_body_contacts(store.position, store.pin.empty() ? nullptr : store.pin.data(), state.touching,
                         {.time_step = time_step,
                          .reach = 2 * state.config.support_radius,

@@ -6,14 +6,12 @@
 namespace mallow {
 
 // Algorithm 3.3 of [TK], as the model settles it. Surfacing is not a phase: it reads the views between steps.
-StepReport Simulation::step_towards(double end) {
-  prepare();
-  State& s = *state_;
+StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_phase) {
   s.require_ahead(end);
   Sph& sph = s.sph;
   const VectorColumn& x = s.store.position;
   StepReport report;
-  PhaseTimer timer(s, report.seconds);
+  PhaseTimer timer(report.seconds, after_phase);
 
   read_alphas(s);                                    // time -> alpha
   report.updated_references = update_references(s);  // |a_ext| -> x̄, regions       [TK 3.2, eq. 14]
@@ -55,6 +53,11 @@ StepReport Simulation::step_towards(double end) {
   finish_step(s, step);  // v', x' -> v, x; c ← c + 1
   timer.lap(Phase::motion);
   return report;
+}
+
+StepReport Simulation::step_towards(double end) {
+  prepare();
+  return take_step(*state_, end);
 }
 
 StepReport Simulation::step() {

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <deque>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -119,9 +120,6 @@ struct Simulation::State {
     sph.kept.forget();
     far_step = -1;
   }
-  /// Called behind every phase; tests damage columns there.
-  std::function<void(Phase)> after_phase;
-
   bool in_force_callback = false;
   /// Throws ConfigError in a force callback, which sees a step half done: nothing may change then.
   void refuse_in_callback() const;
@@ -186,13 +184,18 @@ void take_reference(Simulation::State& state, BodyState& body);
 /// bodies -> groups of SPH, which of them belong together, the typical spacing of particles.
 void describe_bodies(Simulation::State& state);
 
+/// Called behind every phase of a step; tests damage columns there.
+using PhaseHook = std::function<void(Phase)>;
+/// One step of a prepared simulation: Simulation::step_towards().
+StepReport take_step(Simulation::State& state, double end, const PhaseHook& after_phase = {});
+
 /// Writes the wall time between laps into a report.
 class PhaseTimer {
  public:
-  PhaseTimer(const Simulation::State& state, PhaseTimes& seconds)
-      : state_(state), seconds_(seconds), last_(Clock::now()) {}
+  PhaseTimer(PhaseTimes& seconds, const PhaseHook& after_phase)
+      : seconds_(seconds), after_phase_(after_phase), last_(Clock::now()) {}
   void lap(Phase phase) {
-    if (state_.after_phase) state_.after_phase(phase);
+    if (after_phase_) after_phase_(phase);
     const Clock::time_point now = Clock::now();
     seconds_[static_cast<std::size_t>(phase)] += std::chrono::duration<double>(now - last_).count();
     last_ = now;
@@ -200,8 +203,8 @@ class PhaseTimer {
 
  private:
   using Clock = std::chrono::steady_clock;
-  const Simulation::State& state_;
   PhaseTimes& seconds_;
+  const PhaseHook& after_phase_;
   Clock::time_point last_;
 };
 

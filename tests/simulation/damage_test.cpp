@@ -135,19 +135,17 @@ Outcome step_with(Simulation& s, const Target& target, std::size_t i, float valu
     kept = std::exchange(*place, value);
   };
   const bool lasts = target.phase == Phase::motion || target.phase == Phase::rotations;
-  if (lasts)
-    damage();
-  else
-    state.after_phase = [&](Phase phase) {
-      if (phase == target.phase) damage();
-    };
+  if (lasts) damage();
+  const PhaseHook hook = [&](Phase phase) {
+    if (!lasts && phase == target.phase) damage();
+  };
   Outcome outcome;
   try {
-    s.step();
+    s.prepare();
+    take_step(state, k_infinity, hook);
   } catch (const StepError& error) {
     outcome = {error.particle_id(), error.phase(), error.what()};
   }
-  state.after_phase = {};
   if (outcome.id) *place = kept;
   return outcome;
 }
