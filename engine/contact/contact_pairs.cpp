@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
+#include "contact/meeting_lanes.h"
 #include "core/parallel.h"
 #include "shape_matching/run_tables.h"
 #include "shape_matching/shape_matching.h"
@@ -10,13 +13,9 @@
 namespace mallow {
 namespace {
 
-/// Points that one thread handles at a time.
-constexpr std::size_t k_point_block = 64;
 /// Pairs of a point that there is room for from the start: more than rest or flow asks for, so that a motion
 /// that goes on takes no more memory.
-constexpr std::size_t k_room = 16;
-/// A pair counts only where its points lie above each other: how far apart across n, in d0.
-constexpr float k_across = 0.75f;
+constexpr std::size_t k_room = 8;
 
 /// From the middle of the regions of a particle to it, in the reference shape.
 Vec3 rest_outward(const ShapeMatching& shape, std::size_t i) {
@@ -38,76 +37,31 @@ Vec3 outward(const TouchingBody& body, std::size_t row) {
          rest_outward(*body.shape, i);
 }
 
-/// How far a point may come in this step: by what it moves, and by some of what others push it.
-float way(float speed, const BodyContactStep& step) {
-  return step.time_step * (speed + 0.125f * step.max_push);
-}
-
-/// The mean of the velocities that are numbers: all speeds are seen from it, as what moves together does not
-/// meet.
-Vec3 mean_velocity(const VectorColumn& velocities, const Threads& threads, ContactPairs& pairs) {
-  const auto sum = [&](std::size_t begin, std::size_t end) {
-    Vec3 velocity = Vec3::Zero();
-    for (std::size_t p = begin; p < end; ++p) velocity += velocities.get(p);
-    return velocity;
-  };
-  const auto add = [](const Vec3& a, const Vec3& b) { return Vec3(a + b); };
-  const Vec3 mean =
-      parallel_reduce(threads, velocities.size(), pairs.partial_velocity, Vec3(0, 0, 0), sum, add) /
-      static_cast<float>(velocities.size());
-  return mean.allFinite() ? mean : Vec3(0, 0, 0);
-}
-
-/// The largest speed.
-float fastest_of(const VectorColumn& velocities, const Vec3& mean, const Threads& threads,
-                 ContactPairs& pairs) {
-  const auto speed = [&](std::size_t begin, std::size_t end) {
-    float fastest = 0;
-    for (std::size_t p = begin; p < end; ++p)
-      fastest = std::max(fastest, (velocities.get(p) - mean).squaredNorm());
-    return fastest;
-  };
-  const auto larger = [](float a, float b) { return std::max(a, b); };
-  return std::sqrt(parallel_reduce(threads, velocities.size(), pairs.partial_speed, 0.0f, speed, larger));
-}
-
-/// Points that are farther apart than this do not touch while they are `farthest` from it along n.
-float meeting_distance(float spacing, float farthest) {
-  const float across = k_across * spacing, along = spacing + farthest;
-  return 1.001f * std::sqrt(across * across + along * along);
-}
-
-/// Points in the order of the grid, and what is known of them.
-void gather(const VectorColumn& velocities, const Vec3& mean, const std::uint16_t* pin,
-            const std::vector<TouchingBody>& bodies, const BodyContactStep& step, const Threads& threads,
-            ContactPairs& pairs) {
-  const std::size_t n = pairs.near.row.size();
-  for (Column<std::uint32_t>* column : {&pairs.row, &pairs.group}) column->resize_unset(n);
-  for (Column<float>* column : {&pairs.half_spacing, &pairs.half_reach}) column->resize_unset(n);
+/// What is known of the points.
+void gather(const VectorColumn& positions, const VectorColumn& velocities, const std::uint16_t* pin,
+            const std::vector<TouchingBody>& bodies, const Threads& threads, ContactPairs& pairs) {
+  const NearBlocks& near = pairs.near;
+  const std::size_t n = near.row.size();
+  pairs.positions.resize_unset(n);
   pairs.points.resize(n);
   pairs.velocity.resize(n);
   pairs.next_velocity.resize(n);
-  parallel_for(
-      threads, n,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p) {
-          const std::uint32_t from = pairs.grid.order[p], row = pairs.near.row[from];
-          const TouchingBody& body = bodies[pairs.near.body[from]];
-          const Vec3 v = velocities.get(row), out = outward(body, row);
-          const float depth = out.norm();
-          pairs.row[p] = row;
-          pairs.group[p] = body.group;
-          pairs.half_spacing[p] = 0.5f * body.spacing;
-          pairs.half_reach[p] = 0.5f * body.spacing + way((v - mean).norm(), step);
-          pairs.velocity[p] = {v, 0};
-          pairs.points[p] = {.position = pairs.grid.sorted.get(p),
-                             .outward = depth > 0 ? Vec3(out / depth) : Vec3(0, 0, 0),
-                             .depth = depth,
-                             .inverse_mass = pin && pin[row] != 0 ? 0.0f : 1.0f / body.mass,
-                             .friction = std::sqrt(body.friction)};
-        }
-      },
-      k_point_block);
+  parallel_for(threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
+    const TouchingBody& body = bodies[block.range];
+    for (std::uint32_t p = near.first_point[number]; p < near.first_point[number + 1]; ++p) {
+      const std::uint32_t row = near.row[p];
+      const Vec3 x = positions.get(row), v = velocities.get(row), out = outward(body, row);
+      const float depth = out.norm();
+      pairs.positions.set(p, x);
+      pairs.velocity[p] = {v, 0};
+      pairs.points[p] = {.position = x,
+                         .outward = depth > 0 ? Vec3(out / depth) : Vec3(0, 0, 0),
+                         .depth = depth,
+                         .inverse_mass = pin && pin[row] != 0 ? 0.0f : 1.0f / body.mass,
+                         .friction = std::sqrt(body.friction),
+                         .half_spacing = 0.5f * body.spacing};
+    }
+  });
 }
 
 /// How far a normal turns from the line between two points to the way out of a body. along: cosine between
@@ -144,121 +98,131 @@ float gap_between(const ContactPoint& i, const ContactPoint& j, const Vec3& r, f
   return height - spacing;
 }
 
-/// Leaves in a point's list those of other bodies that may be near enough to touch in this step; most of a
-/// list goes, in no order that a branch could foresee.
-void keep_near(std::size_t p, ContactPairs& pairs) {
-  std::uint32_t* const list = pairs.lists.indices.data() + pairs.lists.begin[p];
-  const std::uint32_t count = pairs.lists.count[p], group = pairs.group[p];
-  const ConstVectors x = raw(std::as_const(pairs.grid.sorted));
-  const float *half = pairs.half_spacing.data(), *reach = pairs.half_reach.data();
-  const float own_x = x.x[p], own_y = x.y[p], own_z = x.z[p], own_half = half[p], own_reach = reach[p];
-  std::uint32_t kept = 0;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const std::uint32_t q = list[k];
-    const float dx = x.x[q] - own_x, dy = x.y[q] - own_y, dz = x.z[q] - own_z;
-    const float across = k_across * (own_half + half[q]), along = own_reach + reach[q];
-    list[kept] = q;
-    kept += static_cast<std::uint32_t>(group != pairs.group[q]) &
-            static_cast<std::uint32_t>(dx * dx + dy * dy + dz * dz <= across * across + along * along);
-  }
-  pairs.lists.count[p] = kept;
+/// Adds the pair of two points, seen from p, if they may touch in this step.
+void add_pair(std::uint32_t p, std::uint32_t q, const BodyContactStep& step, const ContactPairs& pairs,
+              std::vector<ContactPair>& found) {
+  const ContactPoint &own = pairs.points[p], &other = pairs.points[q];
+  const Vec3 r = own.position - other.position;
+  const float closing = (pairs.velocity[p].velocity - pairs.velocity[q].velocity).norm();
+  const float spacing = own.half_spacing + other.half_spacing, across = k_across * spacing;
+  const float most = step.time_step * closing + pushed_together(step), along = spacing + most;
+  if (!(r.squaredNorm() <= across * across + along * along)) return;
+  if (own.inverse_mass == 0 && other.inverse_mass == 0) return;
+  Vec3 normal = Vec3::Zero();
+  const float gap = gap_between(own, other, r, spacing, normal);
+  if (!(gap <= most)) return;
+  float target = -gap / step.time_step;
+  if (gap < 0) target = std::min(target, step.max_push);
+  found.push_back({normal, target, q});
 }
 
-/// So much more than what is needed that a motion that goes on takes memory now and then, not in every step.
-void make_room(std::size_t points, ContactPairs& pairs) {
-  const std::size_t blocks = (points + k_point_block - 1) / k_point_block;
-  if (pairs.found.size() >= blocks) return;
-  pairs.found.resize(blocks + blocks / 4 + 1);
-  for (std::vector<ContactPair>& found : pairs.found) found.reserve(k_room * k_point_block);
-  pairs.pairs.reserve(k_room * k_point_block * pairs.found.size());
+/// So much wider than they would be where nothing rounds are the tests by which points are left out.
+constexpr float k_wider = 1.001f;
+
+/// How far a point may move in this step, seen from a frame that moves with `velocity`.
+float way(const ContactPairs& pairs, std::uint32_t point, const Vec3& velocity, const BodyContactStep& step) {
+  return k_wider * step.time_step * (pairs.velocity[point].velocity - velocity).norm();
 }
 
-/// Adds a pair for each in a point's list that it may touch, and writes how many.
-void find_meeting(std::size_t p, const BodyContactStep& step, ContactPairs& pairs,
-                  std::vector<ContactPair>& found) {
-  const std::size_t before = found.size();
-  const ContactPoint& own = pairs.points[p];
-  for (const std::uint32_t q : pairs.lists.of(p)) {
-    const ContactPoint& other = pairs.points[q];
-    if (own.inverse_mass == 0 && other.inverse_mass == 0) continue;
-    Vec3 normal = Vec3::Zero();
-    const float spacing = pairs.half_spacing[p] + pairs.half_spacing[q];
-    const float gap = gap_between(own, other, own.position - other.position, spacing, normal);
-    if (!(gap <= pairs.half_reach[p] + pairs.half_reach[q] - spacing)) continue;
-    float target = -gap / step.time_step;
-    if (gap < 0) target = std::min(target, step.max_push);
-    found.push_back({normal, target, q});
-  }
-  pairs.lists.count[p] = static_cast<std::uint32_t>(found.size() - before);
-}
+/// Points of other blocks in the box of one, those of each behind the other's.
+struct Candidates {
+  std::vector<std::uint32_t> name;
+  std::vector<float> x, y, z, along;
+  std::vector<std::uint32_t> end;  ///< of those of each block
+  std::vector<std::uint32_t> meeting;
 
-/// What blocks found, one behind the other.
-bool join(const Threads& threads, ContactPairs& pairs) {
-  const std::size_t n = pairs.points.size();
-  pairs.first.resize_unset(n + 1);
-  pairs.touching.resize_unset(n);
-  std::uint32_t total = 0, touching = 0;
-  for (std::size_t p = 0; p < n; ++p) {
-    pairs.first[p] = total;
-    total += pairs.lists.count[p];
-    pairs.touching[touching] = static_cast<std::uint32_t>(p);
-    touching += pairs.lists.count[p] > 0;
+  void gather(std::size_t number, const BodyContactStep& step, const MeetingLanes& lanes,
+              const ContactPairs& pairs) {
+    const NearBlocks& near = pairs.near;
+    const Moving& own = near.block_motion[number];
+    const float half_spacing = pairs.points[near.first_point[number]].half_spacing;
+    end.clear();
+    std::size_t count = 0;
+    for (const auto& [other, reach] : near.others[number]) {
+      const std::uint32_t first = near.first_point[other], last = near.first_point[other + 1];
+      const std::size_t before = count;
+      resize(count + (last - first) + k_cluster);
+      const Vec3 low = own.box.min.array() - reach, high = own.box.max.array() + reach;
+      count += lanes.in_box(raw(pairs.positions), first, last, low.data(), high.data(), name.data() + count);
+      for (std::size_t k = before; k < count; ++k) {
+        const std::uint32_t q = name[k];
+        x[k] = pairs.positions.x()[q];
+        y[k] = pairs.positions.y()[q];
+        z[k] = pairs.positions.z()[q];
+        along[k] = k_wider * (half_spacing + pairs.points[q].half_spacing + pushed_together(step)) +
+                   way(pairs, q, own.velocity, step);
+      }
+      end.push_back(static_cast<std::uint32_t>(count));
+    }
   }
-  pairs.first[n] = total;
-  pairs.touching.resize(touching);
-  pairs.pairs.resize(total);
-  parallel_for(
-      threads, n,
-      [&](std::size_t begin, std::size_t) {
-        const std::vector<ContactPair>& found = pairs.found[begin / k_point_block];
-        std::copy(found.begin(), found.end(),
-                  pairs.pairs.begin() + static_cast<std::ptrdiff_t>(pairs.first[begin]));
-      },
-      k_point_block);
-  return total > 0;
+  MeetingPoints from(std::size_t k) const {
+    return {name.data() + k, {x.data() + k, y.data() + k, z.data() + k}, along.data() + k};
+  }
+
+ private:
+  void resize(std::size_t size) {
+    if (name.size() >= size) return;
+    for (std::vector<std::uint32_t>* names : {&name, &meeting}) names->resize(size);
+    for (std::vector<float>* axis : {&x, &y, &z, &along}) axis->resize(size);
+  }
+};
+
+/// The pairs of the points of a block.
+void find_pairs(std::size_t number, const BodyContactStep& step, const MeetingLanes& lanes,
+                ContactPairs& pairs) {
+  const NearBlocks& near = pairs.near;
+  const std::uint32_t begin = near.first_point[number], end = near.first_point[number + 1];
+  BlockPairs& block = pairs.blocks[number];
+  block.points.clear();
+  block.pairs.clear();
+  if (begin == end) return;
+  block.points.reserve(k_block);
+  block.pairs.reserve(k_room * (end - begin));
+  thread_local Candidates candidates;
+  candidates.gather(number, step, lanes, pairs);
+  for (std::uint32_t p = begin; p < end; ++p) {
+    const ContactPoint& own = pairs.points[p];
+    const float own_way = way(pairs, p, near.block_motion[number].velocity, step);
+    const std::size_t before = block.pairs.size();
+    std::uint32_t next = 0;
+    for (std::size_t o = 0; o < near.others[number].size(); ++o) {
+      const auto& [other, reach] = near.others[number][o];
+      const std::uint32_t first = std::exchange(next, candidates.end[o]);
+      if (first == next || !is_near(own.position, near.block_motion[other].box, reach)) continue;
+      const float across =
+          k_wider * k_across * (own.half_spacing + pairs.points[candidates.name[first]].half_spacing);
+      const std::size_t count = lanes.meeting(candidates.from(first), next - first, own.position.data(),
+                                              own_way, across, candidates.meeting.data());
+      for (std::size_t k = 0; k < count; ++k) add_pair(p, candidates.meeting[k], step, pairs, block.pairs);
+    }
+    if (block.pairs.size() > before)
+      block.points.push_back({p, static_cast<std::uint32_t>(block.pairs.size() - before)});
+  }
 }
 
 }  // namespace
 
 std::size_t ContactPairs::bytes() const {
-  return near.bytes() + grid.bytes() + lists.bytes() + touching.bytes() + first.bytes() + row.bytes() +
-         positions.bytes() + 2 * pairs.capacity() * sizeof(ContactPair) +
-         points.capacity() * sizeof(ContactPoint) +
-         (velocity.capacity() + next_velocity.capacity()) * sizeof(ContactVelocity);
+  std::size_t sum = near.bytes() + positions.bytes() + points.capacity() * sizeof(ContactPoint) +
+                    (velocity.capacity() + next_velocity.capacity()) * sizeof(ContactVelocity);
+  for (const BlockPairs& block : blocks)
+    sum +=
+        block.points.capacity() * sizeof(BlockPairs::Touching) + block.pairs.capacity() * sizeof(ContactPair);
+  return sum;
 }
 
 bool find_contact_pairs(const VectorColumn& positions, const VectorColumn& velocities,
                         const std::uint16_t* pin, const std::vector<TouchingBody>& bodies,
                         const BodyContactStep& step, const Execution& execution, ContactPairs& pairs) {
-  const Vec3 mean = mean_velocity(velocities, execution.threads, pairs);
-  const float fastest = fastest_of(velocities, mean, execution.threads, pairs);
-  const float spacing = std::ranges::max(bodies, {}, &TouchingBody::spacing).spacing;
-  const float reach = std::min(step.reach, meeting_distance(spacing, 2 * way(fastest, step)));
-  find_near_bodies(positions, bodies, reach, execution, pairs.near);
-  const std::size_t n = pairs.near.row.size();
-  if (n == 0) return false;
-  pairs.positions.resize_unset(n);
-  parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) pairs.positions.set(p, positions.get(pairs.near.row[p]));
+  find_near_blocks(positions, velocities, bodies, step, execution, pairs.near);
+  if (pairs.near.row.empty()) return false;
+  gather(positions, velocities, pin, bodies, execution.threads, pairs);
+  pairs.blocks.resize(pairs.near.blocks.blocks.size());
+  const MeetingLanes& lanes = MALLOW_SELECT(execution.level, meeting_lanes);
+  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+    find_pairs(number, step, lanes, pairs);
   });
-  build_cell_grid(pairs.positions, 0, n, reach, execution, pairs.grid);
-  // Of few points any thread may search all: room for that, or who is first decides whether memory is taken.
-  if (pairs.lists.indices.size() < 128 * n) pairs.lists.indices.resize_unset(256 * n);
-  build_neighbor_lists(pairs.grid, reach, execution, pairs.lists);
-  gather(velocities, mean, pin, bodies, step, execution.threads, pairs);
-  make_room(n, pairs);
-  parallel_for(
-      execution.threads, n,
-      [&](std::size_t begin, std::size_t end) {
-        std::vector<ContactPair>& found = pairs.found[begin / k_point_block];
-        found.clear();
-        for (std::size_t p = begin; p < end; ++p) {
-          keep_near(p, pairs);
-          find_meeting(p, step, pairs, found);
-        }
-      },
-      k_point_block);
-  return join(execution.threads, pairs);
+  return std::ranges::any_of(pairs.blocks, [](const BlockPairs& block) { return !block.pairs.empty(); });
 }
 
 }  // namespace mallow

@@ -1,17 +1,8 @@
 #pragma once
 
-#include "contact/near_bodies.h"
-#include "neighbors/cell_grid.h"
-#include "neighbors/neighbor_lists.h"
+#include "contact/near_blocks.h"
 
 namespace mallow {
-
-/// What contact between bodies is measured by.
-struct BodyContactStep {
-  float time_step;  ///< Δt [s]
-  float reach;      ///< pairs farther apart do not touch in a step [m]
-  float max_push;   ///< speed at most at which bodies that overlap are pushed apart [m/s]
-};
 
 /// A particle near another body. In one piece, as pairs read it whole.
 struct ContactPoint {
@@ -20,6 +11,7 @@ struct ContactPoint {
   float depth;         ///< |N|, from the middle of its region to it [m]
   float inverse_mass;  ///< 1/m, 0 where it is pinned [1/kg]
   float friction;      ///< √μ_f
+  float half_spacing;  ///< h/2 [m]
 };
 
 /// One point beside one of another body, seen from the first.
@@ -35,25 +27,26 @@ struct ContactVelocity {
   float pushes;
 };
 
-/// What a step of contact between bodies needs and finds. Points are in the order of a cell grid of theirs.
+/// Points of one block that have pairs, and these, one point's behind the other's.
+struct BlockPairs {
+  struct Touching {
+    std::uint32_t point, count;
+  };
+  std::vector<Touching> points;
+  std::vector<ContactPair> pairs;
+};
+
+/// What a step of contact between bodies needs and finds.
 struct ContactPairs {
-  NearBodies near;
-  CellGrid grid;
-  std::vector<ContactPair> pairs;  ///< one behind the other, by their first point
-  Column<std::uint32_t> first;     ///< per point its first pair, and one more
-  Column<std::uint32_t> touching;  ///< points with a pair
+  NearBlocks near;
+  std::vector<BlockPairs> blocks;  ///< those of `near`
   // By point.
-  Column<std::uint32_t> row, group;
-  Column<float> half_spacing, half_reach;  ///< h/2, and that with what it may move in this step [m]
   std::vector<ContactPoint> points;
   std::vector<ContactVelocity> velocity, next_velocity;
 
   // Scratch.
-  VectorColumn positions;
-  NeighborLists lists;
-  std::vector<std::vector<ContactPair>> found;  ///< per block of points
-  std::vector<Vec3> partial_velocity;
-  std::vector<float> partial_speed, partial_excess;
+  VectorColumn positions;  ///< of the points, for lanes
+  std::vector<float> partial_excess;
 
   std::size_t bytes() const;
 };

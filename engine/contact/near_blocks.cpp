@@ -1,0 +1,177 @@
+#include "contact/near_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/meeting_lanes.h"
+#include "core/bounds.h"
+#include "core/parallel.h"
+
+namespace mallow {
+namespace {
+
+bool are_near(const Aabb& a, const Aabb& b, float reach) {
+  return (a.min.array() <= b.max.array() + reach).all() && (b.min.array() <= a.max.array() + reach).all();
+}
+
+/// The motion of some particles that is seen from their mean. What is no number is left for later phases to
+/// find: it counts as no motion here.
+Moving motion_of(const VectorColumn& positions, const VectorColumn& velocities, std::size_t begin,
+                 std::size_t end) {
+  Moving moving{.box = box_around(positions, begin, end), .velocity = {0, 0, 0}};
+  for (std::size_t i = begin; i < end; ++i) moving.velocity += velocities.get(i);
+  moving.velocity /= static_cast<float>(end - begin);
+  if (!moving.velocity.allFinite()) moving.velocity.setZero();
+  float square = 0;
+  for (std::size_t i = begin; i < end; ++i)
+    square = std::max(square, (velocities.get(i) - moving.velocity).squaredNorm());
+  moving.spread = std::sqrt(square);
+  return moving;
+}
+
+void join(Moving& all, const Moving& part) {
+  all.box = box_around(all.box, part.box);
+  all.spread = std::max(all.spread, (part.velocity - all.velocity).norm() + part.spread);
+}
+
+void find_motions(const VectorColumn& positions, const VectorColumn& velocities,
+                  const std::vector<TouchingBody>& bodies, const Threads& threads, NearBlocks& near) {
+  near.blocks.clear();
+  for (const TouchingBody& body : bodies) near.blocks.add(body.end - body.begin);
+  const std::vector<RangeBlocks::Block>& blocks = near.blocks.blocks;
+  near.block_motion.resize(blocks.size());
+  parallel_for(threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
+    const std::size_t first = bodies[block.range].begin;
+    near.block_motion[number] = motion_of(positions, velocities, first + block.begin, first + block.end);
+  });
+  near.body_motion.resize(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::uint32_t first = near.blocks.first[b], last = near.blocks.first[b + 1];
+    Moving& body = near.body_motion[b] = {.box = empty_box(), .velocity = {0, 0, 0}};
+    for (std::uint32_t k = first; k < last; ++k)
+      body.velocity += near.block_motion[k].velocity / static_cast<float>(last - first);
+    for (std::uint32_t k = first; k < last; ++k) join(body, near.block_motion[k]);
+  }
+}
+
+/// How far two of these may be apart and touch in this step.
+float reach_between(const Moving& a, const Moving& b, float spacing, const BodyContactStep& step) {
+  return touching_reach(spacing, (a.velocity - b.velocity).norm() + (a.spread + b.spread), step);
+}
+
+/// Sweeps over the bodies along the axis on which they are spread most, each as wide as it may reach in a
+/// frame that moves with the mean of all.
+void find_other_bodies(const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
+                       NearBlocks& near) {
+  const std::size_t n = bodies.size();
+  near.other_bodies.resize(n);
+  near.by_place.resize(n);
+  near.lowest.resize(n);
+  near.highest.resize(n);
+  Aabb all = empty_box();
+  Vec3 velocity = Vec3::Zero();
+  for (std::uint32_t b = 0; b < n; ++b) {
+    near.other_bodies[b].clear();
+    near.by_place[b] = b;
+    const Vec3 low = near.body_motion[b].box.min;
+    all = box_around(all, {low, low});
+    velocity += near.body_motion[b].velocity / static_cast<float>(n);
+  }
+  int axis = 0;
+  (all.max - all.min).maxCoeff(&axis);
+  for (std::size_t b = 0; b < n; ++b) {
+    const Moving& body = near.body_motion[b];
+    const float closing = 2 * ((body.velocity - velocity).norm() + body.spread);
+    const float own = 0.5f * touching_reach(bodies[b].spacing, closing, step) + 0.25f * bodies[b].spacing;
+    near.lowest[b] = body.box.min[axis] - own;
+    near.highest[b] = body.box.max[axis] + own;
+  }
+  std::ranges::sort(near.by_place, [&](std::uint32_t a, std::uint32_t b) {
+    return near.lowest[a] != near.lowest[b] ? near.lowest[a] < near.lowest[b] : a < b;
+  });
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::uint32_t a = near.by_place[k];
+    for (std::size_t l = k + 1; l < n && near.lowest[near.by_place[l]] <= near.highest[a]; ++l) {
+      const std::uint32_t b = near.by_place[l];
+      if (bodies[a].group == bodies[b].group) continue;
+      const float reach = reach_between(near.body_motion[a], near.body_motion[b],
+                                        0.5f * (bodies[a].spacing + bodies[b].spacing), step);
+      if (!are_near(near.body_motion[a].box, near.body_motion[b].box, reach)) continue;
+      near.other_bodies[a].push_back(b);
+      near.other_bodies[b].push_back(a);
+    }
+  }
+  for (std::vector<std::uint32_t>& others : near.other_bodies) std::ranges::sort(others);
+}
+
+/// Blocks of other bodies that a block may come near.
+void find_other_blocks(const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
+                       std::uint32_t number, NearBlocks& near) {
+  const std::uint32_t body = near.blocks.blocks[number].range;
+  const Moving& own = near.block_motion[number];
+  std::vector<NearBlocks::Other>& others = near.others[number];
+  others.clear();
+  for (const std::uint32_t other : near.other_bodies[body]) {
+    const float spacing = 0.5f * (bodies[body].spacing + bodies[other].spacing);
+    const float reach = reach_between(own, near.body_motion[other], spacing, step);
+    if (!are_near(own.box, near.body_motion[other].box, reach)) continue;
+    for (std::uint32_t b = near.blocks.first[other]; b < near.blocks.first[other + 1]; ++b) {
+      const float between = reach_between(own, near.block_motion[b], spacing, step);
+      if (are_near(own.box, near.block_motion[b].box, between)) others.push_back({b, between});
+    }
+  }
+}
+
+/// Rows of a block that are near one of the others. Returns how many.
+std::uint32_t find_points(const VectorColumn& positions, const NearBlocks& near, std::uint32_t number,
+                          std::size_t begin, std::size_t end, std::uint32_t* found) {
+  std::uint32_t count = 0;
+  const std::vector<NearBlocks::Other>& others = near.others[number];
+  for (std::size_t i = begin; i < end && !others.empty(); ++i) {
+    const Vec3 x = positions.get(i);
+    const auto holds = [&](const NearBlocks::Other& other) {
+      return is_near(x, near.block_motion[other.block].box, other.reach);
+    };
+    if (std::ranges::any_of(others, holds)) found[count++] = static_cast<std::uint32_t>(i);
+  }
+  return count;
+}
+
+}  // namespace
+
+bool is_near(const Vec3& x, const Aabb& box, float reach) {
+  return (x.array() >= box.min.array() - reach).all() && (x.array() <= box.max.array() + reach).all();
+}
+
+float touching_reach(float spacing, float closing, const BodyContactStep& step) {
+  const float across = k_across * spacing, along = spacing + step.time_step * closing + pushed_together(step);
+  return std::min(step.reach, 1.001f * std::sqrt(across * across + along * along));
+}
+
+void find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,
+                      const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
+                      const Execution& execution, NearBlocks& near) {
+  find_motions(positions, velocities, bodies, execution.threads, near);
+  find_other_bodies(bodies, step, near);
+  const std::size_t blocks = near.blocks.blocks.size();
+  near.others.resize(blocks);
+  near.first_point.resize_unset(blocks + 1);
+  near.found.resize_unset(positions.size());
+  parallel_for(execution.threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t b) {
+    const auto number = static_cast<std::uint32_t>(b);
+    const std::size_t first = bodies[block.range].begin;
+    find_other_blocks(bodies, step, number, near);
+    near.first_point[b + 1] = find_points(positions, near, number, first + block.begin, first + block.end,
+                                          near.found.data() + first + block.begin);
+  });
+  near.first_point[0] = 0;
+  for (std::size_t b = 0; b < blocks; ++b) near.first_point[b + 1] += near.first_point[b];
+  near.row.resize_unset(near.first_point[blocks]);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const RangeBlocks::Block& block = near.blocks.blocks[b];
+    std::copy_n(near.found.data() + bodies[block.range].begin + block.begin,
+                near.first_point[b + 1] - near.first_point[b], near.row.data() + near.first_point[b]);
+  }
+}
+
+}  // namespace mallow

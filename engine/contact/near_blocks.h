@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/column.h"
+#include "core/execution.h"
+#include "core/range_blocks.h"
+
+namespace mallow {
+
+struct ShapeMatching;
+
+/// What contact between bodies is measured by.
+struct BodyContactStep {
+  float time_step;  ///< Δt [s]
+  float reach;      ///< pairs farther apart do not touch in a step [m]
+  float max_push;   ///< speed at most at which bodies that overlap are pushed apart [m/s]
+};
+
+/// A body as contact sees it.
+struct TouchingBody {
+  std::size_t begin, end;      ///< rows
+  std::uint32_t group;         ///< bodies of one group are parts of one and do not touch
+  float spacing;               ///< h [m]
+  float mass;                  ///< of a particle, m [kg]
+  float friction;              ///< Coulomb's μ_f
+  const ShapeMatching* shape;  ///< null: nothing says which way is out of it
+};
+
+/// Where particles are, and how they move: from the middle of some, none is faster than `spread`.
+struct Moving {
+  Aabb box;          ///< [m]
+  Vec3 velocity;     ///< [m/s]
+  float spread = 0;  ///< [m/s]
+};
+
+/// Blocks of rows that may come near one of another body in this step, and the points that do: particles in
+/// the box of another block, as much wider as the two may come nearer. All others are not looked at again.
+struct NearBlocks {
+  RangeBlocks blocks;
+  struct Other {
+    std::uint32_t block;
+    float reach;  ///< pairs farther apart do not touch in this step [m]
+  };
+  std::vector<std::vector<Other>> others;  ///< per block, ascending
+  Column<std::uint32_t> first_point;       ///< per block, and one more
+  Column<std::uint32_t> row;               ///< of each point, ascending
+
+  // Scratch.
+  std::vector<Moving> block_motion, body_motion;
+  std::vector<float> lowest, highest;                    ///< of bodies, as wide as they may reach
+  std::vector<std::uint32_t> by_place;                   ///< bodies by their lowest place
+  std::vector<std::vector<std::uint32_t>> other_bodies;  ///< per body, ascending
+  Column<std::uint32_t> found;                           ///< per block, from its first row on
+
+  std::size_t bytes() const { return first_point.bytes() + row.bytes() + found.bytes(); }
+};
+
+/// By how much more than they come by themselves two points may be pushed together in this step [m].
+inline float pushed_together(const BodyContactStep& step) {
+  return 0.25f * step.time_step * step.max_push;
+}
+/// How far apart two points may be that touch in this step. spacing: the mean of theirs. closing: how fast
+/// they come nearer [m/s], at most.
+float touching_reach(float spacing, float closing, const BodyContactStep& step);
+
+/// velocities: predicted. The same for any number of threads.
+void find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,
+                      const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
+                      const Execution& execution, NearBlocks& near);
+
+/// Whether a point is in a box, or not farther from it than `reach` along any axis.
+bool is_near(const Vec3& x, const Aabb& box, float reach);
+
+}  // namespace mallow
