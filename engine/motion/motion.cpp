@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "core/parallel.h"
@@ -102,6 +103,7 @@ class MovingBlock {
       sums.bad_row = first_bad_row(store_, begin_, end_);
     if (in_.measure_rigid)
       sums.rigid = sum_rigid(store_.next_position, store_.next_velocity, begin_, end_, in_.rigid.center);
+    if (in_.measure_speed) sums.speed = sum_speeds();
   }
 
   /// The phases one after the other. predicted: where v' before contact goes in one loop and comes from in
@@ -127,6 +129,15 @@ class MovingBlock {
   }
 
  private:
+  double sum_speeds() const {
+    const VectorColumn& v = store_.next_velocity;
+    std::array<float, k_block> speed;
+    for (std::size_t i = begin_; i < end_; ++i)
+      speed[i - begin_] = std::sqrt(v.x()[i] * v.x()[i] + v.y()[i] * v.y()[i] + v.z()[i] * v.z()[i]);
+    double sum = 0;
+    for (std::size_t k = 0; k < end_ - begin_; ++k) sum += static_cast<double>(speed[k]);
+    return sum;
+  }
   static ConstVectors from(const VectorColumn& column, std::size_t row) {
     return {column.x() + row, column.y() + row, column.z() + row};
   }
@@ -148,6 +159,7 @@ void add_up(MovingBodies& bodies) {
     sums.external += bodies.partial[b].external;
     sums.unpinned += bodies.partial[b].unpinned;
     sums.rigid += bodies.partial[b].rigid;
+    sums.speed += bodies.partial[b].speed;
     sums.bad_row = std::min(sums.bad_row, bodies.partial[b].bad_row);
     const double mass = static_cast<double>(bodies.inputs[body].mass);
     for (std::size_t c = 0; c < colliders; ++c) {
@@ -158,6 +170,13 @@ void add_up(MovingBodies& bodies) {
 }
 
 }  // namespace
+
+void join_motion(const MotionInput& input, MovingBodies& bodies) {
+  bodies.inputs.push_back(input);
+  bodies.blocks.add(input.end - input.begin);
+  bodies.partial.resize(bodies.blocks.blocks.size());
+  bodies.partial_loads.resize(bodies.partial.size() * bodies.loads.size());
+}
 
 void move_particles(const MotionPhases& phases, const Execution& execution, ParticleStore& store,
                     MovingBodies& bodies) {

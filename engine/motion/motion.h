@@ -29,6 +29,7 @@ struct MotionInput {
   std::span<const Vec3> pin_velocities;
   bool measure_external;       ///< sum |a_ext|
   bool measure_rigid = false;  ///< sum the rigid motion that the body has afterwards
+  bool measure_speed = false;  ///< sum |v|
   float damping = 0;           ///< share of what is not `rigid` that goes in this step [model 2, section 4 B]
   RigidMotion rigid = {};      ///< of the body at the start of the step
   float mass;                  ///< m [kg], by which loads are counted
@@ -39,6 +40,7 @@ struct MotionSums {
   double external = 0;  ///< Σ |a_ext| over unpinned particles, contact included [m/s²]
   std::size_t unpinned = 0;
   RigidSums rigid;                 ///< near the centre at the start of the step
+  double speed = 0;                ///< Σ |v| [m/s]
   std::size_t bad_row = SIZE_MAX;  ///< first row whose new velocity or position is not finite
 };
 
@@ -63,6 +65,9 @@ struct MovingBodies {
   std::vector<ColliderLoad> partial_loads;
   VectorColumn predicted;  ///< v' before contact, where one loop predicts and another collides
 };
+
+/// One more body, whose v' are there already and have still to be collided and advanced.
+void join_motion(const MotionInput& input, MovingBodies& bodies);
 
 /// v' and x' into the store's next columns. Each phase is asked for once, in their order.
 /// [model 4, 5; TK eq. 10, 11, 13]

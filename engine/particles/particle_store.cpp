@@ -7,7 +7,8 @@
 namespace mallow {
 namespace {
 
-/// values[begin + k] becomes what values[begin + order[k]] was; through `scratch`, of as many as the order.
+/// values[begin + k] becomes what values[begin + order[k]] was; through `scratch`, of as many as the order:
+/// with that of the same rows, those of other bodies keep what they have there.
 template <class T, class Scratch>
 void gather(const Threads& threads, std::size_t begin, std::span<const std::uint32_t> order, T* values,
             Scratch* scratch) {
@@ -68,10 +69,10 @@ void ParticleStore::permute(std::size_t begin, std::span<const std::uint32_t> or
   for_each_present(*this, [&](auto& column) {
     if constexpr (std::is_same_v<decltype(column), VectorColumn&>) {
       for (std::size_t a = 0; a < 3; ++a)
-        gather(threads, begin, order, column.axis(a), next_position.axis(a));
+        gather(threads, begin, order, column.axis(a), next_position.axis(a) + begin);
     } else {
       words.resize(size());
-      gather(threads, begin, order, column.data(), words.data());
+      gather(threads, begin, order, column.data(), words.data() + begin);
     }
   });
   parallel_for(threads, order.size(), [&](std::size_t first, std::size_t last) {

@@ -5,7 +5,7 @@
 
 #include "core/column.h"
 #include "core/threads.h"
-#include "particles/particle_slots.h"
+#include "core/slots.h"
 
 namespace mallow {
 
@@ -16,7 +16,7 @@ struct ParticleStore {
   VectorColumn velocity;  ///< [m/s]
   Column<ParticleId> id;
   Column<std::uint16_t> pin;  ///< 0: free, else 1 + index of the pin; empty where nothing is pinned
-  ParticleSlots slots;        ///< id -> row
+  Slots slots;                ///< id -> row
 
   // Where a step writes before it is known to be good; scratch of sorts in between.
   VectorColumn next_position;

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "colliders/pose.h"
 #include "core/parallel.h"
@@ -124,12 +125,18 @@ double unlimited_step(const Simulation::State& state) {
 }
 
 bool Simulation::State::needs_sph() const {
-  if (bodies.size() > 1 && !sph.apart) return true;
-  return std::ranges::any_of(bodies, [](const BodyState& body) { return body.material->alpha > 0; });
+  const bool presses = bodies.size() > 1 && !sph.apart;
+  return std::ranges::any_of(
+      bodies, [&](const BodyState& body) { return body.moves() && (presses || body.material->alpha > 0); });
 }
 
 void read_alphas(Simulation::State& state) {
-  for (MaterialState& material : state.materials) material.alpha = material.settings.alpha.at(state.time);
+  for (MaterialState& material : state.materials) {
+    const float before = std::exchange(material.alpha, material.settings.alpha.at(state.time));
+    if (material.alpha == before) continue;
+    for (BodyState& body : state.bodies)
+      if (body.material == &material) wake_island(state, body);
+  }
   resolve_pressures(state);
 }
 
@@ -168,7 +175,8 @@ void catch_up_with_pull(Simulation::State& state, BodyState& body) {
 int update_references(Simulation::State& state) {
   int updated = 0;
   const bool check = update_is_due(state);
-  for (BodyState& body : state.bodies) {
+  for (BodyState* moving : state.awake) {
+    BodyState& body = *moving;
     const double threshold =
         static_cast<double>(body.material->update_threshold * (1.0f - body.material->alpha));
     const bool yields = check && body.keeps_reference() && body.mean_external() > threshold;
@@ -179,13 +187,14 @@ int update_references(Simulation::State& state) {
       if (body.matches_shape() && body.shape.built) catch_up_with_pull(state, body);
       take_reference(state, body);
       body.yielded = true;
+      state.events.push_back({BodyEvent::Kind::yielded, body.id});
       ++updated;
     }
     if (due()) build_regions(state.execution, state.region_scratch, body.shape);
   }
   state.matched.clear();
-  for (BodyState& body : state.bodies)
-    if (body.matches_shape()) state.matched.add(body.shape, body.begin);
+  for (BodyState* body : state.awake)
+    if (body->matches_shape()) state.matched.add(body->shape, body->begin);
   return updated;
 }
 
@@ -193,7 +202,7 @@ void sort_fluids(Simulation::State& state) {
   const CellGrid& grid = state.sph.grid;
   if (state.step % k_sort_interval != 1 || grid.order.size() != state.store.size()) return;
   for (const BodyState& body : state.bodies) {
-    if (body.keeps_reference()) continue;
+    if (body.keeps_reference() || !body.moves()) continue;
     std::size_t count = 0;
     state.fluid_order.resize(body.size());
     for (const std::uint32_t row : grid.order)
@@ -215,9 +224,20 @@ void call_force(Simulation::State& state) {
     bool& flag;
     explicit Calling(bool& f) : flag(f) { flag = true; }
     ~Calling() { flag = false; }
-  } const calling(state.in_force_callback);
-  state.force({state.time, state.store.id.span(), {x.x(), n, x.stride()}, {v.x(), n, v.stride()}},
-              {a.x(), n, a.stride()});
+  };
+  {
+    const Calling calling(state.in_force_callback);
+    state.force({state.time, state.store.id.span(), {x.x(), n, x.stride()}, {v.x(), n, v.stride()}},
+                {a.x(), n, a.stride()});
+  }
+  // What a force acts on does not sleep, or wakes for the next step.
+  for (BodyState& body : state.bodies) {
+    const auto acts = [&](std::size_t axis) {
+      return std::any_of(a.axis(axis) + body.begin, a.axis(axis) + body.end,
+                         [](float value) { return value != 0; });
+    };
+    if (body.enabled && (acts(0) || acts(1) || acts(2))) wake_island(state, body);
+  }
 }
 
 const VectorColumn& lead_positions(Simulation::State& state) {
@@ -225,12 +245,13 @@ const VectorColumn& lead_positions(Simulation::State& state) {
   const auto damped = [&](const BodyState& body) {
     return body.matches_shape() && body.material->settings.damping_time > 0;
   };
-  if (std::ranges::none_of(state.bodies, damped)) return store.position;
+  if (std::ranges::none_of(state.awake, [&](const BodyState* body) { return damped(*body); }))
+    return store.position;
   state.led_position.resize_unset(store.size());
   state.led_blocks.clear();
-  for (const BodyState& body : state.bodies) state.led_blocks.add(body.size());
+  for (const BodyState* body : state.awake) state.led_blocks.add(body->size());
   parallel_for(state.execution.threads, state.led_blocks, [&](const RangeBlocks::Block& block, std::size_t) {
-    const BodyState& body = state.bodies[block.range];
+    const BodyState& body = *state.awake[block.range];
     const float lead = damped(body) ? body.material->settings.damping_time : 0.0f;
     for (std::size_t a = 0; a < 3; ++a) {
       const float *x = store.position.axis(a) + body.begin, *v = store.velocity.axis(a) + body.begin;
@@ -252,7 +273,8 @@ Fastest find_fastest(Simulation::State& state) {
   input.cross_group = state.cross_group();
   input.user = state.user();
   input.bodies.clear();
-  for (const BodyState& body : state.bodies) {
+  for (const BodyState* moving : state.awake) {
+    const BodyState& body = *moving;
     // The paper's bound takes the whole acceleration, of which alpha acts. A k that is left out grows as
     // alpha falls: steps would be shortened, and varied, by what does not act.
     const float share = body.material->settings.pressure_coefficient ? 1.0f : body.material->alpha;
@@ -323,10 +345,27 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
       .pin_velocities = state.pin_velocities,
       .measure_external = body.step_weight > 0,
       .measure_rigid = body.keeps_reference() && state.deformation_damping(body) > 0,
+      .measure_speed = state.config.contact == BodyContact::constraint,
       .damping = body.matches_shape() ? -std::expm1(-state.deformation_damping(body) * time_step) : 0.0f,
       .rigid = body.rigid,
       .mass = body.mass,
   };
+}
+
+/// What takes it where it is told to be, in the time that it was given.
+Vec3 velocity_of(const PinState& pin, float time_step) {
+  if (pin.seconds == 0) return pin.velocity;
+  return pin.left / std::max(static_cast<float>(pin.seconds), time_step);
+}
+
+void move_pins(Simulation::State& state, double time_step) {
+  for (std::size_t p = 0; p < state.pins.size(); ++p) {
+    PinState& pin = state.pins[p];
+    if (pin.seconds == 0) continue;
+    pin.left -= static_cast<float>(time_step) * state.pin_velocities[p];
+    pin.seconds = std::max(0.0, pin.seconds - time_step);
+    if (pin.seconds == 0) pin.velocity = Vec3(0, 0, 0);
+  }
 }
 
 void plan_motion(Simulation::State& state, float time_step) {
@@ -337,10 +376,12 @@ void plan_motion(Simulation::State& state, float time_step) {
   const float pull_time = last_step > 0 ? 0.5f * (last_step + time_step) : time_step;
   place_colliders(state.colliders, state.origin, time_step, state.execution.level, state.placed_colliders);
   state.moving.loads.assign(any_measures_load(state.placed_colliders) ? state.colliders.size() : 0, {});
+  state.pin_velocities.clear();
+  for (const PinState& pin : state.pins) state.pin_velocities.push_back(velocity_of(pin, time_step));
   state.moving.inputs.clear();
-  for (BodyState& body : state.bodies) {
-    body.step_weight = body.keeps_reference() ? weight : 0.0;
-    state.moving.inputs.push_back(motion_of(state, body, time_step, pull_time));
+  for (BodyState* body : state.awake) {
+    body->step_weight = body->keeps_reference() ? weight : 0.0;
+    state.moving.inputs.push_back(motion_of(state, *body, time_step, pull_time));
   }
 }
 
@@ -348,9 +389,10 @@ void judge_motion(Simulation::State& state) {
   for (const MotionSums& sums : state.moving.sums)
     if (sums.bad_row != SIZE_MAX)
       refuse_damage(state, Phase::motion, static_cast<std::uint32_t>(sums.bad_row));
-  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
-    BodyState& body = state.bodies[b];
+  for (std::size_t b = 0; b < state.awake.size(); ++b) {
+    BodyState& body = *state.awake[b];
     const MotionSums& sums = state.moving.sums[b];
+    body.mean_speed = sums.speed / static_cast<double>(body.size());
     body.step_external = sums.unpinned > 0 ? sums.external / static_cast<double>(sums.unpinned) : 0.0;
     if (state.moving.inputs[b].measure_rigid) body.rigid = rigid_motion(sums.rigid, body.rigid.center);
   }
@@ -364,15 +406,43 @@ void move_bodies(Simulation::State& state, float time_step, const MotionPhases& 
   if (phases.advance) judge_motion(state);
 }
 
+namespace {
+
+/// Bodies that slept until something pushed them move on with the others. They were at rest, where all that
+/// acts on a particle cancels: v' is what they got.
+void wake_pushed(Simulation::State& state, float time_step) {
+  const NearBlocks& near = state.contact_pairs.near;
+  if (near.row.empty()) return;
+  std::vector<std::uint32_t> pushed;
+  for (std::size_t k = 0; k < state.contact_pairs.blocks.size(); ++k) {
+    const std::uint32_t body = near.blocks.blocks[k].range;
+    if (state.bodies[body].island == 0 || (!pushed.empty() && pushed.back() == body)) continue;
+    const auto moves = [&](const BlockPairs::Touching& point) {
+      return !state.contact_pairs.velocity[point.point].velocity.isZero(0);
+    };
+    if (std::ranges::any_of(state.contact_pairs.blocks[k].points, moves)) pushed.push_back(body);
+  }
+  for (const std::uint32_t body : pushed) {
+    wake_island(state, state.bodies[body]);
+    state.awake.push_back(&state.bodies[body]);
+    join_motion(motion_of(state, state.bodies[body], time_step, 0), state.moving);
+  }
+  state.events.insert(state.events.end(), state.next_events.begin(), state.next_events.end());
+  state.next_events.clear();
+}
+
+}  // namespace
+
 void resolve_touching(Simulation::State& state, float time_step) {
   state.touching.clear();
   for (const BodyState& body : state.bodies)
     state.touching.push_back({.begin = body.begin,
-                              .end = body.end,
+                              .end = body.enabled ? body.end : body.begin,
                               .group = body.sph_group,
                               .spacing = body.spacing,
                               .mass = body.mass,
                               .friction = body.material->settings.friction,
+                              .sleeps = body.island != 0,
                               .shape = body.matches_shape() ? &body.shape : nullptr});
   const ParticleStore& store = state.store;
   resolve_body_contacts(store.position, store.pin.empty() ? nullptr : store.pin.data(), state.touching,
@@ -380,12 +450,14 @@ void resolve_touching(Simulation::State& state, float time_step) {
                          .reach = 2 * state.config.support_radius,
                          .max_push = state.config.support_radius / (10.0f * state.base_step())},
                         state.execution, state.store.next_velocity, state.contact_pairs);
+  wake_pushed(state, time_step);
 }
 
 void finish_step(Simulation::State& state, const ChosenStep& step) {
   state.store.position.swap(state.store.next_position);
   state.store.velocity.swap(state.store.next_velocity);
   move_colliders(static_cast<double>(step.time_step), state.colliders);
+  move_pins(state, static_cast<double>(step.time_step));
   add_external(state);
   state.time = step.end;
   state.last_time_step = static_cast<double>(step.time_step);

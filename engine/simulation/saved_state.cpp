@@ -15,7 +15,7 @@ namespace mallow {
 namespace {
 
 /// Counted up whenever the chunks or what they mean change.
-constexpr std::uint32_t k_version = 5;
+constexpr std::uint32_t k_version = 6;
 static_assert(sizeof(std::size_t) == sizeof(std::uint64_t), "sizes are saved as they are");
 
 // One list of members a type, for both ways: see PackingArchive, and config/field_tables.h for those of
@@ -28,6 +28,8 @@ void pass_clock(Archive& archive, State& state) {
   archive(state.last_time_step);
   archive(state.prepared);
   archive(state.passed_periods);
+  archive(state.islands);
+  archive(state.disturbed);
   auto source = static_cast<std::uint8_t>(state.time_step_source);
   archive(source);
   archive(state.scale.spacing);
@@ -49,8 +51,15 @@ struct ShapeSizes {
 template <class Archive, class BodyState>
 void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   auto& frame = body.shape.frame;
+  auto id = static_cast<std::uint64_t>(body.id);
+  archive(id);
+  if constexpr (!Archive::k_packs) body.id = BodyId{id};
   archive(body.name);
   archive(body.merges);
+  archive(body.enabled);
+  archive(body.user_data);
+  archive(body.island);
+  archive(body.slow_time);
   archive(body.begin);
   archive(body.end);
   archive(body.spacing);
@@ -121,6 +130,8 @@ void require_valid(const UnpackingArchive& archive, const Simulation::State& sta
   };
   require(body.begin == begin && body.end >= begin, "its rows must follow those of the body before it");
   require(body.size() > 0, "it has no particles");
+  require(body.island <= state.islands && std::isfinite(body.slow_time) && body.slow_time >= 0,
+          "it sleeps with others that there are not, or the time that it has been slow is below 0");
   for (const float value : {body.spacing, body.mass, body.rest_density})
     require(std::isfinite(value) && value > 0,
             "spacing, particle mass and rest density must be finite and above 0");
@@ -174,9 +185,79 @@ std::vector<ShapeSizes> unpack_bodies(const SavedState& saved, Simulation::State
       body.shape.region_radius = settings.region_radius.value_or(state.config.support_radius);
       body.shape.region_stride = settings.region_stride;
     });
-    if (state.bodies.empty() && state.prepared) archive.fail("there are none");
   });
   return sizes;
+}
+
+void pack_slots(SavedState& saved, const char* name, const Slots& slots) {
+  saved.chunks.push_back(packed(name, [&](PackingArchive& archive) {
+    pass_list(archive, slots.free, 0, [&](std::uint32_t slot) { archive(slot); });
+    archive.array(slots.generation.data(), slots.generation.size());
+  }));
+}
+
+/// Who has which slot, from the ids that a list holds in order.
+void unpack_slots(const SavedState& saved, const char* name, std::span<const std::uint64_t> ids,
+                  Slots& slots) {
+  unpack(saved, name, [&](UnpackingArchive& archive) {
+    pass_list(archive, slots.free, sizeof(std::uint32_t), [&](std::uint32_t& slot) { archive(slot); });
+    unpack_column(archive, slots.generation);
+    const std::size_t count = ids.size() + slots.free.size();
+    if (!slots.generation.empty() && slots.generation.size() != count)
+      archive.fail("there must be a generation for each slot, or none");
+    if (slots.generation.empty() && !slots.free.empty()) archive.fail("no slot was given back");
+    slots.index.resize(count);
+    std::vector<bool> taken(count, false);
+    const auto take = [&](std::uint32_t slot) {
+      if (slot >= count || taken[slot])
+        archive.fail("slot " + std::to_string(slot) + " appears twice or is too large");
+      taken[slot] = true;
+    };
+    for (const std::uint64_t id : ids) {
+      take(slot_of(id));
+      if (generation_of(id) != (slots.generation.empty() ? 0 : slots.generation[slot_of(id)]))
+        archive.fail("id " + std::to_string(id) + " is not of the generation of its slot");
+    }
+    for (const std::uint32_t slot : slots.free) {
+      take(slot);
+      slots.index[slot] = Slots::k_free;
+    }
+    slots.place(0, ids);
+  });
+}
+
+template <class Archive, class Pin>
+void pass_pin(Archive& archive, Pin& pin) {
+  auto id = static_cast<std::uint64_t>(pin.id);
+  archive(id);
+  if constexpr (!Archive::k_packs) pin.id = PinId{id};
+  archive(pin.velocity);
+  archive(pin.left);
+  archive(pin.seconds);
+}
+
+/// A pin stands where its slot says, beside those that are nobody's.
+void unpack_pin_slots(const SavedState& saved, Simulation::State& state) {
+  std::vector<std::uint64_t> ids;
+  std::vector<bool> is_free(state.pins.size(), false);
+  unpack(saved, "pin_slots", [&](UnpackingArchive& archive) {
+    std::vector<std::uint32_t> free;
+    pass_list(archive, free, sizeof(std::uint32_t), [&](std::uint32_t& slot) { archive(slot); });
+    for (const std::uint32_t slot : free) {
+      if (slot >= state.pins.size()) archive.fail("slot " + std::to_string(slot) + " is too large");
+      is_free[slot] = true;
+    }
+    Column<std::uint32_t> generations;
+    unpack_column(archive, generations);
+  });
+  for (std::size_t p = 0; p < state.pins.size(); ++p)
+    if (!is_free[p]) ids.push_back(static_cast<std::uint64_t>(state.pins[p].id));
+  unpack_slots(saved, "pin_slots", ids, state.pin_slots);
+  for (const std::uint64_t id : ids) {
+    if (slot_of(id) >= state.pins.size() || state.pins[slot_of(id)].id != PinId{id})
+      throw ConfigError("saved state, chunk 'pins'", "a pin does not stand where its slot is");
+    state.pin_slots.index[slot_of(id)] = slot_of(id);
+  }
 }
 
 void unpack_obstacles(const SavedState& saved, Simulation::State& state) {
@@ -187,48 +268,23 @@ void unpack_obstacles(const SavedState& saved, Simulation::State& state) {
   unpack(saved, "colliders", [&](UnpackingArchive& archive) {
     Checks checks;
     pass_list(archive, state.colliders, 64, [&](Collider& collider) {
+      archive(state.collider_ids.emplace_back());
       pass_collider(archive, collider);
       check(collider, checks);
     });
     checks.finish();
   });
+  unpack_slots(saved, "collider_slots", state.collider_ids, state.collider_slots);
   unpack(saved, "pins", [&](UnpackingArchive& archive) {
-    pass_list(archive, state.pin_velocities, sizeof(Vec3), [&](Vec3& velocity) {
-      archive(velocity);
-      if (!velocity.allFinite()) archive.fail("a velocity is not finite");
+    pass_list(archive, state.pins, sizeof(Vec3), [&](PinState& pin) {
+      pass_pin(archive, pin);
+      if (!pin.velocity.allFinite() || !pin.left.allFinite() || !(pin.seconds >= 0) ||
+          !std::isfinite(pin.seconds))
+        archive.fail("a velocity, a way or a time is not finite, or it is below 0");
     });
-    if (state.pin_velocities.size() > k_max_pins) archive.fail("there are more than 65535");
+    if (state.pins.size() > k_max_pins) archive.fail("there are more than 65535");
   });
-}
-
-/// Who has which slot, from the ids that the rows hold.
-void unpack_slots(const SavedState& saved, ParticleStore& store) {
-  ParticleSlots& slots = store.slots;
-  unpack(saved, "generations", [&](UnpackingArchive& archive) { unpack_column(archive, slots.generation); });
-  unpack(saved, "free_slots", [&](UnpackingArchive& archive) {
-    pass_list(archive, slots.free, sizeof(std::uint32_t), [&](std::uint32_t& slot) { archive(slot); });
-    if (!slots.generation.empty() && slots.generation.size() != store.size() + slots.free.size())
-      archive.fail("there must be a generation for each slot, or none");
-    if (slots.generation.empty() && !slots.free.empty()) archive.fail("no slot was given back");
-  });
-  const std::size_t count = store.size() + slots.free.size();
-  slots.row.resize(count);
-  std::vector<bool> taken(count, false);
-  const auto take = [&](const UnpackingArchive& archive, std::uint32_t slot) {
-    if (slot >= count || taken[slot]) archive.fail(std::to_string(slot) + " appears twice or is too large");
-    taken[slot] = true;
-  };
-  const UnpackingArchive ids("ids", {}), free_slots("free_slots", {});
-  for (const ParticleId id : store.id) {
-    take(ids, slot_of(id));
-    if (generation_of(id) != (slots.generation.empty() ? 0 : slots.generation[slot_of(id)]))
-      ids.fail(std::to_string(id) + " is not of the generation of its slot");
-  }
-  for (const std::uint32_t slot : slots.free) {
-    take(free_slots, slot);
-    slots.row[slot] = ParticleSlots::k_free;
-  }
-  slots.place(0, store.id.span());
+  unpack_pin_slots(saved, state);
 }
 
 void unpack_particles(const SavedState& saved, Simulation::State& state) {
@@ -238,7 +294,7 @@ void unpack_particles(const SavedState& saved, Simulation::State& state) {
     unpack_column(archive, store.id);
     if (store.size() != n) archive.fail("there must be one for each particle of the bodies");
   });
-  unpack_slots(saved, store);
+  unpack_slots(saved, "particle_slots", store.id.span(), store.slots);
   unpack(saved, "positions", [&](UnpackingArchive& archive) { archive.columns(store.position, n); });
   unpack(saved, "velocities", [&](UnpackingArchive& archive) { archive.columns(store.velocity, n); });
   unpack(saved, "pinned", [&](UnpackingArchive& archive) {
@@ -246,7 +302,7 @@ void unpack_particles(const SavedState& saved, Simulation::State& state) {
     if (!store.pin.empty() && store.pin.size() != n)
       archive.fail("there must be one for each particle, or none");
     for (const std::uint16_t pin : store.pin)
-      if (pin > state.pin_velocities.size()) archive.fail("there is no pin " + std::to_string(pin - 1));
+      if (pin > state.pins.size()) archive.fail("there is no pin " + std::to_string(pin - 1));
   });
   store.next_position.resize(n);
   store.next_velocity.resize(n);
@@ -320,16 +376,20 @@ SavedState Simulation::save() const {
   }));
   add(packed("origin", [&](PackingArchive& archive) { archive(s.origin); }));
   add(packed("colliders", [&](PackingArchive& archive) {
-    pass_list(archive, s.colliders, 0, [&](const Collider& collider) { pass_collider(archive, collider); });
+    std::size_t number = 0;
+    pass_list(archive, s.colliders, 0, [&](const Collider& collider) {
+      archive(s.collider_ids[number++]);
+      pass_collider(archive, collider);
+    });
   }));
   add(packed("pins", [&](PackingArchive& archive) {
-    pass_list(archive, s.pin_velocities, 0, [&](const Vec3& velocity) { archive(velocity); });
+    pass_list(archive, s.pins, 0, [&](const PinState& pin) { pass_pin(archive, pin); });
   }));
   add(packed_column("ids", s.store.id));
-  add(packed_column("generations", s.store.slots.generation));
-  add(packed("free_slots", [&](PackingArchive& archive) {
-    pass_list(archive, s.store.slots.free, 0, [&](std::uint32_t slot) { archive(slot); });
-  }));
+  pack_slots(saved, "particle_slots", s.store.slots);
+  pack_slots(saved, "body_slots", s.body_slots);
+  pack_slots(saved, "collider_slots", s.collider_slots);
+  pack_slots(saved, "pin_slots", s.pin_slots);
   add(packed_columns("positions", s.store.position));
   add(packed_columns("velocities", s.store.velocity));
   add(packed_column("pinned", s.store.pin));
@@ -377,8 +437,12 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
   });
   unpack_materials(saved, state);
   const std::vector<ShapeSizes> sizes = unpack_bodies(saved, state);
+  std::vector<std::uint64_t> body_ids;
+  for (const BodyState& body : state.bodies) body_ids.push_back(static_cast<std::uint64_t>(body.id));
+  unpack_slots(saved, "body_slots", body_ids, state.body_slots);
   unpack_obstacles(saved, state);
   unpack_particles(saved, state);
+  hold_sleepers(state);
   unpack_shapes(saved, sizes, state);
   if (state.scale.spacing > 0) resolve_settings(state);
   if (state.prepared) describe_bodies(state);

@@ -17,7 +17,7 @@ constexpr double k_tolerance = 1e-6;
 float fastest_speed(const Simulation::State& state) {
   float speed = largest_norm(state.store.velocity);
   for (const Collider& collider : state.colliders) speed = std::max(speed, collider.velocity.norm());
-  for (const Vec3& velocity : state.pin_velocities) speed = std::max(speed, velocity.norm());
+  for (const PinState& pin : state.pins) speed = std::max(speed, pin.velocity.norm());
   return speed;
 }
 

@@ -16,16 +16,14 @@ namespace {
 /// The particles of one body share their spacing to this relative difference.
 constexpr float k_same_spacing = 1e-3f;
 
-template <class List, class Id>
-auto& checked(List& list, Id id, const char* kind) {
-  const auto index = static_cast<std::size_t>(id);
-  if (index >= list.size())
-    throw ConfigError(kind, std::string("there is no ") + kind + ' ' + std::to_string(index) +
-                                "; there are " + std::to_string(list.size()));
-  return list[index];
+/// Whether two bodies act on each other as parts of one.
+bool merge(const BodyState& a, const BodyState& b) {
+  return a.merges && b.merges && a.material == b.material &&
+         std::abs(a.spacing - b.spacing) <= k_same_spacing * a.spacing;
 }
 
-/// m and ρ0 of a body; what the material leaves out follows from ρ0 = m Σ W over the lattice. [model 1]
+}  // namespace
+
 void derive_density(const SolverConfig& config, BodyState& body) {
   const double per_mass =
       lattice_density(static_cast<double>(config.support_radius), static_cast<double>(body.spacing));
@@ -39,14 +37,6 @@ void derive_density(const SolverConfig& config, BodyState& body) {
   body.rest_density =
       material.rest_density.value_or(static_cast<float>(static_cast<double>(body.mass) * per_mass));
 }
-
-/// Whether two bodies act on each other as parts of one.
-bool merge(const BodyState& a, const BodyState& b) {
-  return a.merges && b.merges && a.material == b.material &&
-         std::abs(a.spacing - b.spacing) <= k_same_spacing * a.spacing;
-}
-
-}  // namespace
 
 void describe_bodies(Simulation::State& state) {
   Sph& sph = state.sph;
@@ -76,7 +66,8 @@ void describe_bodies(Simulation::State& state) {
     }
     sph.bodies.push_back({body.end, body.sph_group});
   }
-  sph.grid.spacing = static_cast<float>(std::cbrt(volume / static_cast<double>(state.store.size())));
+  const std::size_t particles = std::max(state.store.size(), std::size_t{1});
+  sph.grid.spacing = static_cast<float>(std::cbrt(volume / static_cast<double>(particles)));
 }
 
 std::string why_unknown(const ParticleStore& store, ParticleId id) {
@@ -86,8 +77,36 @@ std::string why_unknown(const ParticleStore& store, ParticleId id) {
          std::to_string(static_cast<std::int64_t>(store.slots.size()) - 1);
 }
 
+void refuse_id(const char* kind, std::uint64_t id, const Slots& slots) {
+  const std::string name = std::string(kind) + ' ' + std::to_string(id);
+  if (slot_of(id) < slots.size() && !slots.generation.empty()) throw ConfigError(kind, name + " was removed");
+  throw ConfigError(
+      kind, "there is no " + name + "; there are " + std::to_string(slots.size() - slots.free.size()));
+}
+
 const BodyState& Simulation::State::body(BodyId id) const {
-  return checked(bodies, id, "body");
+  const auto number = static_cast<std::uint64_t>(id);
+  if (const std::optional<std::size_t> index = body_slots.find(number)) return bodies[*index];
+  refuse_id("body", number, body_slots);
+}
+
+std::size_t Simulation::State::index(ColliderId id) const {
+  const auto number = static_cast<std::uint64_t>(id);
+  if (const std::optional<std::size_t> index = collider_slots.find(number)) return *index;
+  refuse_id("collider", number, collider_slots);
+}
+
+PinState& Simulation::State::pin(PinId id) {
+  const auto number = static_cast<std::uint64_t>(id);
+  if (const std::optional<std::size_t> index = pin_slots.find(number)) return pins[*index];
+  refuse_id("pin", number, pin_slots);
+}
+
+MaterialState& Simulation::State::material(MaterialId id) {
+  const auto index = static_cast<std::size_t>(id);
+  if (index < materials.size()) return materials[index];
+  throw ConfigError("material", "there is no material " + std::to_string(index) + "; there are " +
+                                    std::to_string(materials.size()));
 }
 
 void Simulation::State::refuse_in_callback() const {
@@ -126,199 +145,13 @@ MaterialId Simulation::add_material(const Material& material, std::string name) 
   return MaterialId{number};
 }
 
-namespace {
-
-/// Puts the points of a body behind its last row. Throws ConfigError, and changes nothing.
-void add_points(Simulation::State& s, const Body& points, BodyState& body) {
-  const Vec3 origin = s.store.size() == 0 ? choose_origin(points) : s.origin;
-  std::vector<Vec3> positions;
-  positions.reserve(points.positions.size());
-  for (const Vec3& x : points.positions) positions.push_back(relative_to(origin, x));
-  refuse_overlaps(s, body, positions, points.spacing, origin);
-  check_neighbors(s, body.material->settings, points);
-  std::vector<Vec3> velocities(points.positions.size(), points.velocity);
-  for (std::size_t i = 0; i < points.velocities.size(); ++i) velocities[i] += points.velocities[i];
-  if (s.store.size() == 0) s.origin = origin;
-  s.store.insert(body.end, positions, velocities);
-  body.end += positions.size();
-  body.grew = true;
-  s.prepared = false;
-  s.sph_ran = false;
-  s.far_step = -1;
-}
-
-}  // namespace
-
-BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name) {
-  state_->refuse_in_callback();
-  State& s = *state_;
-  MaterialState& material = checked(s.materials, id, "material");
-  Checks checks;
-  check(points, checks);
-  checks.finish();
-  BodyState body;
-  body.name = name.empty() ? "body " + std::to_string(s.bodies.size()) : std::move(name);
-  body.material = &material;
-  body.merges = points.merges;
-  body.begin = body.end = s.store.size();
-  body.spacing = points.spacing;
-  body.shape.region_radius = material.settings.region_radius.value_or(s.config.support_radius);
-  body.shape.region_stride = material.settings.region_stride;
-  derive_density(s.config, body);
-  add_points(s, points, body);
-  s.bodies.push_back(std::move(body));
-  return static_cast<BodyId>(s.bodies.size() - 1);
-}
-
-BodyId Simulation::add_body(const Body& points, const Material& material, std::string name) {
-  Checks checks;
-  check(points, checks);
-  checks.finish();
-  const bool was_prepared = state_->prepared;
-  const MaterialId id = add_material(material, name);
-  try {
-    return add_body(points, id, std::move(name));
-  } catch (...) {
-    state_->materials.pop_back();
-    state_->prepared = was_prepared;
-    throw;
-  }
-}
-
-void Simulation::extend_body(BodyId id, const Body& points) {
-  state_->refuse_in_callback();
-  State& s = *state_;
-  BodyState& body = checked(s.bodies, id, "body");
-  Checks checks;
-  check(points, checks);
-  if (!(std::abs(points.spacing - body.spacing) <= k_same_spacing * body.spacing)) {
-    std::ostringstream text;
-    text << points.spacing << " is not allowed in body '" << body.name << "', whose spacing is "
-         << body.spacing << ": all particles of a body share one spacing";
-    checks.problem("body.spacing", text.str());
-  }
-  checks.finish();
-  add_points(s, points, body);
-  for (std::size_t b = static_cast<std::size_t>(id) + 1; b < s.bodies.size(); ++b) {
-    s.bodies[b].begin += points.positions.size();
-    s.bodies[b].end += points.positions.size();
-  }
-}
-
-ColliderId Simulation::add_collider(const Collider& collider) {
-  state_->refuse_in_callback();
-  Checks checks;
-  check(collider, checks);
-  checks.finish();
-  state_->colliders.push_back(collider);
-  return static_cast<ColliderId>(state_->colliders.size() - 1);
-}
-
-PinId Simulation::pin(const Aabb& region, const Vec3& velocity) {
-  std::vector<ParticleId> ids;
-  for (std::size_t row = 0; row < state_->store.size(); ++row) {
-    const Vec3 x = state_->far(state_->store.position.get(row));
-    if ((x.array() >= region.min.array()).all() && (x.array() <= region.max.array()).all())
-      ids.push_back(state_->store.id[row]);
-  }
-  if (ids.empty()) {
-    std::ostringstream text;
-    text << "no particle is between (" << region.min.transpose() << ") and (" << region.max.transpose()
-         << ')';
-    throw ConfigError("pin.box", text.str());
-  }
-  return pin(ids, velocity);
-}
-
-PinId Simulation::pin(std::span<const ParticleId> ids, const Vec3& velocity) {
-  state_->refuse_in_callback();
-  State& s = *state_;
-  Checks checks;
-  checks.vector("pin.velocity", velocity);
-  std::vector<std::size_t> rows;
-  for (const ParticleId id : ids) {
-    if (const std::optional<std::size_t> row = s.store.slots.find(id)) {
-      rows.push_back(*row);
-      continue;
-    }
-    checks.problem("pin", why_unknown(s.store, id));
-    break;
-  }
-  if (s.pin_velocities.size() == k_max_pins) checks.problem("pin", "at most 65535 pins are possible");
-  checks.finish();
-  s.pin_velocities.push_back(velocity);
-  if (s.store.pin.empty()) s.store.pin.resize(s.store.size());
-  for (const std::size_t row : rows) s.store.pin[row] = static_cast<std::uint16_t>(s.pin_velocities.size());
-  return static_cast<PinId>(s.pin_velocities.size() - 1);
-}
-
-void Simulation::set_force(ForceCallback callback) {
-  state_->refuse_in_callback();
-  state_->force = std::move(callback);
-  if (!state_->force) state_->user_acceleration.release();
-}
-
-void Simulation::set_alpha(MaterialId id, const AlphaSchedule& alpha) {
-  state_->refuse_in_callback();
-  State& s = *state_;
-  MaterialState& material = checked(s.materials, id, "material");
-  Checks checks;
-  check(alpha, checks);
-  checks.finish();
-  Material changed = material.settings;
-  changed.alpha = alpha;
-  check_stiffness(s.config, changed, checks);
-  checks.finish();
-  material.settings.alpha = alpha;
-  for (BodyState& body : s.bodies) {
-    if (body.material != &material) continue;
-    if (!body.keeps_reference()) {
-      // Rows of fluids are sorted, which a reference shape that is kept would not follow.
-      ShapeMatching none;
-      none.region_radius = body.shape.region_radius;
-      none.region_stride = body.shape.region_stride;
-      body.shape = std::move(none);
-    }
-    // A fluid that may turn elastic remembers the shape it has now.
-    if (body.keeps_reference() && body.shape.reference.size() != body.size()) {
-      body.grew = true;
-      s.prepared = false;
-    }
-  }
-}
-
-void Simulation::set_velocity(ColliderId id, const Vec3& velocity) {
-  set_twist(id, velocity, collider(id).angular_velocity);
-}
-
-void Simulation::set_twist(ColliderId id, const Vec3& velocity, const Vec3& angular_velocity) {
-  state_->refuse_in_callback();
-  collider(id);
-  Checks checks;
-  checks.vector("collider.velocity", velocity);
-  checks.vector("collider.angular_velocity", angular_velocity);
-  checks.finish();
-  Collider& changed = state_->colliders[static_cast<std::size_t>(id)];
-  changed.velocity = velocity;
-  changed.angular_velocity = angular_velocity;
-}
-
-void Simulation::set_velocity(PinId id, const Vec3& velocity) {
-  state_->refuse_in_callback();
-  Checks checks;
-  checks.vector("pin.velocity", velocity);
-  if (static_cast<std::size_t>(id) >= state_->pin_velocities.size())
-    checks.problem("pin", "there is no pin " + std::to_string(static_cast<std::size_t>(id)));
-  checks.finish();
-  state_->pin_velocities[static_cast<std::size_t>(id)] = velocity;
-}
-
 void Simulation::prepare() {
   state_->refuse_in_callback();
   State& s = *state_;
   if (s.prepared) return;
   Checks checks;
-  if (s.store.size() == 0) checks.problem("body", "no particles: a simulation needs at least one");
+  if (s.store.size() == 0 && s.scale.spacing == 0)
+    checks.problem("body", "no particles: a simulation needs at least one");
   checks.finish();
   resolve_settings(s);
   check_memory(s);

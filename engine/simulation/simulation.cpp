@@ -14,6 +14,7 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
   PhaseTimer timer(report.seconds, after_phase);
 
   read_alphas(s);                                    // time -> alpha
+  wake_bodies(s);                                    // what moves or changed -> bodies that move
   report.updated_references = update_references(s);  // |a_ext| -> x̄, regions       [TK 3.2, eq. 14]
   sort_fluids(s);                                    // rows of fluids -> cell order
   timer.lap(Phase::reference_update);
@@ -43,14 +44,18 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
   timer.lap(Phase::goals);
 
   // a, g − x -> v', contact, v' -> x': in one loop where nothing stands between them. [TK eq. 10 to 13]
-  if (s.bodies_touch()) {
-    move_bodies(s, step.time_step, {.predict = true});                   // a, g − x -> v'
-    resolve_touching(s, step.time_step);                                 // x, v' -> v' of what touches
+  if (s.bodies_touch() && !s.awake.empty()) {
+    move_bodies(s, step.time_step, {.predict = true});  // a, g − x -> v'
+    timer.lap(Phase::motion);
+    resolve_touching(s, step.time_step);  // x, v' -> v' of what touches
+    timer.lap(Phase::body_contact);
     move_bodies(s, step.time_step, {.collide = true, .advance = true});  // contact with colliders, v' -> x'
   } else {
     move_bodies(s, step.time_step, {.predict = true, .collide = true, .advance = true});
   }
-  finish_step(s, step);  // v', x' -> v, x; c ← c + 1
+  report.awake_bodies = s.awake.size();
+  finish_step(s, step);            // v', x' -> v, x; c ← c + 1
+  rest_bodies(s, step.time_step);  // v -> bodies that sleep
   timer.lap(Phase::motion);
   return report;
 }

@@ -10,6 +10,7 @@
 
 #include "contact/body_contact.h"
 #include "core/execution.h"
+#include "core/slots.h"
 #include "mallow/simulation.h"
 #include "motion/motion.h"
 #include "motion/time_step.h"
@@ -36,6 +37,7 @@ struct MaterialState {
 
 /// A range of rows and its reference shape.
 struct BodyState {
+  BodyId id{};
   std::string name;
   MaterialState* material = nullptr;
   bool merges = false;             ///< Body::merges
@@ -51,14 +53,30 @@ struct BodyState {
   double step_weight = 0;
   RigidMotion rigid;     ///< kept where deformations are damped towards it
   bool yielded = false;  ///< its reference shape was updated since it was built
-  bool grew = true;      ///< has particles that prepare() has not seen
-  ShapeMatching shape;   ///< empty where alpha is never below 1
+  bool enabled = true;   ///< see Simulation::disable()
+  std::uint64_t user_data = 0;
+  /// Those that fell asleep together share a number above 0 and wake together; 0: it is awake.
+  std::uint32_t island = 0;
+  double slow_time = 0;   ///< for how long it has been slower than what may sleep [s]
+  double mean_speed = 0;  ///< of its particles, after the last step [m/s]
+  Aabb box = {};          ///< around its particles while it sleeps [m]
+  bool grew = true;       ///< has particles that prepare() has not seen
+  ShapeMatching shape;    ///< empty where alpha is never below 1
 
   std::size_t size() const { return end - begin; }
   /// Mean |a_ext| before the check that is next [m/s²].
   double mean_external() const { return external_weight > 0 ? external_sum / external_weight : 0.0; }
   bool keeps_reference() const { return material->keeps_reference(); }
   bool matches_shape() const { return material->alpha < 1.0f; }
+  bool moves() const { return enabled && island == 0; }
+};
+
+/// Particles that answer to nothing but this.
+struct PinState {
+  PinId id{};
+  Vec3 velocity{0, 0, 0};  ///< [m/s]
+  Vec3 left{0, 0, 0};      ///< way to where it is told to be [m]
+  double seconds = 0;      ///< in which it gets there; 0: it is told a velocity
 };
 
 /// All that a simulation is.
@@ -76,8 +94,15 @@ struct Simulation::State {
   ParticleStore store;
   std::deque<MaterialState> materials;  ///< bodies point to them
   std::vector<BodyState> bodies;        ///< in the order of their rows
+  Slots body_slots;                     ///< BodyId -> index
   std::vector<Collider> colliders;
-  std::vector<Vec3> pin_velocities;
+  std::vector<std::uint64_t> collider_ids;  ///< of each collider
+  Slots collider_slots;                     ///< ColliderId -> index
+  std::vector<PinState> pins;               ///< by slot; those that are nobody's hold nothing
+  Slots pin_slots;                          ///< PinId -> index, which is its slot
+  std::vector<BodyEvent> events;            ///< of the last step, and of calls before it
+  std::vector<BodyEvent> next_events;       ///< of calls since then
+  std::uint32_t islands = 0;                ///< numbers that were given away
   ForceCallback force;
   Sph sph;
   VectorColumn user_acceleration;  ///< empty without a force callback
@@ -87,7 +112,9 @@ struct Simulation::State {
   std::int64_t far_step = -1;
 
   bool prepared = false;
-  bool sph_ran = false;  ///< in the last step
+  bool disturbed = false;         ///< something has changed that bodies which sleep may feel
+  bool sph_ran = false;           ///< in the last step
+  std::vector<BodyState*> awake;  ///< bodies that move in the step under way
   // Scratch.
   RegionScratch region_scratch;
   MatchedBodies matched;  ///< those whose shape is matched in the step under way
@@ -96,6 +123,8 @@ struct Simulation::State {
   Column<std::uint32_t> fluid_order;
   std::vector<TimeStepLimits::Pressure> pressures;
   std::vector<PlacedCollider> placed_colliders;
+  std::vector<Vec3> pin_velocities;
+  std::vector<std::uint32_t> island_of;
   RangeBlocks led_blocks;
   VectorColumn led_position;  ///< see lead_positions(); empty without damping
   std::vector<TouchingBody> touching;
@@ -104,8 +133,12 @@ struct Simulation::State {
   /// Δt0, and what bounds the steps that are taken. Known from the first prepare() on [s].
   float base_step() const { return *config.time_step; }
   float longest_step() const { return config.time_step_factor * *config.time_step; }
-  /// Throws ConfigError where there is none of this name.
+  /// Throw ConfigError where there is none of this name, or no longer.
   const BodyState& body(BodyId id) const;
+  BodyState& body(BodyId id) { return const_cast<BodyState&>(std::as_const(*this).body(id)); }
+  std::size_t index(ColliderId id) const;
+  PinState& pin(PinId id);
+  MaterialState& material(MaterialId id);
   /// The body of a row.
   const BodyState& body_of(std::size_t row) const {
     return *std::ranges::upper_bound(bodies, row, {}, &BodyState::end);
@@ -120,6 +153,8 @@ struct Simulation::State {
     sph.kept.forget();
     far_step = -1;
   }
+  /// There are other rows than before: what a step left is of no use.
+  void rows_changed();
   bool in_force_callback = false;
   /// Throws ConfigError in a force callback, which sees a step half done: nothing may change then.
   void refuse_in_callback() const;
@@ -157,6 +192,10 @@ int update_references(Simulation::State& state);
 /// Rows of bodies without a reference shape into the cell order of the last neighbour search, now and then:
 /// what is near in space is near in memory.
 void sort_fluids(Simulation::State& state);
+/// What moves beside them, or has changed, wakes bodies -> those that move in this step.
+void wake_bodies(Simulation::State& state);
+/// speeds -> bodies that have been slow for long, with all that they touch, sleep: their velocities are 0.
+void rest_bodies(Simulation::State& state, float time_step);
 /// positions, velocities -> user accelerations.
 void call_force(Simulation::State& state);
 /// positions, velocities -> those at which shapes are matched, x + τ v: the positions themselves where
@@ -177,6 +216,17 @@ void move_bodies(Simulation::State& state, float time_step, const MotionPhases& 
 void resolve_touching(Simulation::State& state, float time_step);
 /// next positions and velocities become the present ones; time, step and colliders move on.
 void finish_step(Simulation::State& state, const ChosenStep& step);
+
+/// A body and those that fell asleep with it are awake.
+void wake_island(Simulation::State& state, BodyState& body);
+void wake_all(Simulation::State& state);
+/// Bodies that sleep are left where they are: in both sets of columns that steps go to and fro between.
+void hold_sleepers(Simulation::State& state);
+
+/// Throws ConfigError where an id names none of a kind.
+[[noreturn]] void refuse_id(const char* kind, std::uint64_t id, const Slots& slots);
+/// m and ρ0 of a body; what the material leaves out follows from ρ0 = m Σ W over the lattice. [model 1]
+void derive_density(const SolverConfig& config, BodyState& body);
 
 /// Takes the positions of a body as its reference shape and sorts its rows for that.
 void take_reference(Simulation::State& state, BodyState& body);

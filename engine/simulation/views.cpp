@@ -17,8 +17,8 @@ template <class Value>
 auto by_id(const ParticleStore& store, const Value& value) {
   std::vector<decltype(value(std::size_t{}))> values;
   values.reserve(store.size());
-  for (const std::uint32_t row : store.slots.row)
-    if (row != ParticleSlots::k_free) values.push_back(value(row));
+  for (const std::uint32_t row : store.slots.index)
+    if (row != Slots::k_free) values.push_back(value(row));
   return values;
 }
 std::vector<Vec3> by_id(const ParticleStore& store, const VectorColumn& column) {
@@ -49,9 +49,9 @@ const VectorColumn& Simulation::State::seen_positions() {
 }
 
 const char* name(Phase phase) {
-  constexpr std::array<const char*, k_phase_count> k_names{"reference_update", "neighbors", "density",
-                                                           "accelerations",    "time_step", "region_sums",
-                                                           "rotations",        "goals",     "motion"};
+  constexpr std::array<const char*, k_phase_count> k_names{
+      "reference_update", "neighbors", "density", "accelerations", "time_step",
+      "region_sums",      "rotations", "goals",   "body_contact",  "motion"};
   return k_names[static_cast<std::size_t>(phase)];
 }
 
@@ -84,17 +84,14 @@ const std::vector<Collider>& Simulation::colliders() const {
   return state_->colliders;
 }
 const Collider& Simulation::collider(ColliderId id) const {
-  const auto index = static_cast<std::size_t>(id);
-  if (index >= state_->colliders.size())
-    throw ConfigError("collider", "there is no collider " + std::to_string(index));
-  return state_->colliders[index];
+  return state_->colliders[state_->index(id)];
 }
 ColliderLoad Simulation::load(ColliderId id) const {
   if (!collider(id).measure_load)
     throw ConfigError("collider.measure_load", "is false: the loads of collider " +
-                                                   std::to_string(static_cast<std::size_t>(id)) +
+                                                   std::to_string(static_cast<std::uint64_t>(id)) +
                                                    " are not measured");
-  const auto index = static_cast<std::size_t>(id);
+  const std::size_t index = state_->index(id);
   return index < state_->moving.loads.size() ? state_->moving.loads[index] : ColliderLoad{};
 }
 
@@ -112,14 +109,14 @@ std::span<const float> Simulation::densities() const {
 }
 
 Simulation::Rows Simulation::rows(BodyId id) const {
-  const BodyState& body = state_->body(id);
+  const BodyState& body = std::as_const(*state_).body(id);
   return {body.begin, body.end};
 }
 float Simulation::spacing(BodyId id) const {
-  return state_->body(id).spacing;
+  return std::as_const(*state_).body(id).spacing;
 }
 MaterialId Simulation::material(BodyId id) const {
-  return MaterialId{state_->body(id).material->number};
+  return MaterialId{std::as_const(*state_).body(id).material->number};
 }
 
 std::size_t Simulation::row(ParticleId id) const {
@@ -165,9 +162,7 @@ std::vector<Vec3> Simulation::velocities_by_id() const {
 
 std::vector<std::uint32_t> Simulation::bodies_by_id() const {
   const State& s = *state_;
-  return by_id(s.store, [&](std::size_t row) {
-    return static_cast<std::uint32_t>(&s.body_of(row) - s.bodies.data());
-  });
+  return by_id(s.store, [&](std::size_t row) { return slot_of(s.body_of(row).id); });
 }
 
 std::uint64_t Simulation::state_hash() const {

@@ -33,19 +33,28 @@ SphInput input(const Sph& sph) {
 }  // namespace
 
 std::size_t Sph::bytes() const {
-  return grid.bytes() + lists.bytes() + kept.bytes() + group.bytes() + velocity.bytes() + density.bytes() +
-         pressure.bytes() + volume.bytes() + density_by_row.bytes() + acceleration.bytes() +
-         cross_group.bytes();
+  return grid.bytes() + lists.bytes() + kept.bytes() + rows.bytes() + positions.bytes() + group.bytes() +
+         velocity.bytes() + density.bytes() + pressure.bytes() + volume.bytes() + density_by_row.bytes() +
+         acceleration.bytes() + cross_group.bytes();
 }
 
 bool find_neighbors(const VectorColumn& positions, const Execution& execution, Sph& sph) {
-  const std::size_t n = positions.size();
-  const bool keeps = sph.neighbor_slack > 0;
+  sph.store_rows = positions.size();
+  const bool all = sph.rows.empty();
+  const std::size_t n = all ? positions.size() : sph.rows.size();
+  const bool keeps = all && sph.neighbor_slack > 0;
   if (keeps &&
       keep_lists(positions, sph.support_radius, sph.neighbor_slack, execution.threads, sph.grid, sph.kept))
     return false;
   const float radius = sph.support_radius * (1.0f + sph.neighbor_slack);
-  build_cell_grid(positions, 0, n, radius, execution, sph.grid);
+  if (!all) {
+    sph.kept.forget();
+    sph.positions.resize_unset(n);
+    for (std::size_t k = 0; k < n; ++k) sph.positions.set(k, positions.get(sph.rows[k]));
+  }
+  build_cell_grid(all ? positions : sph.positions, 0, n, radius, execution, sph.grid);
+  if (!all)
+    for (std::uint32_t& row : sph.grid.order) row = sph.rows[row];
   build_cluster_lists(sph.grid, radius, execution, sph.lists);
   if (keeps) remember_search(sph.grid, sph.kept);
   if (sph.groups.size() == 1) return true;
@@ -61,13 +70,13 @@ bool find_neighbors(const VectorColumn& positions, const Execution& execution, S
 
 void compute_density(const Execution& execution, Sph& sph) {
   const std::size_t n = sph.grid.order.size();
-  for (Column<float>* column : {&sph.density, &sph.pressure, &sph.volume, &sph.density_by_row})
-    column->resize(n);
+  for (Column<float>* column : {&sph.density, &sph.pressure, &sph.volume}) column->resize(n);
+  sph.density_by_row.resize(sph.store_rows);
   const SphInput in = input(sph);
   const SphLanes& lanes = MALLOW_SELECT(execution.level, sph_lanes);
   // Lists that are kept for steps to come stay as they are.
-  const NearLists near = sph.neighbor_slack > 0 ? NearLists{nullptr, nullptr}
-                                                : NearLists{sph.lists.indices.data(), sph.lists.count.data()};
+  const NearLists near = sph.kept.any ? NearLists{nullptr, nullptr}
+                                      : NearLists{sph.lists.indices.data(), sph.lists.count.data()};
   parallel_for(
       execution.threads, sph.grid.clusters(),
       [&](std::size_t begin, std::size_t end) {
@@ -79,8 +88,8 @@ void compute_density(const Execution& execution, Sph& sph) {
 
 void compute_accelerations(const VectorColumn& velocities, const Execution& execution, Sph& sph) {
   const std::size_t n = sph.grid.order.size();
-  sph.acceleration.resize(n);
-  if (sph.groups.size() > 1 && !sph.apart) sph.cross_group.resize(n);
+  sph.acceleration.resize(sph.store_rows);
+  if (sph.groups.size() > 1 && !sph.apart) sph.cross_group.resize(sph.store_rows);
   if (sph.viscous) {
     sph.velocity.resize(n);
     parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {

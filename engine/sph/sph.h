@@ -33,6 +33,8 @@ struct Sph {
   };
   std::vector<Body> bodies;
 
+  /// Rows of the particles that take part, ascending; empty: all do.
+  Column<std::uint32_t> rows;
   CellGrid grid;
   NeighborLists lists;  ///< a list per cluster of the grid
   KeptLists kept;       ///< empty without slack
@@ -40,11 +42,15 @@ struct Sph {
   Column<std::uint32_t> group;  ///< empty where there is one group
   VectorColumn velocity;        ///< empty without viscosity
   Column<float> density, pressure, volume;
-  // By row of the particle store.
+  // By row of the particle store; of those that take part.
+  std::size_t store_rows = 0;
   Column<float> density_by_row;
   VectorColumn acceleration;  ///< a^SPH: pairs of one group [m/s²]
   VectorColumn cross_group;   ///< pairs of two groups, part of a_ext [m/s²]; empty where there is one group,
                               ///< or they are apart
+
+  // Scratch.
+  VectorColumn positions;  ///< of `rows`
 
   std::size_t bytes() const;
 };

@@ -7,12 +7,9 @@ SurfaceParticles surface_particles(const Simulation& simulation) {
                              .velocities = simulation.velocities(),
                              .bodies = {},
                              .ids = simulation.ids()};
-  for (std::size_t b = 0; b < simulation.body_count(); ++b) {
-    const auto number = static_cast<std::uint32_t>(b);
-    const BodyId body{number};
+  for (const BodyId body : simulation.bodies())
     particles.bodies.push_back(
-        {.spacing = simulation.spacing(body), .body = number, .rows = simulation.rows(body)});
-  }
+        {.spacing = simulation.spacing(body), .body = slot_of(body), .rows = simulation.rows(body)});
   return particles;
 }
 

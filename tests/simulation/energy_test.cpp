@@ -171,6 +171,7 @@ TEST(energy, is_never_gained_where_a_reference_shape_is_updated) {
   for (const auto& [pull, alpha] : {std::pair{1.0f, 0.0f}, {2.25f, 0.0f}, {2.5f, 0.0f}, {1.5f, 0.3f}}) {
     SolverConfig config = solver();
     config.update_interval = 4;
+    config.sleep_speed = 0;
     Simulation s(config);
     s.add_collider({.shape = Plane{}, .friction = 0.3f});
     s.add_body(cube(6, 10),

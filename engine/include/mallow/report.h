@@ -8,6 +8,7 @@
 
 #include "mallow/defaults.h"
 #include "mallow/export.h"
+#include "mallow/ids.h"
 #include "mallow/instruction_level.h"
 
 namespace mallow {
@@ -23,9 +24,10 @@ enum class Phase {
                      ///< particles
   rotations,         ///< polar decompositions
   goals,             ///< goal positions, second of the sums over regions [TK eq. 7]
-  motion,            ///< blend, contact, positions [TK eq. 10, 11]
+  body_contact,      ///< what keeps bodies out of each other [model 2, section 4 C]
+  motion,            ///< blend, contact with colliders, positions [TK eq. 10, 11]
 };
-inline constexpr std::size_t k_phase_count = 9;  ///< values of Phase
+inline constexpr std::size_t k_phase_count = 10;  ///< values of Phase
 /// "region_sums" and the like.
 MALLOW_EXPORT const char* name(Phase phase);
 
@@ -39,7 +41,20 @@ struct StepReport {
   bool limited = false;          ///< a limit kept Δt below Δt0; not where only a time to land on did
   bool neighbors_found = false;  ///< neighbour lists were found anew, not kept (SolverConfig::neighbor_slack)
   int updated_references = 0;    ///< bodies whose reference shape was updated at the start of this step
+  std::size_t awake_bodies = 0;  ///< that moved in it
   PhaseTimes seconds{};
+};
+
+/// What happened to a body: see Simulation::events().
+struct BodyEvent {
+  /// Each once, in this order.
+  enum class Kind {
+    slept,    ///< it is at rest and costs nothing from now on
+    woke,     ///< it moves again
+    yielded,  ///< its reference shape was updated [TK 3.2]
+  };
+  Kind kind;
+  BodyId body;
 };
 
 /// Energies of all particles that are not pinned [J]; see Simulation::energy().

@@ -2,9 +2,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -76,6 +79,37 @@ struct ForceInput {
 /// the state stays what it was before it.
 using ForceCallback = std::function<void(const ForceInput&, VectorSpan accelerations)>;
 
+/// What a ray meets first.
+struct BodyHit {
+  double distance;  ///< from the ray's origin [m]
+  Vec3 position;    ///< [m]
+  Vec3 normal;      ///< of the ball around the particle
+  BodyId body;
+  ParticleId particle;
+};
+/// @copydoc BodyHit
+struct ColliderHit {
+  double distance;  ///< from the ray's origin [m]
+  Vec3 position;    ///< [m]
+  Vec3 normal;      ///< towards the free side
+  ColliderId collider;
+};
+/// See Simulation::nearest_particle().
+struct NearestParticle {
+  double distance;  ///< [m]
+  ParticleId particle;
+  BodyId body;
+};
+/// A body as a whole; pinned particles count as all others.
+struct BodyMotion {
+  double mass;                       ///< [kg]
+  Eigen::Vector3d center_of_mass;    ///< [m]
+  Eigen::Vector3d velocity;          ///< of the centre of mass [m/s]
+  Eigen::Vector3d angular_velocity;  ///< ω of the rigid body that has its spin [rad/s]
+  Eigen::Vector3d momentum;          ///< [N s]
+  double kinetic_energy;             ///< [J]
+};
+
 /// A scene in motion: SPH and shape matching blended by alpha [TK]. Results depend on the binary and on what
 /// was added, never on the number of threads. One thread may use an object at a time; different objects are
 /// independent. One that was moved from may only be assigned to or destroyed.
@@ -97,20 +131,43 @@ class MALLOW_EXPORT Simulation {
   BodyId add_body(const Body& body, MaterialId material, std::string name = {});
   /// Adds a body of a material of its own.
   BodyId add_body(const Body& body, const Material& material, std::string name = {});
-  /// Adds particles to a body, with its spacing: all of it is one piece, with one reference shape. One that
-  /// already moved takes the present positions for that. Throws what add_body() throws.
+  /// Adds particles to a body, with its spacing: all of it is one piece, with one reference shape. In one
+  /// that already moved the others keep where they rest, and a new particle rests beside the one that it is
+  /// put next to, as that is turned and moved. Throws what add_body() throws.
   void extend_body(BodyId body, const Body& more);
+  /// A body is gone, and what leaned on it wakes. Its id and those of its particles name nobody again. No
+  /// other body is touched; the cost is that of moving the rows behind it up. Throws ConfigError where there
+  /// is none of this id, or no longer.
+  void remove_body(BodyId body);
+  /// Particles are gone. Those left of their bodies keep where they rest, and hold together by the regions
+  /// that are left; a body without particles is removed. Throws ConfigError, and removes none, where an id is
+  /// not one or comes twice.
+  void remove_particles(std::span<const ParticleId> ids);
+  /// The same for all that are in a box now. Returns how many; throws ConfigError where there are none.
+  std::size_t remove_particles(const Aabb& region);
   /// An obstacle from the next step on. Throws ConfigError with every value that is out of range.
   ColliderId add_collider(const Collider& collider);
+  /// It is gone from the next step on. Throws ConfigError where there is none of this id.
+  void remove_collider(ColliderId collider);
   /// Particles that are in `region` now move with `velocity` from now on and answer to nothing else. The
   /// region may hold none: that is a ConfigError, as nobody means it.
   PinId pin(const Aabb& region, const Vec3& velocity = {0, 0, 0});
   /// The same for particles by id. Throws ConfigError where an id is not one.
   PinId pin(std::span<const ParticleId> ids, const Vec3& velocity = {0, 0, 0});
-  /// An empty function takes the callback away.
+  /// Its particles are free again, as fast as they are. Throws ConfigError where there is none of this id.
+  void unpin(PinId pin);
+  /// An empty function takes the callback away. What it gives an acceleration to does not sleep.
   void set_force(ForceCallback callback);
 
-  /// Of all bodies of the material.
+  /// [m/s²], finite. What follows from gravity where a config leaves it out stays as the first prepare()
+  /// settled it.
+  void set_gravity(const Vec3& gravity);
+  /// What all bodies of a material are made of from now on. Reference shapes stay; the regions are built anew
+  /// where their radius or stride changes. Throws ConfigError with every value that is out of range.
+  void set_material(MaterialId material, const Material& settings);
+  /// As set last.
+  const Material& material_settings(MaterialId material) const;
+  /// Alpha of a material alone.
   void set_alpha(MaterialId material, const AlphaSchedule& alpha);
   /// The velocity of a collider from now on [m/s], finite.
   void set_velocity(ColliderId collider, const Vec3& velocity);
@@ -118,6 +175,34 @@ class MALLOW_EXPORT Simulation {
   void set_twist(ColliderId collider, const Vec3& velocity, const Vec3& angular_velocity);
   /// The velocity of the particles of a pin from now on [m/s], finite.
   void set_velocity(PinId pin, const Vec3& velocity);
+  /// The particles of a pin go `way` [m] in the next `seconds`, > 0, evenly, and stay there.
+  void move_pin(PinId pin, const Vec3& way, double seconds);
+  /// Of all particles of a body that are not pinned: [m/s], and [rad/s] about its centre of mass.
+  void set_velocity(BodyId body, const Vec3& velocity, const Vec3& angular_velocity = {0, 0, 0});
+  /// Of particles that are not pinned [m/s]. Throws ConfigError, and changes nothing, where an id is not one.
+  void set_velocity(std::span<const ParticleId> ids, const Vec3& velocity);
+  /// Moves a body, pinned particles too, so that its centre of mass is there [m]. Where it then overlaps
+  /// another body, contact drives them apart.
+  void set_position(BodyId body, const Vec3& center_of_mass);
+  /// Adds momentum [N s] to the particles of a body that are not pinned, the same to each.
+  void add_impulse(BodyId body, const Vec3& impulse);
+  /// Adds momentum [N s] to what is in a ball [m], most in its middle and none at its rim: as (1 − r²/R²)² of
+  /// the mass there. Returns how many particles got some; where there is none, none is given.
+  std::size_t add_impulse(const Vec3& center, float radius, const Vec3& impulse);
+  /// A body that is not enabled stands where it is, is met by nothing, and costs nothing. It is still seen in
+  /// every view.
+  void enable(BodyId body, bool enabled);
+  /// As set last; true at first.
+  bool is_enabled(BodyId body) const;
+  /// What an application wants to find with a body again; saved with it.
+  void set_user_data(BodyId body, std::uint64_t data);
+  /// As set last; 0 at first.
+  std::uint64_t user_data(BodyId body) const;
+  /// Ends the sleep of a body and of those that fell asleep with it (SolverConfig::sleep_speed). What moves
+  /// beside it or pushes it, and every call here that changes something near it, does that too.
+  void wake(BodyId body);
+  /// It is enabled and does not sleep.
+  bool is_awake(BodyId body) const;
 
   /// Allocates, sorts and builds what the first step needs; step() does it where it was not done. The first
   /// call settles what a config leaves out, from the bodies that are there; later ones do not change it.
@@ -139,15 +224,26 @@ class MALLOW_EXPORT Simulation {
 
   /// Of all bodies.
   std::size_t particle_count() const;
-  /// Bodies are numbered from 0 to one less than this.
+  /// As many as bodies() has.
   std::size_t body_count() const;
+  /// Those that there are, in the order of their rows.
+  std::vector<BodyId> bodies() const;
+  /// The first of this name.
+  std::optional<BodyId> find_body(std::string_view name) const;
+  /// As it was added.
+  const std::string& name(BodyId body) const;
+  /// What happened to bodies in the last step, and in calls since the one before it.
+  std::span<const BodyEvent> events() const;
   double time() const;              ///< simulated time [s]
   std::int64_t step_count() const;  ///< steps taken
   /// As given; from the first prepare() on with the time_step that is in force. What else was left out,
   /// info() tells.
   const SolverConfig& config() const;
-  const std::vector<Collider>& colliders() const;  ///< as given, in the poses that they have now
-  const Collider& collider(ColliderId id) const;   ///< throws ConfigError where there is none
+  /// As given, in the poses that they have now, in the order in which they were added; see collider_ids().
+  const std::vector<Collider>& colliders() const;
+  /// Of each of colliders().
+  std::vector<ColliderId> collider_ids() const;
+  const Collider& collider(ColliderId id) const;  ///< throws ConfigError where there is none
   /// What particles gave a collider in the last step; zeros before the first. Its measure_load must be set:
   /// else ConfigError. Summed in double, in an order that does not depend on the number of threads.
   ColliderLoad load(ColliderId id) const;
@@ -184,7 +280,27 @@ class MALLOW_EXPORT Simulation {
   std::vector<Vec3> positions_by_id() const;
   /// @copydoc positions_by_id()
   std::vector<Vec3> velocities_by_id() const;
-  std::vector<std::uint32_t> bodies_by_id() const;  ///< BodyId of each particle
+  std::vector<std::uint32_t> bodies_by_id() const;  ///< slot of the body of each particle
+
+  /// The first particle that a ray meets, of bodies that are enabled: the ball around it, as large as
+  /// surfaces are drawn around it by default. direction: of any length but 0. farthest: [m], may be infinite.
+  /// Looks at the box of every block of particles. Throws ConfigError.
+  std::optional<BodyHit> raycast(const Vec3& origin, const Vec3& direction,
+                                 double farthest = std::numeric_limits<double>::infinity()) const;
+  /// The first surface of a collider that a ray meets from where particles may be. As raycast().
+  std::optional<ColliderHit> raycast_colliders(
+      const Vec3& origin, const Vec3& direction,
+      double farthest = std::numeric_limits<double>::infinity()) const;
+  /// Particles of enabled bodies whose centres are in a box, by ascending id. Looks at every particle.
+  std::vector<ParticleId> particles_in(const Aabb& box) const;
+  /// The same in a ball [m].
+  std::vector<ParticleId> particles_in(const Vec3& center, float radius) const;
+  /// The particle of an enabled body that is nearest to a point [m]. Looks at every particle.
+  std::optional<NearestParticle> nearest_particle(const Vec3& point) const;
+  /// The box around the particles of a body [m].
+  Aabb bounds(BodyId body) const;
+  /// What a body does as a whole.
+  BodyMotion motion(BodyId body) const;
 
   /// Energies as they are now, summed in double; slow, as every region is solved exactly. SPH pressure keeps
   /// no energy that could be summed, so a fluid's is what it moves and falls with. Calls prepare().

@@ -21,7 +21,7 @@ enum class BodyContact {
   constraint,  ///< velocities at which particles of two bodies would come nearer than a spacing end at that
                ///< distance, with friction: bodies touch, stack and slide
   pressure,    ///< they are parts of one fluid to each other, whose pressure and viscosity act between them:
-             ///< the paper's rule
+               ///< the paper's rule
 };
 
 /// What holds for a whole simulation. Copied when given to a Simulation.
@@ -52,6 +52,12 @@ struct SolverConfig {
   /// Distance from a collider at which a particle touches it [m], >= 0; left out: half the spacing of its
   /// body.
   std::optional<float> contact_offset = {};
+  /// A body sleeps whose particles have been slower than this in the mean for sleep_time, with all that it
+  /// touches: no phase runs for it until something wakes it [m/s], >= 0; 0: none ever sleeps.
+  /// Left out: 0.005 spacings in a time_step. Only where bodies are kept apart by constraint.
+  std::optional<float> sleep_speed = {};
+  /// [s], > 0. Left out: 60 time_step.
+  std::optional<float> sleep_time = {};
   /// Newton iterations for a region's rotation in a step, at most, in [0, 8]; each starts where the last
   /// step ended. With 8, what has not converged is solved exactly, so that every rotation is right to single
   /// precision. With fewer it goes on in the next step: where a region turned by θ rad since the last step, 1

@@ -1,0 +1,339 @@
+// What comes and goes while a simulation runs.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "colliders/collider_checks.h"
+#include "config/validation.h"
+#include "core/bounds.h"
+#include "shape_matching/reshape.h"
+#include "simulation/overlaps.h"
+#include "simulation/settings.h"
+#include "simulation/state.h"
+
+namespace mallow {
+namespace {
+
+/// The particles of one body share their spacing to this relative difference.
+constexpr float k_same_spacing = 1e-3f;
+
+/// Bodies behind one whose rows have become more, or fewer.
+void shift_rows(Simulation::State& s, const BodyState& body, std::size_t old_end) {
+  for (BodyState& other : s.bodies) {
+    if (&other == &body || other.begin < old_end) continue;
+    other.begin = other.begin + body.end - old_end;
+    other.end = other.end + body.end - old_end;
+  }
+}
+
+struct Points {
+  Vec3 origin;
+  std::vector<Vec3> positions, velocities;  ///< relative to the origin
+};
+
+/// Throws ConfigError.
+Points checked_points(const Simulation::State& s, const BodyState& body, const Body& points) {
+  Points checked{.origin = s.store.size() == 0 ? choose_origin(points) : s.origin,
+                 .positions = {},
+                 .velocities = std::vector<Vec3>(points.positions.size(), points.velocity)};
+  checked.positions.reserve(points.positions.size());
+  for (const Vec3& x : points.positions) checked.positions.push_back(relative_to(checked.origin, x));
+  refuse_overlaps(s, body, checked.positions, points.spacing, checked.origin);
+  check_neighbors(s, body.material->settings, points);
+  for (std::size_t i = 0; i < points.velocities.size(); ++i) checked.velocities[i] += points.velocities[i];
+  return checked;
+}
+
+/// Puts points behind the last row of a body.
+void insert_points(Simulation::State& s, const Points& points, BodyState& body) {
+  if (s.store.size() == 0) s.origin = points.origin;
+  s.store.insert(body.end, points.positions, points.velocities);
+  body.end += points.positions.size();
+  s.rows_changed();
+}
+
+void measure_rigid(const Simulation::State& s, BodyState& body) {
+  const Eigen::Vector3d near = s.store.position.get(body.begin).cast<double>();
+  body.rigid = rigid_motion(sum_rigid(s.store.position, s.store.velocity, body.begin, body.end, near), near);
+}
+
+/// The reference shape of a body has changed: its rows are sorted for it, and its regions built anew on
+/// rotations that their particles had.
+void rebuild_shape(Simulation::State& s, BodyState& body, std::vector<Eigen::Vector4f> rotations) {
+  PillarOrder& pillars = s.region_scratch.pillars;
+  sort_reference(s.execution, pillars, body.shape);
+  s.store.permute(body.begin, pillars.order.span(), s.execution.threads);
+  std::vector<Eigen::Vector4f> sorted(rotations.size());
+  for (std::size_t k = 0; k < sorted.size(); ++k) sorted[k] = rotations[pillars.order[k]];
+  build_regions(s.execution, s.region_scratch, body.shape);
+  set_particle_rotations(sorted, body.shape);
+  measure_rigid(s, body);
+}
+
+std::vector<std::uint32_t> rows_of(const Simulation::State& s, std::span<const ParticleId> ids) {
+  std::vector<std::uint32_t> rows;
+  rows.reserve(ids.size());
+  for (const ParticleId id : ids) {
+    const std::optional<std::size_t> row = s.store.slots.find(id);
+    if (!row) throw ConfigError("particle", why_unknown(s.store, id));
+    rows.push_back(static_cast<std::uint32_t>(*row));
+  }
+  std::ranges::sort(rows);
+  if (const auto twice = std::ranges::adjacent_find(rows); twice != rows.end())
+    throw ConfigError("particle", "particle " + std::to_string(s.store.id[*twice]) + " is given twice");
+  return rows;
+}
+
+std::vector<ParticleId> ids_in(const Simulation::State& s, const Aabb& region, const char* field) {
+  std::vector<ParticleId> ids;
+  for (std::size_t row = 0; row < s.store.size(); ++row) {
+    const Vec3 x = s.far(s.store.position.get(row));
+    if ((x.array() >= region.min.array()).all() && (x.array() <= region.max.array()).all())
+      ids.push_back(s.store.id[row]);
+  }
+  if (!ids.empty()) return ids;
+  std::ostringstream text;
+  text << "no particle is between (" << region.min.transpose() << ") and (" << region.max.transpose() << ')';
+  throw ConfigError(field, text.str());
+}
+
+/// Bodies that sleep beside a box wake: what they lean on is gone.
+void wake_beside(Simulation::State& s, const Aabb& box) {
+  for (BodyState& body : s.bodies) {
+    if (body.island == 0) continue;
+    const float reach = 2 * body.spacing;
+    if ((body.box.min.array() <= box.max.array() + reach).all() &&
+        (box.min.array() <= body.box.max.array() + reach).all())
+      wake_island(s, body);
+  }
+}
+
+/// Takes rows of one body out, ascending and not all of them.
+void remove_rows(Simulation::State& s, BodyState& body, std::span<const std::uint32_t> rows) {
+  ShapeMatching& shape = body.shape;
+  std::vector<std::uint32_t> places;
+  for (const std::uint32_t row : rows) places.push_back(row - static_cast<std::uint32_t>(body.begin));
+  const bool built = shape.built, kept = shape.reference.size() == body.size();
+  std::vector<Eigen::Vector4f> rotations;
+  if (built) rotations = particle_rotations(shape);
+  s.store.erase(rows);
+  const std::size_t old_end = body.end;
+  body.end -= rows.size();
+  shift_rows(s, body, old_end);
+  s.rows_changed();
+  if (!kept) {
+    shape.reference.resize(0);
+    shape.built = false;
+    return;
+  }
+  erase_from_reference(places, shape);
+  if (!built) return;
+  std::vector<Eigen::Vector4f> left;
+  for (std::size_t i = 0, p = 0; i < rotations.size(); ++i) {
+    if (p < places.size() && places[p] == i)
+      ++p;
+    else
+      left.push_back(rotations[i]);
+  }
+  rebuild_shape(s, body, std::move(left));
+}
+
+}  // namespace
+
+void Simulation::State::rows_changed() {
+  rows_moved();
+  sph.grid.order.resize(0);
+  sph_ran = false;
+  prepared = false;
+  hold_sleepers(*this);
+}
+
+BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  MaterialState& material = s.material(id);
+  Checks checks;
+  check(points, checks);
+  checks.finish();
+  BodyState body;
+  body.name = name.empty() ? "body " + std::to_string(s.body_slots.size()) : std::move(name);
+  body.material = &material;
+  body.merges = points.merges;
+  body.begin = body.end = s.store.size();
+  body.spacing = points.spacing;
+  body.shape.region_radius = material.settings.region_radius.value_or(s.config.support_radius);
+  body.shape.region_stride = material.settings.region_stride;
+  derive_density(s.config, body);
+  insert_points(s, checked_points(s, body, points), body);
+  const std::uint64_t number = s.body_slots.take();
+  s.body_slots.place(s.bodies.size(), {&number, 1});
+  body.id = BodyId{number};
+  s.bodies.push_back(std::move(body));
+  return BodyId{number};
+}
+
+BodyId Simulation::add_body(const Body& points, const Material& material, std::string name) {
+  Checks checks;
+  check(points, checks);
+  checks.finish();
+  const bool was_prepared = state_->prepared;
+  const MaterialId id = add_material(material, name);
+  try {
+    return add_body(points, id, std::move(name));
+  } catch (...) {
+    state_->materials.pop_back();
+    state_->prepared = was_prepared;
+    throw;
+  }
+}
+
+void Simulation::extend_body(BodyId id, const Body& points) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  BodyState& body = s.body(id);
+  Checks checks;
+  check(points, checks);
+  if (!(std::abs(points.spacing - body.spacing) <= k_same_spacing * body.spacing)) {
+    std::ostringstream text;
+    text << points.spacing << " is not allowed in body '" << body.name << "', whose spacing is "
+         << body.spacing << ": all particles of a body share one spacing";
+    checks.problem("body.spacing", text.str());
+  }
+  checks.finish();
+  const Points added = checked_points(s, body, points);
+  wake_island(s, body);
+  const bool remembers = body.shape.built && !body.grew;
+  std::vector<Eigen::Vector4f> rotations;
+  if (remembers) {
+    // As they are now, not as they were when the last step began.
+    MatchedBodies matched;
+    matched.add(body.shape, body.begin);
+    match_shapes(s.store.position, s.config.rotation_iterations, s.execution, matched);
+    rotations = particle_rotations(body.shape);
+    append_to_reference(s.store.position, body.begin, added.positions, s.execution, rotations, body.shape);
+  }
+  const std::size_t old_end = body.end;
+  insert_points(s, added, body);
+  shift_rows(s, body, old_end);
+  if (remembers)
+    rebuild_shape(s, body, std::move(rotations));
+  else
+    body.grew = true;
+}
+
+void Simulation::remove_body(BodyId id) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  BodyState& body = s.body(id);
+  wake_island(s, body);
+  const Aabb box = box_around(s.store.position, body.begin, body.end);
+  std::vector<std::uint32_t> rows(body.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = static_cast<std::uint32_t>(body.begin + k);
+  s.store.erase(rows);
+  const std::size_t old_end = body.end;
+  body.end = body.begin;
+  shift_rows(s, body, old_end);
+  s.body_slots.give_back(static_cast<std::uint64_t>(id));
+  s.bodies.erase(s.bodies.begin() + (&body - s.bodies.data()));
+  for (std::size_t b = 0; b < s.bodies.size(); ++b)
+    s.body_slots.index[slot_of(s.bodies[b].id)] = static_cast<std::uint32_t>(b);
+  s.rows_changed();
+  wake_beside(s, box);
+}
+
+void Simulation::remove_particles(std::span<const ParticleId> ids) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  const std::vector<std::uint32_t> rows = rows_of(s, ids);
+  // From the last body on: the rows of those before it stay where they are.
+  for (std::size_t end = rows.size(); end > 0;) {
+    BodyState& body = const_cast<BodyState&>(s.body_of(rows[end - 1]));
+    std::size_t begin = end;
+    while (begin > 0 && rows[begin - 1] >= body.begin) --begin;
+    wake_island(s, body);
+    if (end - begin == body.size())
+      remove_body(body.id);
+    else
+      remove_rows(s, body, std::span(rows).subspan(begin, end - begin));
+    end = begin;
+  }
+}
+
+std::size_t Simulation::remove_particles(const Aabb& region) {
+  const std::vector<ParticleId> ids = ids_in(*state_, region, "region");
+  remove_particles(ids);
+  return ids.size();
+}
+
+ColliderId Simulation::add_collider(const Collider& collider) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  Checks checks;
+  check(collider, checks);
+  checks.finish();
+  const std::uint64_t id = s.collider_slots.take();
+  s.collider_slots.place(s.colliders.size(), {&id, 1});
+  s.collider_ids.push_back(id);
+  s.colliders.push_back(collider);
+  s.disturbed = true;
+  return ColliderId{id};
+}
+
+void Simulation::remove_collider(ColliderId id) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  const auto at = static_cast<std::ptrdiff_t>(s.index(id));
+  s.colliders.erase(s.colliders.begin() + at);
+  s.collider_ids.erase(s.collider_ids.begin() + at);
+  if (static_cast<std::size_t>(at) < s.moving.loads.size()) s.moving.loads.erase(s.moving.loads.begin() + at);
+  s.collider_slots.give_back(static_cast<std::uint64_t>(id));
+  s.collider_slots.place(0, s.collider_ids);
+  s.disturbed = true;
+}
+
+PinId Simulation::pin(const Aabb& region, const Vec3& velocity) {
+  return pin(ids_in(*state_, region, "pin.box"), velocity);
+}
+
+PinId Simulation::pin(std::span<const ParticleId> ids, const Vec3& velocity) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  Checks checks;
+  checks.vector("pin.velocity", velocity);
+  std::vector<std::size_t> rows;
+  for (const ParticleId id : ids) {
+    if (const std::optional<std::size_t> row = s.store.slots.find(id)) {
+      rows.push_back(*row);
+      continue;
+    }
+    checks.problem("pin", why_unknown(s.store, id));
+    break;
+  }
+  if (s.pins.size() == k_max_pins && s.pin_slots.free.empty())
+    checks.problem("pin", "at most 65535 pins are possible");
+  checks.finish();
+  const std::uint64_t id = s.pin_slots.take();
+  s.pin_slots.index[slot_of(id)] = slot_of(id);
+  s.pins.resize(s.pin_slots.size());
+  s.pins[slot_of(id)] = {.id = PinId{id}, .velocity = velocity};
+  if (s.store.pin.empty()) s.store.pin.resize(s.store.size());
+  for (const std::size_t row : rows) {
+    s.store.pin[row] = static_cast<std::uint16_t>(slot_of(id) + 1);
+    wake_island(s, const_cast<BodyState&>(s.body_of(row)));
+  }
+  return PinId{id};
+}
+
+void Simulation::unpin(PinId id) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  s.pin(id) = {};
+  for (std::size_t row = 0; row < s.store.pin.size(); ++row) {
+    if (s.store.pin[row] != slot_of(id) + 1) continue;
+    s.store.pin[row] = 0;
+    wake_island(s, const_cast<BodyState&>(s.body_of(row)));
+  }
+  s.pin_slots.give_back(static_cast<std::uint64_t>(id));
+}
+
+}  // namespace mallow

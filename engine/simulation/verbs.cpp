@@ -1,0 +1,269 @@
+// What an application tells a simulation while it runs.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "config/validation.h"
+#include "core/bounds.h"
+#include "simulation/settings.h"
+#include "simulation/state.h"
+
+namespace mallow {
+namespace {
+
+void check_finite(const char* field, const Vec3& value) {
+  Checks checks;
+  checks.vector(field, value);
+  checks.finish();
+}
+
+std::size_t row_of(const Simulation::State& s, ParticleId id) {
+  if (const std::optional<std::size_t> row = s.store.slots.find(id)) return *row;
+  throw ConfigError("particle", why_unknown(s.store, id));
+}
+
+bool is_pinned(const Simulation::State& s, std::size_t row) {
+  return !s.store.pin.empty() && s.store.pin[row] != 0;
+}
+
+void wake_row(Simulation::State& s, std::size_t row) {
+  wake_island(s, const_cast<BodyState&>(s.body_of(row)));
+}
+
+/// Of a body [m], relative to the origin.
+Eigen::Vector3d middle_of(const Simulation::State& s, const BodyState& body) {
+  Eigen::Vector3d sum(0, 0, 0);
+  for (std::size_t row = body.begin; row < body.end; ++row) sum += s.store.position.get(row).cast<double>();
+  return sum / static_cast<double>(body.size());
+}
+
+/// Velocities of a body were changed: what damping goes towards follows.
+void measure_rigid(const Simulation::State& s, BodyState& body) {
+  const Eigen::Vector3d near = s.store.position.get(body.begin).cast<double>();
+  body.rigid = rigid_motion(sum_rigid(s.store.position, s.store.velocity, body.begin, body.end, near), near);
+}
+
+/// A material becomes what settings say, and its bodies with it.
+void change(Simulation::State& s, MaterialState& material, const Material& settings) {
+  material.settings = settings;
+  for (BodyState& body : s.bodies) {
+    if (body.material != &material) continue;
+    wake_island(s, body);
+    derive_density(s.config, body);
+    ShapeMatching& shape = body.shape;
+    const float radius = settings.region_radius.value_or(s.config.support_radius);
+    if (shape.region_radius != radius || shape.region_stride != settings.region_stride) shape.built = false;
+    shape.region_radius = radius;
+    shape.region_stride = settings.region_stride;
+    if (!body.keeps_reference()) {
+      // Rows of fluids are sorted, which a reference shape that is kept would not follow.
+      ShapeMatching none;
+      none.region_radius = shape.region_radius;
+      none.region_stride = shape.region_stride;
+      shape = std::move(none);
+    }
+    // A fluid that may turn elastic remembers the shape it has now.
+    if (body.keeps_reference() && shape.reference.size() != body.size()) body.grew = true;
+  }
+  s.prepared = false;
+}
+
+}  // namespace
+
+void Simulation::set_force(ForceCallback callback) {
+  state_->refuse_in_callback();
+  state_->force = std::move(callback);
+  if (!state_->force) state_->user_acceleration.release();
+}
+
+void Simulation::set_gravity(const Vec3& gravity) {
+  state_->refuse_in_callback();
+  check_finite("solver.gravity", gravity);
+  state_->config.gravity = gravity;
+  state_->disturbed = true;
+}
+
+void Simulation::set_material(MaterialId id, const Material& settings) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  MaterialState& material = s.material(id);
+  Checks checks;
+  check(settings, checks);
+  checks.finish();
+  check_stiffness(s.config, settings, checks);
+  checks.finish();
+  change(s, material, settings);
+}
+
+const Material& Simulation::material_settings(MaterialId id) const {
+  return state_->material(id).settings;
+}
+
+void Simulation::set_alpha(MaterialId id, const AlphaSchedule& alpha) {
+  state_->refuse_in_callback();
+  Checks checks;
+  check(alpha, checks);
+  checks.finish();
+  Material settings = material_settings(id);
+  settings.alpha = alpha;
+  set_material(id, settings);
+}
+
+void Simulation::set_velocity(BodyId id, const Vec3& velocity, const Vec3& angular_velocity) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  BodyState& body = s.body(id);
+  check_finite("body.velocity", velocity);
+  check_finite("body.angular_velocity", angular_velocity);
+  wake_island(s, body);
+  const Eigen::Vector3d middle = middle_of(s, body), spin = angular_velocity.cast<double>();
+  for (std::size_t row = body.begin; row < body.end; ++row) {
+    if (is_pinned(s, row)) continue;
+    const Eigen::Vector3d from = s.store.position.get(row).cast<double>() - middle;
+    s.store.velocity.set(row, velocity + spin.cross(from).cast<float>());
+  }
+  measure_rigid(s, body);
+}
+
+void Simulation::set_velocity(std::span<const ParticleId> ids, const Vec3& velocity) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  check_finite("velocity", velocity);
+  for (const ParticleId id : ids) row_of(s, id);
+  for (const ParticleId id : ids) {
+    const std::size_t row = row_of(s, id);
+    if (!is_pinned(s, row)) s.store.velocity.set(row, velocity);
+    wake_row(s, row);
+  }
+}
+
+void Simulation::set_position(BodyId id, const Vec3& center) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  BodyState& body = s.body(id);
+  check_finite("body.center", center);
+  wake_island(s, body);
+  const Eigen::Vector3d by = center.cast<double>() - s.origin.cast<double>() - middle_of(s, body);
+  for (std::size_t row = body.begin; row < body.end; ++row)
+    s.store.position.set(row, (s.store.position.get(row).cast<double>() + by).cast<float>());
+  measure_rigid(s, body);
+  s.rows_moved();
+  s.disturbed = true;
+}
+
+void Simulation::add_impulse(BodyId id, const Vec3& impulse) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  BodyState& body = s.body(id);
+  check_finite("impulse", impulse);
+  wake_island(s, body);
+  std::size_t free = 0;
+  for (std::size_t row = body.begin; row < body.end; ++row) free += !is_pinned(s, row);
+  const Vec3 kick = impulse / (body.mass * static_cast<float>(std::max(free, std::size_t{1})));
+  for (std::size_t row = body.begin; row < body.end; ++row)
+    if (!is_pinned(s, row)) s.store.velocity.set(row, s.store.velocity.get(row) + kick);
+  measure_rigid(s, body);
+}
+
+std::size_t Simulation::add_impulse(const Vec3& center, float radius, const Vec3& impulse) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  Checks checks;
+  checks.vector("center", center);
+  checks.vector("impulse", impulse);
+  checks.number("radius", static_cast<double>(radius), radius > 0, "a finite number above 0");
+  checks.finish();
+  const Eigen::Vector3d middle = center.cast<double>() - s.origin.cast<double>();
+  const auto weight = [&](std::size_t row) {
+    const double ratio =
+        (s.store.position.get(row).cast<double>() - middle).norm() / static_cast<double>(radius);
+    return ratio < 1 && !is_pinned(s, row) ? (1 - ratio * ratio) * (1 - ratio * ratio) : 0.0;
+  };
+  double sum = 0;
+  for (const BodyState& body : s.bodies)
+    for (std::size_t row = body.begin; row < body.end && body.enabled; ++row)
+      sum += static_cast<double>(body.mass) * weight(row);
+  std::size_t count = 0;
+  for (BodyState& body : s.bodies) {
+    if (!body.enabled) continue;
+    const std::size_t before = count;
+    for (std::size_t row = body.begin; row < body.end; ++row) {
+      const double share = weight(row);
+      if (!(share > 0)) continue;
+      ++count;
+      s.store.velocity.set(row, s.store.velocity.get(row) + static_cast<float>(share / sum) * impulse);
+    }
+    if (count == before) continue;
+    wake_island(s, body);
+    measure_rigid(s, body);
+  }
+  return count;
+}
+
+void Simulation::enable(BodyId id, bool enabled) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  BodyState& body = s.body(id);
+  if (body.enabled == enabled) return;
+  wake_island(s, body);
+  body.enabled = enabled;
+  hold_sleepers(s);
+  s.sph.kept.forget();
+  s.disturbed = true;
+}
+bool Simulation::is_enabled(BodyId id) const {
+  return state_->body(id).enabled;
+}
+
+void Simulation::set_user_data(BodyId id, std::uint64_t data) {
+  state_->body(id).user_data = data;
+}
+std::uint64_t Simulation::user_data(BodyId id) const {
+  return std::as_const(*state_).body(id).user_data;
+}
+
+void Simulation::wake(BodyId id) {
+  state_->refuse_in_callback();
+  wake_island(*state_, state_->body(id));
+}
+bool Simulation::is_awake(BodyId id) const {
+  return state_->body(id).moves();
+}
+
+void Simulation::set_velocity(ColliderId id, const Vec3& velocity) {
+  set_twist(id, velocity, collider(id).angular_velocity);
+}
+
+void Simulation::set_twist(ColliderId id, const Vec3& velocity, const Vec3& angular_velocity) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  Collider& changed = s.colliders[s.index(id)];
+  Checks checks;
+  checks.vector("collider.velocity", velocity);
+  checks.vector("collider.angular_velocity", angular_velocity);
+  checks.finish();
+  changed.velocity = velocity;
+  changed.angular_velocity = angular_velocity;
+  s.disturbed = true;
+}
+
+void Simulation::set_velocity(PinId id, const Vec3& velocity) {
+  state_->refuse_in_callback();
+  PinState& pin = state_->pin(id);
+  check_finite("pin.velocity", velocity);
+  pin = {.id = id, .velocity = velocity};
+  state_->disturbed = true;
+}
+
+void Simulation::move_pin(PinId id, const Vec3& way, double seconds) {
+  state_->refuse_in_callback();
+  PinState& pin = state_->pin(id);
+  Checks checks;
+  checks.vector("pin.way", way);
+  checks.number("pin.seconds", seconds, seconds > 0, "a finite number above 0");
+  checks.finish();
+  pin = {.id = id, .velocity = {0, 0, 0}, .left = way, .seconds = seconds};
+  state_->disturbed = true;
+}
+
+}  // namespace mallow
