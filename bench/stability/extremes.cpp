@@ -11,7 +11,7 @@ namespace {
 
 /// What most extremes start from, and change one thing of: a small body in the default units.
 struct Setup {
-  SolverConfig config{.time_step = 0.15f, .support_radius = 2.1f, .update_interval = 60, .threads = 1};
+  SolverConfig config{.time_step = 0.15f, .support_radius = 2.1f, .update_interval = 60, .sleep_speed = 0.0f, .threads = 1};
   Material material{.update_threshold = 12.0f, .pressure_coefficient = 16.0f, .viscosity = 0.5f};
   Body body = sample(Lattice{.count = {5, 5, 5}, .corner = {0, 0, 1}, .jitter = 0});
   std::vector<Collider> colliders = {};

@@ -24,11 +24,16 @@ void pass_shape(Archive& archive, Variant& shapes) {
       shapes);
 }
 
+template <class Archive, class Pose>
+void pass_pose(Archive& archive, Pose& pose) {
+  archive.array(pose.translation.data(), 3);
+  archive.array(pose.rotation.data(), 4);
+}
+
 template <class Archive, class Collider>
 void pass_collider(Archive& archive, Collider& collider) {
   pass_shape(archive, collider.shape);
-  archive.array(collider.pose.translation.data(), 3);
-  archive.array(collider.pose.rotation.data(), 4);
+  pass_pose(archive, collider.pose);
   pass_fields(archive, collider);
 }
 

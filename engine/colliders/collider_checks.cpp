@@ -27,14 +27,18 @@ void check_shape(const Shape& shape, Checks& checks) {
 
 }  // namespace
 
+void check_pose(const std::string& path, const Pose& pose, Checks& checks) {
+  checks.vector(path + "translation", pose.translation.cast<float>());
+  const double length = pose.rotation.norm();
+  checks.number(path + "rotation", length, length > 0, "a quaternion of a finite length above 0");
+}
+
 void check(const Collider& collider, Checks& checks) {
   const Union* shapes = std::get_if<Union>(&collider.shape);
   if (shapes && shapes->parts.empty())
     checks.problem("collider.union", "has no parts: at least one is needed");
   visit_parts(collider, [&](const auto& shape) { check_shape(shape, checks); });
-  checks.vector("collider.pose.translation", collider.pose.translation.cast<float>());
-  const double length = collider.pose.rotation.norm();
-  checks.number("collider.pose.rotation", length, length > 0, "a quaternion of a finite length above 0");
+  check_pose("collider.pose.", collider.pose, checks);
   check_fields("collider.", collider, checks);
 }
 

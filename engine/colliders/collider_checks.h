@@ -5,6 +5,8 @@
 
 namespace mallow {
 
+/// path: what stands before the names of its members.
+void check_pose(const std::string& path, const Pose& pose, Checks& checks);
 /// Everything in a collider that is out of range.
 void check(const Collider& collider, Checks& checks);
 

@@ -3,6 +3,7 @@
 #include "config/field.h"
 #include "mallow/body.h"
 #include "mallow/collider.h"
+#include "mallow/emitter.h"
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 #include "mallow/surface_config.h"
@@ -40,9 +41,10 @@ struct FieldTable<SolverConfig> {
             "how bodies keep out of each other: touch and rub, or by SPH pressure as in the paper"},
       Field{"contact_offset", &Config::contact_offset, k_not_negative, "m",
             "distance from a collider at which a particle touches it", "half the spacing"},
-      Field{"sleep_speed", &Config::sleep_speed, k_not_negative, "m/s",
-            "what is slower for sleep_time, with all that it touches, sleeps until something wakes it; 0: none",
-            "0.005 spacings in a time_step"},
+      Field{
+          "sleep_speed", &Config::sleep_speed, k_not_negative, "m/s",
+          "what is slower for sleep_time, with all that it touches, sleeps until something wakes it; 0: none",
+          "0.005 spacings in a time_step"},
       Field{"sleep_time", &Config::sleep_time, k_positive, "s", "see sleep_speed", "60 time_step"},
       Field{
           "rotation_iterations", &Config::rotation_iterations, between(0, 8), "",
@@ -84,8 +86,7 @@ struct FieldTable<Material> {
       Field{"damping_time", &Material::damping_time, k_not_negative, "s",
             "of elasticity, τ: a mode of frequency ω has a damping ratio of ω τ/2"},
       Field{"deformation_damping", &Material::deformation_damping, k_not_negative, "1/s",
-            "rate at which particles take on their body's rigid motion",
-            "what hardly moves comes to rest"},
+            "rate at which particles take on their body's rigid motion", "what hardly moves comes to rest"},
       Field{"region_radius", &Material::region_radius, k_positive, "m",
             "radius of the shape matching regions", "solver.support_radius"},
       Field{"region_stride", &Material::region_stride, at_least(1), "particles",
@@ -141,6 +142,29 @@ struct FieldTable<Collider> {
       Field{"friction", &Collider::friction, k_not_negative, "", "Coulomb's μ_f"},
       Field{"measure_load", &Collider::measure_load, k_any, "", "sum up what particles do to it", "",
             Written::in_states},
+  };
+};
+
+/// Without its points and its pose.
+template <>
+struct FieldTable<Emitter> {
+  static constexpr std::tuple k_fields{
+      Field{"radius", &Emitter::radius, k_positive, "m", "of a round nozzle; give this, or width and height",
+            "from width and height"},
+      Field{"width", &Emitter::width, k_positive, "m", "of a nozzle with corners, along its x axis",
+            "from radius"},
+      Field{"height", &Emitter::height, k_positive, "m", "of a nozzle with corners, along its y axis",
+            "from radius"},
+      Field{"spacing", &Emitter::spacing, k_positive, "m", "distance of neighbouring particles, h",
+            k_required},
+      Field{"velocity", &Emitter::velocity, k_finite, "m/s", "the nozzle moves with it"},
+      Field{"speed", &Emitter::speed, k_not_negative, "m/s", "of what leaves the nozzle, seen from it"},
+      Field{"start", &Emitter::start, k_not_negative, "s", "it flows from this time on"},
+      Field{"stop", &Emitter::stop, k_not_negative, "s", "and until this", "it goes on"},
+      Field{"jitter", &Emitter::jitter, k_jitter, "h",
+            "random displacement of every particle across the flow, per axis"},
+      Field{"most_particles", &Emitter::most_particles, between(1, k_most_particles), "",
+            "the strand grows no longer than that"},
   };
 };
 

@@ -90,6 +90,24 @@ void check_stiffness(const SolverConfig& config, const Material& material, Check
   checks.problem("material.elastic_time_step", text.str());
 }
 
+void check(const Emitter& emitter, Checks& checks) {
+  check_fields("emitter.", emitter, checks);
+  const bool corners = emitter.width || emitter.height;
+  if (emitter.radius.has_value() + corners + !emitter.points.empty() != 1 ||
+      emitter.width.has_value() != emitter.height.has_value())
+    checks.problem("emitter.radius", "give the radius of a disc, or width and height, or points");
+  const double area =
+      emitter.radius ? 3.15 * static_cast<double>(*emitter.radius) * static_cast<double>(*emitter.radius)
+      : corners
+          ? static_cast<double>(emitter.width.value_or(0)) * static_cast<double>(emitter.height.value_or(0))
+          : 0;
+  constexpr double k_most_points = 1e6;
+  if (area > k_most_points * static_cast<double>(emitter.spacing) * static_cast<double>(emitter.spacing))
+    checks.problem("emitter.spacing", "makes layers of over a million particles");
+  for (const Vec3& x : emitter.points)
+    if (!x.allFinite()) return checks.vector("emitter.points", x);
+}
+
 void check(const Body& body, Checks& checks) {
   if (body.positions.empty()) checks.problem("body.positions", "has no particles: at least one is needed");
   check_value("body.spacing", body.spacing, k_positive, checks);

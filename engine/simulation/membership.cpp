@@ -1,4 +1,6 @@
 // What comes and goes while a simulation runs.
+#include "simulation/membership.h"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -31,16 +33,21 @@ struct Points {
   std::vector<Vec3> positions, velocities;  ///< relative to the origin
 };
 
+Points points_of(const Simulation::State& s, const Body& points) {
+  Points relative{.origin = s.store.size() == 0 ? choose_origin(points) : s.origin,
+                  .positions = {},
+                  .velocities = std::vector<Vec3>(points.positions.size(), points.velocity)};
+  relative.positions.reserve(points.positions.size());
+  for (const Vec3& x : points.positions) relative.positions.push_back(relative_to(relative.origin, x));
+  for (std::size_t i = 0; i < points.velocities.size(); ++i) relative.velocities[i] += points.velocities[i];
+  return relative;
+}
+
 /// Throws ConfigError.
 Points checked_points(const Simulation::State& s, const BodyState& body, const Body& points) {
-  Points checked{.origin = s.store.size() == 0 ? choose_origin(points) : s.origin,
-                 .positions = {},
-                 .velocities = std::vector<Vec3>(points.positions.size(), points.velocity)};
-  checked.positions.reserve(points.positions.size());
-  for (const Vec3& x : points.positions) checked.positions.push_back(relative_to(checked.origin, x));
+  Points checked = points_of(s, points);
   refuse_overlaps(s, body, checked.positions, points.spacing, checked.origin);
   check_neighbors(s, body.material->settings, points);
-  for (std::size_t i = 0; i < points.velocities.size(); ++i) checked.velocities[i] += points.velocities[i];
   return checked;
 }
 
@@ -200,7 +207,12 @@ void Simulation::extend_body(BodyId id, const Body& points) {
     checks.problem("body.spacing", text.str());
   }
   checks.finish();
-  const Points added = checked_points(s, body, points);
+  checked_points(s, body, points);
+  extend(s, body, points);
+}
+
+std::vector<ParticleId> extend(Simulation::State& s, BodyState& body, const Body& points) {
+  const Points added = points_of(s, points);
   wake_island(s, body);
   const bool remembers = body.shape.built && !body.grew;
   std::vector<Eigen::Vector4f> rotations;
@@ -215,16 +227,17 @@ void Simulation::extend_body(BodyId id, const Body& points) {
   const std::size_t old_end = body.end;
   insert_points(s, added, body);
   shift_rows(s, body, old_end);
+  std::vector<ParticleId> ids(s.store.id.begin() + old_end, s.store.id.begin() + body.end);
   if (remembers)
     rebuild_shape(s, body, std::move(rotations));
   else
     body.grew = true;
+  return ids;
 }
 
-void Simulation::remove_body(BodyId id) {
-  state_->refuse_in_callback();
-  State& s = *state_;
-  BodyState& body = s.body(id);
+namespace {
+
+void erase_body(Simulation::State& s, BodyState& body) {
   wake_island(s, body);
   const Aabb box = box_around(s.store.position, body.begin, body.end);
   std::vector<std::uint32_t> rows(body.size());
@@ -233,7 +246,7 @@ void Simulation::remove_body(BodyId id) {
   const std::size_t old_end = body.end;
   body.end = body.begin;
   shift_rows(s, body, old_end);
-  s.body_slots.give_back(static_cast<std::uint64_t>(id));
+  s.body_slots.give_back(static_cast<std::uint64_t>(body.id));
   s.bodies.erase(s.bodies.begin() + (&body - s.bodies.data()));
   for (std::size_t b = 0; b < s.bodies.size(); ++b)
     s.body_slots.index[slot_of(s.bodies[b].id)] = static_cast<std::uint32_t>(b);
@@ -241,9 +254,19 @@ void Simulation::remove_body(BodyId id) {
   wake_beside(s, box);
 }
 
+}  // namespace
+
+void Simulation::remove_body(BodyId id) {
+  state_->refuse_in_callback();
+  erase_body(*state_, state_->body(id));
+}
+
 void Simulation::remove_particles(std::span<const ParticleId> ids) {
   state_->refuse_in_callback();
-  State& s = *state_;
+  erase_particles(*state_, ids);
+}
+
+void erase_particles(Simulation::State& s, std::span<const ParticleId> ids) {
   const std::vector<std::uint32_t> rows = rows_of(s, ids);
   // From the last body on: the rows of those before it stay where they are.
   for (std::size_t end = rows.size(); end > 0;) {
@@ -252,7 +275,7 @@ void Simulation::remove_particles(std::span<const ParticleId> ids) {
     while (begin > 0 && rows[begin - 1] >= body.begin) --begin;
     wake_island(s, body);
     if (end - begin == body.size())
-      remove_body(body.id);
+      erase_body(s, body);
     else
       remove_rows(s, body, std::span(rows).subspan(begin, end - begin));
     end = begin;
@@ -300,12 +323,8 @@ PinId Simulation::pin(std::span<const ParticleId> ids, const Vec3& velocity) {
   State& s = *state_;
   Checks checks;
   checks.vector("pin.velocity", velocity);
-  std::vector<std::size_t> rows;
   for (const ParticleId id : ids) {
-    if (const std::optional<std::size_t> row = s.store.slots.find(id)) {
-      rows.push_back(*row);
-      continue;
-    }
+    if (s.store.slots.find(id)) continue;
     checks.problem("pin", why_unknown(s.store, id));
     break;
   }
@@ -316,12 +335,17 @@ PinId Simulation::pin(std::span<const ParticleId> ids, const Vec3& velocity) {
   s.pin_slots.index[slot_of(id)] = slot_of(id);
   s.pins.resize(s.pin_slots.size());
   s.pins[slot_of(id)] = {.id = PinId{id}, .velocity = velocity};
+  hold_particles(s, PinId{id}, ids);
+  return PinId{id};
+}
+
+void hold_particles(Simulation::State& s, PinId pin, std::span<const ParticleId> ids) {
   if (s.store.pin.empty()) s.store.pin.resize(s.store.size());
-  for (const std::size_t row : rows) {
-    s.store.pin[row] = static_cast<std::uint16_t>(slot_of(id) + 1);
+  for (const ParticleId id : ids) {
+    const std::size_t row = *s.store.slots.find(id);
+    s.store.pin[row] = static_cast<std::uint16_t>(slot_of(pin) + 1);
     wake_island(s, const_cast<BodyState&>(s.body_of(row)));
   }
-  return PinId{id};
 }
 
 void Simulation::unpin(PinId id) {

@@ -458,6 +458,7 @@ void finish_step(Simulation::State& state, const ChosenStep& step) {
   state.store.velocity.swap(state.store.next_velocity);
   move_colliders(static_cast<double>(step.time_step), state.colliders);
   move_pins(state, static_cast<double>(step.time_step));
+  move_emitters(state, static_cast<double>(step.time_step));
   add_external(state);
   state.time = step.end;
   state.last_time_step = static_cast<double>(step.time_step);

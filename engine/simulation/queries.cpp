@@ -64,8 +64,7 @@ std::optional<BodyHit> Simulation::raycast(const Vec3& origin, const Vec3& direc
   double nearest = farthest;
   for (const BodyState& body : s.bodies) {
     if (!body.enabled) continue;
-    const double radius =
-        k_ball_radius * static_cast<double>(body.spacing);
+    const double radius = k_ball_radius * static_cast<double>(body.spacing);
     for (std::size_t begin = body.begin; begin < body.end; begin += k_block) {
       const std::size_t end = std::min(body.end, begin + k_block);
       const Aabb box = box_around(s.store.position, begin, end);

@@ -260,6 +260,51 @@ void unpack_pin_slots(const SavedState& saved, Simulation::State& state) {
   }
 }
 
+template <class Archive, class State>
+void pass_emitters(Archive& archive, State& state) {
+  archive(state.emitter_count);
+  archive(state.sink_count);
+  const auto pass_id = [&](auto& id) {
+    auto number = static_cast<std::uint64_t>(id);
+    archive(number);
+    if constexpr (!Archive::k_packs) id = std::remove_cvref_t<decltype(id)>{number};
+  };
+  pass_list(archive, state.emitters, 64, [&](auto& emitter) {
+    pass_id(emitter.id);
+    pass_id(emitter.body);
+    pass_id(emitter.pin);
+    pass_fields(archive, emitter.settings);
+    pass_list(archive, emitter.settings.points, sizeof(Vec3), [&](auto& x) { archive(x); });
+    pass_pose(archive, emitter.settings.pose);
+    archive(emitter.layers);
+    archive(emitter.offset);
+    pass_list(archive, emitter.held, 8, [&](auto& layer) {
+      pass_list(archive, layer, sizeof(ParticleId), [&](auto& id) { archive(id); });
+    });
+  });
+  pass_list(archive, state.sinks, 33, [&](auto& sink) {
+    pass_id(sink.id);
+    archive(sink.box.min);
+    archive(sink.box.max);
+    archive(sink.outside);
+  });
+}
+
+void unpack_emitters(const SavedState& saved, Simulation::State& state) {
+  unpack(saved, "emitters", [&](UnpackingArchive& archive) {
+    pass_emitters(archive, state);
+    Checks checks;
+    for (const EmitterState& emitter : state.emitters) {
+      check(emitter.settings, checks);
+      if (!state.pin_slots.find(static_cast<std::uint64_t>(emitter.pin)))
+        archive.fail("an emitter holds no pin that there is");
+      if (!std::isfinite(emitter.offset) || emitter.held.size() > emitter.layers)
+        archive.fail("an emitter has more layers than there have been, or is nowhere");
+    }
+    checks.finish();
+  });
+}
+
 void unpack_obstacles(const SavedState& saved, Simulation::State& state) {
   unpack(saved, "origin", [&](UnpackingArchive& archive) {
     archive(state.origin);
@@ -385,6 +430,7 @@ SavedState Simulation::save() const {
   add(packed("pins", [&](PackingArchive& archive) {
     pass_list(archive, s.pins, 0, [&](const PinState& pin) { pass_pin(archive, pin); });
   }));
+  add(packed("emitters", [&](PackingArchive& archive) { pass_emitters(archive, s); }));
   add(packed_column("ids", s.store.id));
   pack_slots(saved, "particle_slots", s.store.slots);
   pack_slots(saved, "body_slots", s.body_slots);
@@ -442,6 +488,7 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
   unpack_slots(saved, "body_slots", body_ids, state.body_slots);
   unpack_obstacles(saved, state);
   unpack_particles(saved, state);
+  unpack_emitters(saved, state);
   hold_sleepers(state);
   unpack_shapes(saved, sizes, state);
   if (state.scale.spacing > 0) resolve_settings(state);

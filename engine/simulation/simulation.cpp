@@ -62,6 +62,8 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
 
 StepReport Simulation::step_towards(double end) {
   prepare();
+  flow(*state_);
+  prepare();
   return take_step(*state_, end);
 }
 

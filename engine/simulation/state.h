@@ -79,6 +79,23 @@ struct PinState {
   double seconds = 0;      ///< in which it gets there; 0: it is told a velocity
 };
 
+/// A nozzle and the layers of its strand that have not passed it.
+struct EmitterState {
+  EmitterId id{};
+  Emitter settings;
+  BodyId body{};
+  PinId pin{};
+  std::uint64_t layers = 0;                  ///< that there have been
+  double offset = 0;                         ///< how far the first of them has come [m]
+  std::deque<std::vector<ParticleId>> held = {};  ///< the last of them, the next to leave first
+};
+
+struct SinkState {
+  SinkId id{};
+  Aabb box;
+  bool outside = false;
+};
+
 /// All that a simulation is.
 struct Simulation::State {
   SolverConfig config;
@@ -100,9 +117,12 @@ struct Simulation::State {
   Slots collider_slots;                     ///< ColliderId -> index
   std::vector<PinState> pins;               ///< by slot; those that are nobody's hold nothing
   Slots pin_slots;                          ///< PinId -> index, which is its slot
-  std::vector<BodyEvent> events;            ///< of the last step, and of calls before it
-  std::vector<BodyEvent> next_events;       ///< of calls since then
-  std::uint32_t islands = 0;                ///< numbers that were given away
+  std::vector<EmitterState> emitters;
+  std::vector<SinkState> sinks;
+  std::uint64_t emitter_count = 0, sink_count = 0;  ///< that there have been
+  std::vector<BodyEvent> events;                    ///< of the last step, and of calls before it
+  std::vector<BodyEvent> next_events;               ///< of calls since then
+  std::uint32_t islands = 0;                        ///< numbers that were given away
   ForceCallback force;
   Sph sph;
   VectorColumn user_acceleration;  ///< empty without a force callback
@@ -216,6 +236,11 @@ void move_bodies(Simulation::State& state, float time_step, const MotionPhases& 
 void resolve_touching(Simulation::State& state, float time_step);
 /// next positions and velocities become the present ones; time, step and colliders move on.
 void finish_step(Simulation::State& state, const ChosenStep& step);
+
+/// time -> layers that leave their emitters, or are put behind them; particles that sinks take.
+void flow(Simulation::State& state);
+/// Emitters and what they hold as a step has moved them. Before time moves on.
+void move_emitters(Simulation::State& state, double time_step);
 
 /// A body and those that fell asleep with it are awake.
 void wake_island(Simulation::State& state, BodyState& body);

@@ -12,6 +12,8 @@ using ParticleId = std::uint64_t;
 enum class BodyId : std::uint64_t {};
 enum class ColliderId : std::uint64_t {};
 enum class PinId : std::uint64_t {};
+enum class EmitterId : std::uint64_t {};
+enum class SinkId : std::uint64_t {};
 /// Materials are counted from 0 and stay.
 enum class MaterialId : std::uint32_t {};
 

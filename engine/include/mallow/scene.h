@@ -69,7 +69,7 @@ struct SceneCollider : Collider {
   /// What scene files make of the pose: read_scene() sets both, print_scene() prints these.
   Vec3 translate{0, 0, 0};  ///< [m]
   Vec3 rotate{0, 0, 0};     ///< about x, then y, then z [degrees]
-  bool visible = true;  ///< in pictures; it acts on particles in any case
+  bool visible = true;      ///< in pictures; it acts on particles in any case
 };
 
 /// A pin of a scene: what is in the box when the scene begins moves with `velocity` [m/s].

@@ -15,6 +15,7 @@
 
 #include "mallow/body.h"
 #include "mallow/collider.h"
+#include "mallow/emitter.h"
 #include "mallow/errors.h"
 #include "mallow/export.h"
 #include "mallow/ids.h"
@@ -149,6 +150,22 @@ class MALLOW_EXPORT Simulation {
   ColliderId add_collider(const Collider& collider);
   /// It is gone from the next step on. Throws ConfigError where there is none of this id.
   void remove_collider(ColliderId collider);
+  /// A nozzle, and a body that is its strand: what it holds behind it is there at once. Throws what
+  /// add_body() throws.
+  EmitterId add_emitter(const Emitter& emitter, MaterialId material, std::string name = {});
+  /// Its strand.
+  BodyId body(EmitterId emitter) const;
+  /// As it is now, where it has moved.
+  const Emitter& emitter(EmitterId emitter) const;
+  /// How fast the strand leaves it, and how fast the nozzle itself moves, from now on [m/s].
+  void set_flow(EmitterId emitter, float speed, const Vec3& velocity = {0, 0, 0});
+  /// The nozzle is gone and what it held is free.
+  void remove_emitter(EmitterId emitter);
+  /// Particles that come into a box, or out of it, and are not pinned, are removed at the start of every
+  /// step.
+  SinkId add_sink(const Aabb& box, bool outside = false);
+  /// Throws ConfigError where there is none of this id.
+  void remove_sink(SinkId sink);
   /// Particles that are in `region` now move with `velocity` from now on and answer to nothing else. The
   /// region may hold none: that is a ConfigError, as nobody means it.
   PinId pin(const Aabb& region, const Vec3& velocity = {0, 0, 0});

@@ -1,0 +1,236 @@
+// Strands that leave nozzles, and what sinks take away. [model 2, section 6]
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "colliders/collider_checks.h"
+#include "colliders/pose.h"
+#include "config/validation.h"
+#include "simulation/membership.h"
+#include "simulation/overlaps.h"
+#include "simulation/state.h"
+
+namespace mallow {
+namespace {
+
+using Vec = Eigen::Vector3d;
+
+/// By which layers of a disc are turned, one against the next [rad]: never the same way twice.
+constexpr double k_turn = 2.4;
+/// Layers that are put behind the nozzle at once: the regions of the whole strand are built anew for them.
+constexpr std::size_t k_batch = 8;
+
+/// So many layers must still be held for what rests beside new ones to rest beside free ones too.
+std::size_t held_layers(const Emitter& emitter, const ShapeMatching& shape) {
+  return 2 * static_cast<std::size_t>(std::ceil(shape.region_radius / emitter.spacing)) + 1;
+}
+
+/// 32 well-mixed bits as a number in [-1, 1).
+double noise(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
+  return static_cast<double>((x ^ (x >> 31)) >> 32) / 2147483648.0 - 1;
+}
+
+/// Points of a layer across the flow, in the frame of the nozzle.
+std::vector<Vec> section(const Emitter& emitter) {
+  std::vector<Vec> points;
+  for (const Vec3& x : emitter.points) points.emplace_back(x.x(), x.y(), 0);
+  if (!points.empty()) return points;
+  const double h = static_cast<double>(emitter.spacing);
+  const double width =
+      emitter.radius ? 2 * static_cast<double>(*emitter.radius) : static_cast<double>(*emitter.width);
+  const double height = emitter.radius ? width : static_cast<double>(*emitter.height);
+  // A lattice in the middle of it, of whole cells.
+  const auto cells = [&](double side) { return std::max(1.0, std::floor(side / h + 1e-3)); };
+  for (double b = 0; b < cells(height); ++b)
+    for (double a = 0; a < cells(width); ++a) {
+      const Vec x(h * (a - 0.5 * (cells(width) - 1)), h * (b - 0.5 * (cells(height) - 1)), 0);
+      if (!emitter.radius || x.norm() <= 0.5 * width || cells(width) == 1) points.push_back(x);
+    }
+  return points;
+}
+
+/// Layer `number` of all, at `height` along the flow, in the world.
+void add_layer(const Emitter& emitter, std::uint64_t number, double height, std::vector<Vec3>& positions) {
+  const Eigen::Matrix3d rotation = rotation_of(emitter.pose);
+  const double turn = emitter.radius ? k_turn * static_cast<double>(number) : 0.0;
+  const Eigen::AngleAxisd turned(std::remainder(turn, 2 * std::numbers::pi), Vec::UnitZ());
+  std::uint64_t k = 0;
+  for (const Vec& x : section(emitter)) {
+    const double most = static_cast<double>(emitter.jitter) * static_cast<double>(emitter.spacing);
+    const std::uint64_t name = number << 24 ^ k++;
+    const Vec moved = x + most * Vec(noise(2 * name), noise(2 * name + 1), 0) + Vec(0, 0, height);
+    positions.push_back((emitter.pose.translation + rotation * (turned * moved)).cast<float>());
+  }
+}
+
+bool flows(const Simulation::State& s, const EmitterState& emitter) {
+  return s.time >= emitter.settings.start && !(s.time >= emitter.settings.stop.value_or(s.time + 1)) &&
+         emitter.settings.speed > 0;
+}
+
+/// `count` layers behind the last, as points of a body.
+Body next_layers(const EmitterState& emitter, std::size_t count) {
+  Body body{.positions = {}, .spacing = emitter.settings.spacing};
+  const double h = static_cast<double>(emitter.settings.spacing);
+  for (std::size_t k = 0; k < count; ++k)
+    add_layer(emitter.settings, emitter.layers + k,
+              emitter.offset - h * (static_cast<double>(emitter.layers + k) + 0.5), body.positions);
+  return body;
+}
+
+/// Tells apart the layers of `ids`, which are new, and holds them.
+void hold_layers(std::span<const ParticleId> ids, std::size_t count, Simulation::State& s,
+                 EmitterState& emitter) {
+  const std::size_t each = ids.size() / count;
+  for (std::size_t k = 0; k < count; ++k)
+    emitter.held.emplace_back(ids.begin() + static_cast<std::ptrdiff_t>(k * each),
+                              ids.begin() + static_cast<std::ptrdiff_t>((k + 1) * each));
+  emitter.layers += count;
+  hold_particles(s, emitter.pin, ids);
+}
+
+/// What has passed the nozzle is free.
+void free_layers(Simulation::State& s, EmitterState& emitter, bool all) {
+  const double h = static_cast<double>(emitter.settings.spacing);
+  while (!emitter.held.empty()) {
+    const double number = static_cast<double>(emitter.layers - emitter.held.size());
+    if (!all && emitter.offset - h * (number + 0.5) < 0) break;
+    for (const ParticleId id : emitter.held.front())
+      if (const std::optional<std::size_t> row = s.store.slots.find(id)) s.store.pin[*row] = 0;
+    emitter.held.pop_front();
+  }
+}
+
+void flow_out(Simulation::State& s, EmitterState& emitter) {
+  BodyState& body = s.body(emitter.body);
+  const Vec along = rotation_of(emitter.settings.pose).col(2);
+  Vec3 velocity = emitter.settings.velocity;
+  if (flows(s, emitter)) velocity += emitter.settings.speed * along.cast<float>();
+  s.pin(emitter.pin).velocity = velocity;
+  if (!velocity.isZero(0)) wake_island(s, body);
+  free_layers(s, emitter, false);
+  if (emitter.held.size() > held_layers(emitter.settings, body.shape) ||
+      body.size() >= static_cast<std::size_t>(emitter.settings.most_particles))
+    return;
+  Body points = next_layers(emitter, k_batch);
+  points.velocity = velocity;
+  hold_layers(extend(s, body, points), k_batch, s, emitter);
+}
+
+void drain(Simulation::State& s, const SinkState& sink) {
+  std::vector<ParticleId> ids;
+  const Aabb box{relative_to(s.origin, sink.box.min), relative_to(s.origin, sink.box.max)};
+  for (std::size_t row = 0; row < s.store.size(); ++row) {
+    const Vec3 x = s.store.position.get(row);
+    const bool inside = (x.array() >= box.min.array()).all() && (x.array() <= box.max.array()).all();
+    if (inside == sink.outside || (!s.store.pin.empty() && s.store.pin[row] != 0)) continue;
+    ids.push_back(s.store.id[row]);
+  }
+  if (!ids.empty()) erase_particles(s, ids);
+}
+
+std::size_t place_of(const Simulation::State& s, EmitterId id) {
+  const auto number = static_cast<std::uint64_t>(id);
+  for (std::size_t e = 0; e < s.emitters.size(); ++e)
+    if (s.emitters[e].id == id) return e;
+  throw ConfigError("emitter", "there is no emitter " + std::to_string(number) + ", or no longer");
+}
+
+void check_emitter(const Emitter& emitter) {
+  Checks checks;
+  check(emitter, checks);
+  check_pose("emitter.pose.", emitter.pose, checks);
+  checks.finish();
+}
+
+}  // namespace
+
+void flow(Simulation::State& s) {
+  // Whoever removes its body takes an emitter with it.
+  std::erase_if(s.emitters, [&](const EmitterState& emitter) {
+    return !s.body_slots.find(static_cast<std::uint64_t>(emitter.body));
+  });
+  for (EmitterState& emitter : s.emitters) flow_out(s, emitter);
+  for (const SinkState& sink : s.sinks) drain(s, sink);
+}
+
+void move_emitters(Simulation::State& s, double time_step) {
+  for (EmitterState& emitter : s.emitters) {
+    if (flows(s, emitter)) emitter.offset += time_step * static_cast<double>(emitter.settings.speed);
+    emitter.settings.pose.translation += time_step * emitter.settings.velocity.cast<double>();
+  }
+}
+
+EmitterId Simulation::add_emitter(const Emitter& settings, MaterialId material, std::string name) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  check_emitter(settings);
+  EmitterState emitter{.id = EmitterId{s.emitter_count}, .settings = settings};
+  // As many layers as are held whatever the radius of the regions is, which add_body() settles.
+  const float radius = s.material(material).settings.region_radius.value_or(s.config.support_radius);
+  ShapeMatching shape;
+  shape.region_radius = radius;
+  const std::size_t count = held_layers(settings, shape) + k_batch;
+  const Body points = next_layers(emitter, count);
+  if (name.empty()) name = "strand " + std::to_string(s.emitter_count);
+  emitter.body = add_body(points, material, std::move(name));
+  const Rows rows = this->rows(emitter.body);
+  const std::vector<ParticleId> ids(s.store.id.begin() + rows.begin, s.store.id.begin() + rows.end);
+  emitter.pin = pin(ids, settings.velocity);
+  hold_layers(ids, count, s, emitter);
+  s.emitters.push_back(std::move(emitter));
+  return EmitterId{s.emitter_count++};
+}
+
+BodyId Simulation::body(EmitterId id) const {
+  return state_->emitters[place_of(*state_, id)].body;
+}
+
+const Emitter& Simulation::emitter(EmitterId id) const {
+  return state_->emitters[place_of(*state_, id)].settings;
+}
+
+void Simulation::set_flow(EmitterId id, float speed, const Vec3& velocity) {
+  state_->refuse_in_callback();
+  EmitterState& emitter = state_->emitters[place_of(*state_, id)];
+  Emitter settings = emitter.settings;
+  settings.speed = speed;
+  settings.velocity = velocity;
+  check_emitter(settings);
+  emitter.settings = settings;
+}
+
+void Simulation::remove_emitter(EmitterId id) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  const std::size_t place = place_of(s, id);
+  EmitterState& emitter = s.emitters[place];
+  if (s.body_slots.find(static_cast<std::uint64_t>(emitter.body))) wake_island(s, s.body(emitter.body));
+  free_layers(s, emitter, true);
+  unpin(emitter.pin);
+  s.emitters.erase(s.emitters.begin() + static_cast<std::ptrdiff_t>(place));
+}
+
+SinkId Simulation::add_sink(const Aabb& box, bool outside) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  Checks checks;
+  checks.vector("sink.box.min", box.min);
+  checks.vector("sink.box.max", box.max);
+  if (!(box.min.array() < box.max.array()).all()) checks.problem("sink.box", "min must be below max");
+  checks.finish();
+  s.sinks.push_back({.id = SinkId{s.sink_count}, .box = box, .outside = outside});
+  return SinkId{s.sink_count++};
+}
+
+void Simulation::remove_sink(SinkId id) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  if (std::erase_if(s.sinks, [&](const SinkState& sink) { return sink.id == id; }) == 0)
+    throw ConfigError(
+        "sink", "there is no sink " + std::to_string(static_cast<std::uint64_t>(id)) + ", or no longer");
+}
+
+}  // namespace mallow

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "simulation/state.h"
+
+/// What of coming and going more than applications do.
+namespace mallow {
+
+/// As Simulation::extend_body(), unchecked. Returns the ids of the new particles, in their order.
+std::vector<ParticleId> extend(Simulation::State& state, BodyState& body, const Body& points);
+/// As Simulation::remove_particles(); ids: different, and there.
+void erase_particles(Simulation::State& state, std::span<const ParticleId> ids);
+/// Particles answer to a pin.
+void hold_particles(Simulation::State& state, PinId pin, std::span<const ParticleId> ids);
+
+}  // namespace mallow
