@@ -2,11 +2,12 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/archive.h"
 #include "core/parallel.h"
 #include "mallow/errors.h"
 #include "mallow/instruction_level.h"
@@ -71,6 +72,7 @@ struct Skin::Work {
   std::vector<Eigen::Quaternionf> turns;
   std::vector<Vec3> next_rest;
 
+  void size_columns();
   void find_particles(const Simulation& simulation);
   void find_rows(const Simulation& simulation);
   void choose_carriers();
@@ -88,7 +90,16 @@ void Skin::Work::find_particles(const Simulation& simulation) {
              all.begin() + static_cast<std::ptrdiff_t>(body_rows.end));
   std::ranges::sort(ids, {}, slot_of);
   rows.assign(ids.size(), 0);
+}
+
+/// Those that follow from others.
+void Skin::Work::size_columns() {
+  rows.resize(ids.size(), 0);
   rotations.resize(ids.size());
+  turns.resize(carriers.size());
+  motions.resize(carriers.size() * k_skin_row);
+  mesh.material_ids.assign(vertices.size(), static_cast<std::uint32_t>(body));
+  stretch.assign(vertices.size(), 0.0f);
 }
 
 /// Rows seldom move: most are where they were.
@@ -120,11 +131,11 @@ void Skin::Work::choose_carriers() {
   for (VertexBinding& binding : bindings)
     for (std::uint32_t& p : binding.particle) p = place[p];
   motions.resize(carriers.size() * k_skin_row);
-  turns.resize(carriers.size());
 }
 
 /// Positions are relative to a point of the body, so that single precision is that of its size.
 void Skin::Work::set_motions(const Simulation& simulation, const VectorView& rest_now, const Vec3& origin) {
+  rotations.resize(ids.size());
   simulation.rotations(body, rotations);
   const std::size_t first = simulation.rows(body).begin;
   const VectorView positions = simulation.positions();
@@ -176,8 +187,10 @@ void Skin::Work::blend(const Vec3& origin, std::vector<Vec3>& to_vertices, std::
   });
 }
 
+Skin::Skin() : work_(std::make_unique<Work>()) {}
+
 Skin::Skin(Simulation& simulation, BodyId body, Mesh mesh, int threads, std::shared_ptr<Executor> executor)
-    : work_(std::make_unique<Work>()) {
+    : Skin() {
   Work& w = *work_;
   simulation.rows(body);  // throws where there is none
   check_skin(mesh);
@@ -191,8 +204,6 @@ Skin::Skin(Simulation& simulation, BodyId body, Mesh mesh, int threads, std::sha
   if (w.mesh.normals.empty()) w.mesh.normals = vertex_normals(w.mesh);
   for (Vec3& normal : w.mesh.normals) normal.normalize();
   w.mesh.velocities.clear();
-  w.mesh.material_ids.assign(w.mesh.vertices.size(), static_cast<std::uint32_t>(body));
-  w.stretch.assign(w.mesh.vertices.size(), 0.0f);
 
   const VectorView rest_now = simulation.rest_positions(body), positions = simulation.positions();
   w.find_particles(simulation);
@@ -204,6 +215,7 @@ Skin::Skin(Simulation& simulation, BodyId body, Mesh mesh, int threads, std::sha
   for (const std::uint32_t p : w.carriers) w.bound_at.push_back(positions[w.rows[p]] - w.origin(positions));
   w.set_motions(simulation, rest_now, w.origin(positions));
   w.take_rest_pose(w.origin(positions));
+  w.size_columns();
 }
 Skin::~Skin() = default;
 Skin::Skin(Skin&&) noexcept = default;
@@ -213,6 +225,7 @@ const Mesh& Skin::update(const Simulation& simulation) {
   Work& w = *work_;
   const VectorView rest_now = simulation.rest_positions(w.body), positions = simulation.positions();
   w.find_rows(simulation);
+  w.mesh.velocities.clear();
   const std::size_t first = simulation.rows(w.body).begin;
   const auto moved = [&](std::uint32_t p) { return rest_now[w.rows[p] - first] != w.rest[p]; };
   if (std::ranges::any_of(w.carriers, moved)) w.take_reference(simulation, rest_now);
@@ -245,6 +258,119 @@ std::span<const float> Skin::stretch() {
     }
   });
   return w.stretch;
+}
+
+const Mesh& Skin::find_velocities(const Simulation& simulation) {
+  Work& w = *work_;
+  w.find_rows(simulation);
+  const VectorView velocities = simulation.velocities();
+  w.mesh.velocities.resize(w.vertices.size());
+  parallel_for(w.threads, w.vertices.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      Vec3 sum(0, 0, 0);
+      for (std::size_t k = 0; k < k_skin_particles; ++k)
+        sum += w.bindings[v].weight[k] * velocities[w.rows[w.carriers[w.bindings[v].particle[k]]]];
+      w.mesh.velocities[v] = sum;
+    }
+  });
+  return w.mesh;
+}
+
+namespace {
+
+constexpr std::uint32_t k_version = 1;
+constexpr const char* k_chunk = "skin";
+
+template <class T>
+void pass_list(PackingArchive& archive, const std::vector<T>& list) {
+  archive(static_cast<std::uint64_t>(list.size()));
+  archive.array(list.data(), list.size());
+}
+template <class T>
+void pass_list(UnpackingArchive& archive, std::vector<T>& list) {
+  list.resize(archive.count(sizeof(T)));
+  archive.array(list.data(), list.size());
+}
+
+/// One list for both ways. bindings: the column as a list.
+template <class Archive, class Work, class Bindings>
+void pass_skin(Archive& archive, Work& work, Bindings& bindings) {
+  archive(work.spacing);
+  archive(work.region_radius);
+  pass_list(archive, work.ids);
+  pass_list(archive, work.rest);
+  pass_list(archive, work.carriers);
+  pass_list(archive, work.bound_at);
+  pass_list(archive, bindings);
+  pass_list(archive, work.vertices);
+  pass_list(archive, work.normals);
+  pass_list(archive, work.mesh.triangles);
+}
+
+bool are_below(std::span<const std::uint32_t> numbers, std::size_t count) {
+  return std::ranges::all_of(numbers, [&](std::uint32_t number) { return number < count; });
+}
+
+template <class Work>
+void require_valid(const UnpackingArchive& archive, const Work& work,
+                   std::span<const VertexBinding> bindings) {
+  const auto require = [&](bool ok, const char* what) {
+    if (!ok) archive.fail(what);
+  };
+  require(work.spacing > 0 && std::isfinite(work.spacing) && work.region_radius > 0 &&
+              std::isfinite(work.region_radius),
+          "spacing and region radius must be finite and above 0");
+  require(!work.vertices.empty() && work.normals.size() == work.vertices.size() &&
+              bindings.size() == work.vertices.size(),
+          "there must be a normal and a binding for each vertex, and one vertex at least");
+  require(!work.carriers.empty() && work.bound_at.size() == work.carriers.size() &&
+              work.rest.size() == work.ids.size() && are_below(work.carriers, work.ids.size()),
+          "its particles are not those of the body");
+  for (const auto* vectors : {&work.rest, &work.bound_at, &work.vertices, &work.normals})
+    for (const Vec3& v : *vectors) require(v.allFinite(), "a vector is not finite");
+  for (const VertexBinding& binding : bindings)
+    require(are_below(binding.particle, work.carriers.size()) &&
+                std::ranges::all_of(binding.weight, [](float w) { return w >= 0 && w <= 1; }),
+            "a vertex follows what is no particle of it");
+  for (const auto& triangle : work.mesh.triangles)
+    require(are_below(triangle, work.vertices.size()), "a triangle has what is no vertex");
+}
+
+}  // namespace
+
+std::string Skin::save() const {
+  const Work& w = *work_;
+  PackingArchive archive;
+  const std::vector<VertexBinding> bindings(w.bindings.begin(), w.bindings.end());
+  archive(k_version);
+  archive(static_cast<std::uint32_t>(w.body));
+  pass_skin(archive, w, bindings);
+  return archive.take();
+}
+
+Skin Skin::restore(const std::string& saved, int threads, std::shared_ptr<Executor> executor) {
+  Skin skin;
+  Work& w = *skin.work_;
+  UnpackingArchive archive(k_chunk, saved);
+  std::uint32_t version = 0, body = 0;
+  std::vector<VertexBinding> bindings;
+  archive(version);
+  if (version != k_version)
+    archive.fail("is of version " + std::to_string(version) + "; this build of mallow reads " +
+                 std::to_string(k_version));
+  archive(body);
+  pass_skin(archive, w, bindings);
+  archive.finish();
+  require_valid(archive, w, bindings);
+  w.executor = std::move(executor);
+  w.threads = Threads(threads, w.executor);
+  w.body = BodyId{body};
+  w.bindings.resize(bindings.size());
+  std::ranges::copy(bindings, w.bindings.begin());
+  w.mesh.vertices = w.vertices;
+  w.mesh.normals = w.normals;
+  w.size_columns();
+  return skin;
 }
 
 std::size_t Skin::bytes() const {

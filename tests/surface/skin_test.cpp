@@ -352,6 +352,52 @@ TEST(skin, allocates_nothing_when_it_is_updated) {
   }
 }
 
+TEST(skin, goes_on_with_the_same_bits_where_it_was_saved) {
+  Ball ball;
+  Skin skin(ball.simulation, ball.body, ball.mesh);
+  ball.deform(twisted);
+  ball.yield();
+  skin.update(ball.simulation);
+  Skin again = Skin::restore(skin.save(), 1);
+  ball.deform([](const Vec3& x) { return Vec3(k_turn * x + k_way); });
+  ball.yield();
+  EXPECT_TRUE(same_bits(again.update(ball.simulation).vertices, skin.update(ball.simulation).vertices));
+  EXPECT_TRUE(same_bits(again.mesh().normals, skin.mesh().normals));
+  EXPECT_EQ(again.mesh().triangles, skin.mesh().triangles);
+  EXPECT_EQ(again.mesh().material_ids, skin.mesh().material_ids);
+  EXPECT_TRUE(std::ranges::equal(again.stretch(), skin.stretch()));
+  EXPECT_EQ(again.save(), skin.save());
+}
+
+TEST(skin, is_not_restored_from_bytes_that_are_damaged) {
+  Ball ball;
+  Skin skin(ball.simulation, ball.body, sphere_mesh({0, 0, 0}, 6, 3));
+  const std::string saved = skin.save();
+  for (std::size_t size = 0; size < saved.size(); size += 97)
+    EXPECT_THROW(Skin::restore(saved.substr(0, size)), ConfigError);
+  EXPECT_THROW(Skin::restore(saved + 'x'), ConfigError);
+  std::mt19937 random(2);
+  for (int k = 0; k < 2000; ++k) {
+    std::string damaged = saved;
+    damaged[random() % damaged.size()] ^= static_cast<char>(1u << random() % 8);
+    try {
+      Skin::restore(damaged).update(ball.simulation);  // what is let through can be used
+    } catch (const ConfigError&) {
+    }
+  }
+}
+
+TEST(skin, has_the_velocities_of_its_particles) {
+  Ball ball;
+  Skin skin(ball.simulation, ball.body, ball.mesh);
+  const Vec3 velocity(1, -2, 3);
+  for (std::size_t row = 0; row < ball.simulation.particle_count(); ++row)
+    ball.state().store.velocity.set(row, velocity);
+  for (const Vec3& v : skin.find_velocities(ball.simulation).velocities)
+    ASSERT_LT((v - velocity).norm(), 1e-6f);
+  EXPECT_TRUE(skin.update(ball.simulation).velocities.empty());
+}
+
 template <class F>
 std::string message_of(const F& f) {
   try {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "mallow/executor.h"
 #include "mallow/export.h"
@@ -52,15 +53,27 @@ class MALLOW_EXPORT Skin {
   /// The body that it follows.
   BodyId body() const;
 
+  /// The same mesh with velocities, those of the particles by the same weights [m/s]. They hold until the
+  /// next update(). Throws as that does.
+  const Mesh& find_velocities(const Simulation& simulation);
+
   /// How far the body was torn at each vertex [spacings], >= 0, at the last update(): the most by which the
   /// distance of the particle that was nearest to the vertex from another one that carries it has grown since
   /// the skin was bound. Elastic jelly stays below 0.5 or so; above 1 there is a gap that the skin bridges.
   /// Holds until the next call.
   std::span<const float> stretch();
+
+  /// All that it is, for a chunk beside those of Simulation::save().
+  std::string save() const;
+  /// A skin that goes on where a saved one stood, with the same bits; its mesh is in the rest pose until the
+  /// next update(). Throws ConfigError where the bytes are not what save() gave.
+  static Skin restore(const std::string& saved, int threads = 0,
+                      std::shared_ptr<Executor> executor = nullptr);
   /// Memory it holds [bytes].
   std::size_t bytes() const;
 
  private:
+  Skin();
   struct Work;
   std::unique_ptr<Work> work_;
 };
