@@ -58,9 +58,9 @@ class MALLOW_EXPORT Skin {
   const Mesh& find_velocities(const Simulation& simulation);
 
   /// How far the body was torn at each vertex [spacings], >= 0, at the last update(): the most by which the
-  /// distance of the particle that was nearest to the vertex from another one that carries it has grown since
-  /// the skin was bound. Elastic jelly stays below 0.5 or so; above 1 there is a gap that the skin bridges.
-  /// Holds until the next call.
+  /// distance of the particle nearest to the vertex from another that carries it has grown since the skin was
+  /// bound. Jelly that falls 20 spacings has 0.3 in the middle, and 1.1 for a moment where most is pulled;
+  /// what stays above 1 is a gap that the skin bridges. Holds until the next call.
   std::span<const float> stretch();
 
   /// All that it is, for a chunk beside those of Simulation::save().
