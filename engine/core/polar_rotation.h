@@ -11,6 +11,7 @@ namespace mallow {
 /// mirrors. Where A says nothing (rank below 2, or next to nothing against `scale`, the size A has at rest)
 /// it stays as near `last` as can be. Exact and slow: largest eigenvector of Horn's quaternion matrix (Horn
 /// 1987), in double.
-MALLOW_EXPORT Eigen::Quaterniond polar_rotation(const Eigen::Matrix3d& a, const Eigen::Quaterniond& last, double scale);
+MALLOW_EXPORT Eigen::Quaterniond polar_rotation(const Eigen::Matrix3d& a, const Eigen::Quaterniond& last,
+                                                double scale);
 
 }  // namespace mallow

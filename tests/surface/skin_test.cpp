@@ -2,6 +2,7 @@
 #include "mallow/skin.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <numeric>
@@ -283,6 +284,35 @@ TEST(skin, does_not_depend_on_how_often_it_was_updated_where_bodies_yield) {
   }
   EXPECT_LT(largest_distance(often.mesh().vertices, once.update(ball.simulation).vertices), 0.03f);
   EXPECT_LT(largest_distance(often.mesh().normals, once.mesh().normals), 0.02f);
+}
+
+TEST(skin, turns_with_a_body_that_yields_all_the_time) {
+  Simulation s({.time_step = 0.1f, .support_radius = 2.1f, .gravity = {0, 0, 0}, .update_interval = 5});
+  Body points = sample(Lattice{.count = {8, 8, 8}, .spacing = 1.0f, .corner = {-4, -4, -4}});
+  for (const Vec3& x : points.positions) points.velocities.push_back(Vec3(0, 0, 0.4f).cross(x));
+  const BodyId body = s.add_body(points, {.alpha = 0.3f, .update_threshold = 0, .deformation_damping = 0.0f});
+  s.set_force([](const ForceInput&, VectorSpan a) { std::ranges::fill(a.x(), 1e-4f); });
+  Mesh mesh;
+  mesh.vertices = {{-4, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, -4, 0}};
+  mesh.normals = {{-1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+  Skin skin(s, body, mesh);
+  const std::vector<Vec3> before = s.positions_by_id();
+  int updates = 0;
+  for (int k = 0; k < 200; ++k) updates += s.step().updated_references;
+  EXPECT_GT(updates, 30);
+  skin.update(s);
+  // The turn of the whole body about z, and by how much less every normal has turned: a step's turn is 0.04.
+  const std::vector<Vec3> now = s.positions_by_id();
+  const Vec3 middle = std::accumulate(now.begin(), now.end(), Vec3(0, 0, 0)) / static_cast<float>(now.size());
+  float cosine = 0, sine = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const Vec3 x = now[i] - middle;
+    cosine += before[i].x() * x.x() + before[i].y() * x.y();
+    sine += before[i].x() * x.y() - before[i].y() * x.x();
+  }
+  const Eigen::AngleAxisf turn(std::atan2(sine, cosine), Vec3::UnitZ());
+  for (std::size_t v = 0; v < 4; ++v)
+    EXPECT_LT((turn * mesh.normals[v] - skin.mesh().normals[v]).norm(), 0.06f) << v;
 }
 
 TEST(skin, moves_no_faster_than_particles_where_a_falling_body_yields) {
