@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -10,6 +12,7 @@
 #include "files/mesh_materials.h"
 #include "files/tiny_gltf.h"
 #include "files/valid_columns.h"
+#include "mallow/errors.h"
 #include "mallow/files.h"
 
 namespace mallow {
@@ -34,6 +37,23 @@ class GltfColumns {
     for (const std::uint32_t corner : corners) append_little_endian(bytes_, corner);
     return add_accessor(begin, corners.size(), TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
                         TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+  }
+  /// Numbers that no vertex has.
+  int add_numbers(const std::vector<float>& numbers) {
+    const std::size_t begin = bytes_.size();
+    for (const float number : numbers) append_little_endian(bytes_, number);
+    return add_accessor(begin, numbers.size(), TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_FLOAT, 0);
+  }
+  /// Vectors whose box programs ask for.
+  int add_places(const std::vector<Vec3>& vectors) {
+    const int index = add_vectors(vectors);
+    Mesh points;
+    points.vertices = vectors;
+    const Aabb box = bounds(points);
+    gltf::Accessor& accessor = model_.accessors[static_cast<std::size_t>(index)];
+    accessor.minValues.assign(box.min.begin(), box.min.end());
+    accessor.maxValues.assign(box.max.begin(), box.max.end());
+    return index;
   }
   /// Puts the buffer into the model; nothing is added after it.
   void finish() { model_.buffers.emplace_back().data.assign(bytes_.begin(), bytes_.end()); }
@@ -95,16 +115,10 @@ gltf::Material material_of(const NamedMaterial& named) {
   return material;
 }
 
-gltf::Primitive primitive_of(const Mesh& mesh, const Part& part, GltfColumns& columns, gltf::Model& model) {
+gltf::Primitive primitive_of(const Mesh& mesh, const Part& part, GltfColumns& columns) {
   gltf::Primitive primitive;
   primitive.mode = TINYGLTF_MODE_TRIANGLES;
-  Mesh points;
-  points.vertices = picked(mesh.vertices, part.vertices);
-  const int positions = primitive.attributes["POSITION"] = columns.add_vectors(points.vertices);
-  const Aabb box = bounds(points);
-  gltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(positions)];
-  accessor.minValues.assign(box.min.begin(), box.min.end());
-  accessor.maxValues.assign(box.max.begin(), box.max.end());
+  primitive.attributes["POSITION"] = columns.add_places(picked(mesh.vertices, part.vertices));
   if (!mesh.normals.empty())
     primitive.attributes["NORMAL"] = columns.add_vectors(picked(mesh.normals, part.vertices));
   // glTF knows no velocities; names of an application's own begin with an underscore.
@@ -114,8 +128,53 @@ gltf::Primitive primitive_of(const Mesh& mesh, const Part& part, GltfColumns& co
   return primitive;
 }
 
-/// A node and a mesh for each body, as programs show names of those and not of primitives.
-void add_bodies(const Mesh& mesh, std::span<const MeshBody> bodies, gltf::Model& model) {
+/// Morph targets say how far vertices and normals go.
+std::vector<Vec3> differences(const std::vector<Vec3>& to, const std::vector<Vec3>& from,
+                              const std::vector<std::uint32_t>& rows) {
+  std::vector<Vec3> result;
+  for (const std::uint32_t row : rows) result.emplace_back(to[row] - from[row]);
+  return result;
+}
+
+/// mesh: at the first of the poses.
+void add_targets(const Mesh& mesh, std::span<const MeshPose> poses, const Part& part, GltfColumns& columns,
+                 gltf::Primitive& primitive) {
+  for (std::size_t p = 1; p < poses.size(); ++p)
+    primitive.targets.push_back(
+        {{"POSITION", columns.add_places(differences(poses[p].vertices, mesh.vertices, part.vertices))},
+         {"NORMAL", columns.add_vectors(differences(poses[p].normals, mesh.normals, part.vertices))}});
+}
+
+/// Target p − 1 alone at the time of pose p, of all meshes.
+void add_motion(std::span<const MeshPose> poses, GltfColumns& columns, gltf::Model& model) {
+  if (poses.size() < 2) return;
+  const std::size_t targets = poses.size() - 1;
+  std::vector<float> times, weights(poses.size() * targets, 0.0f);
+  for (std::size_t p = 0; p < poses.size(); ++p) {
+    times.push_back(static_cast<float>(poses[p].time));
+    if (p > 0) weights[p * targets + p - 1] = 1;
+  }
+  gltf::Animation& animation = model.animations.emplace_back();
+  animation.name = "motion";
+  gltf::AnimationSampler& sampler = animation.samplers.emplace_back();
+  sampler.input = columns.add_numbers(times);
+  sampler.output = columns.add_numbers(weights);
+  gltf::Accessor& input = model.accessors[static_cast<std::size_t>(sampler.input)];
+  input.minValues = {static_cast<double>(times.front())};
+  input.maxValues = {static_cast<double>(times.back())};
+  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+    if (model.nodes[n].mesh < 0) continue;
+    gltf::AnimationChannel& channel = animation.channels.emplace_back();
+    channel.sampler = 0;
+    channel.target_node = static_cast<int>(n);
+    channel.target_path = "weights";
+  }
+}
+
+/// A node and a mesh for each body, as programs show names of those and not of primitives. poses: empty, or
+/// those that the mesh takes, of which it is in the first.
+void add_bodies(const Mesh& mesh, std::span<const MeshPose> poses, std::span<const MeshBody> bodies,
+                gltf::Model& model) {
   const NamedBodies named = name_bodies(bodies, [](const std::string& name) { return name; });
   std::vector<int> material_index(named.materials.size(), -1);
   GltfColumns columns(model);
@@ -125,23 +184,26 @@ void add_bodies(const Mesh& mesh, std::span<const MeshBody> bodies, gltf::Model&
       material_index[material] = static_cast<int>(model.materials.size());
       model.materials.push_back(material_of(named.materials[material]));
     }
-    gltf::Mesh part;
-    part.name = named.names[id];
-    part.primitives.push_back(primitive_of(mesh, part_of(mesh, triangles), columns, model));
-    part.primitives.back().material = material_index[material];
+    gltf::Mesh body;
+    body.name = named.names[id];
+    const Part part = part_of(mesh, triangles);
+    gltf::Primitive& primitive = body.primitives.emplace_back(primitive_of(mesh, part, columns));
+    primitive.material = material_index[material];
+    add_targets(mesh, poses, part, columns, primitive);
+    body.weights.assign(primitive.targets.size(), 0.0);
     gltf::Node node;
-    node.name = part.name;
+    node.name = body.name;
     node.mesh = static_cast<int>(model.meshes.size());
-    model.meshes.push_back(std::move(part));
+    model.meshes.push_back(std::move(body));
     model.nodes[0].children.push_back(static_cast<int>(model.nodes.size()));
     model.nodes.push_back(std::move(node));
   }
+  add_motion(poses, columns, model);
   columns.finish();
 }
 
-}  // namespace
-
-void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshBody> bodies) {
+void write_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshPose> poses,
+               std::span<const MeshBody> bodies) {
   require_valid(mesh);
   require_finite(mesh);
   require_bodies(mesh, bodies);
@@ -153,7 +215,7 @@ void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::sp
   node.name = "surface";
   constexpr double k_half = 0.5 * std::numbers::sqrt2;
   node.rotation = {-k_half, 0, 0, k_half};  // a quarter turn about x, as x y z w
-  if (!mesh.triangles.empty()) add_bodies(mesh, bodies, model);
+  if (!mesh.triangles.empty()) add_bodies(mesh, poses, bodies, model);
   model.scenes.emplace_back().nodes.push_back(0);
   model.defaultScene = 0;
 
@@ -162,6 +224,47 @@ void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::sp
   if (!writer.WriteGltfSceneToStream(&model, bytes, false, true)) fail_file(file, "cannot be made into glTF");
   require_readable_size(file, bytes.view().size());
   write_whole(file, bytes.view());
+}
+
+void require_poses(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshPose> poses) {
+  if (poses.empty()) throw ConfigError("poses", "there is none: at least one is needed");
+  const std::size_t n = mesh.vertices.size();
+  for (std::size_t p = 0; p < poses.size(); ++p) {
+    const MeshPose& pose = poses[p];
+    const std::string name = "poses[" + std::to_string(p) + ']';
+    const double after = p > 0 ? poses[p - 1].time : -1;
+    if (!std::isfinite(pose.time) || pose.time < 0 || pose.time <= after)
+      throw ConfigError(name + ".time", std::to_string(pose.time) +
+                                            " is not allowed: a number >= 0, above that of the pose before");
+    if (pose.vertices.size() != n || pose.normals.size() != n)
+      throw ConfigError(name, "has " + std::to_string(pose.vertices.size()) + " vertices and " +
+                                  std::to_string(pose.normals.size()) + " normals; the mesh has " +
+                                  std::to_string(n) + " vertices");
+    Mesh at;
+    at.vertices = pose.vertices;
+    at.normals = pose.normals;
+    require_finite(at);
+  }
+  // Before memory is taken for it.
+  require_readable_size(file, std::uint64_t{poses.size()} * n * 2 * sizeof(Vec3) +
+                                  std::uint64_t{poses.size()} * poses.size() * sizeof(float));
+}
+
+}  // namespace
+
+void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshBody> bodies) {
+  write_glb(file, mesh, {}, bodies);
+}
+
+void write_animation_glb(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshPose> poses,
+                         std::span<const MeshBody> bodies) {
+  require_poses(file, mesh, poses);
+  Mesh first;
+  first.vertices = poses.front().vertices;
+  first.normals = poses.front().normals;
+  first.triangles = mesh.triangles;
+  first.material_ids = mesh.material_ids;
+  write_glb(file, first, poses, bodies);
 }
 
 }  // namespace mallow

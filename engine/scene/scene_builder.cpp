@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <optional>
 
@@ -120,6 +121,38 @@ struct Sample {
   }
 };
 
+/// The skin of a body, where the body is.
+struct PlaceSkin {
+  const std::filesystem::path& folder;
+  Mesh skin;
+  Eigen::Vector3d origin;  ///< of the skin's vertices
+
+  Mesh operator()(const MeshSource& source) const {
+    Eigen::Vector3d own_origin;
+    const Mesh own = read_mesh(folder / source.file, own_origin);
+    const Mesh placed = place(moved(skin, origin - own_origin), source.placement, bounds(own));
+    return source.placement.center ? placed : moved(placed, own_origin);
+  }
+  Mesh operator()(const ImplicitSource& source) const {
+    return place(moved(skin, origin), source.placement, implicit_shape(source.shape).bounds);
+  }
+  Mesh operator()(const auto&) const { return moved(skin, origin); }
+
+  static Mesh moved(Mesh mesh, const Eigen::Vector3d& by) {
+    for (Vec3& x : mesh.vertices) x = (by + x.cast<double>()).cast<float>();
+    return mesh;
+  }
+};
+
+Skin bind_skin(const SceneBody& body, BodyId id, const Material& material,
+               const std::filesystem::path& folder, Simulation& simulation, int threads) {
+  if (material.alpha.highest() >= 1)
+    throw ConfigError("skin", "is not allowed where alpha reaches 1, as a fluid has no shape to follow");
+  Eigen::Vector3d origin;
+  const Mesh mesh = read_mesh(folder / body.skin, origin);
+  return {simulation, id, std::visit(PlaceSkin{folder, mesh, origin}, body.source), threads};
+}
+
 }  // namespace
 }  // namespace scene_file
 
@@ -179,6 +212,35 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
   collect(problems, 0, {}, [&] { simulation.prepare(); });
   problems.finish();
   return simulation;
+}
+
+std::vector<Skin> skins(const Scene& scene, Simulation& simulation, int threads) {
+  using namespace scene_file;
+  std::vector<Skin> skins;
+  if (std::ranges::all_of(scene.bodies, [](const SceneBody& body) { return body.skin.empty(); }))
+    return skins;
+  const Groups groups = groups_of(scene);
+  Problems problems(scene.file.string());
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const SceneBody& body = scene.bodies[i];
+    if (body.skin.empty()) continue;
+    const std::size_t group = groups.of_body[i];
+    collect(problems, body.line, element_path("body", i) + ".skin", [&] {
+      skins.push_back(bind_skin(body, BodyId{static_cast<std::uint32_t>(group)},
+                                scene.materials[groups.list[group].material].material,
+                                scene.file.parent_path(), simulation, threads));
+    });
+  }
+  problems.finish();
+  return skins;
+}
+
+std::vector<bool> skinned_bodies(const Scene& scene) {
+  const scene_file::Groups groups = scene_file::groups_of(scene);
+  std::vector<bool> skinned(groups.list.size(), false);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (!scene.bodies[i].skin.empty()) skinned[groups.of_body[i]] = true;
+  return skinned;
 }
 
 std::vector<std::size_t> body_materials(const Scene& scene) {

@@ -30,6 +30,9 @@ BoundFields fields(SceneBody& body) {
       {"merges", &body.merges, k_any, "",
        "acts on others of its material that merge as on itself: two puddles become one"},
       {"velocity", &body.velocity, k_finite, "m/s", "of every particle at the start"},
+      {"skin", &body.skin, k_any, "",
+       "mesh that follows it and is drawn in place of its surface, OBJ, PLY, STL or OFF, placed as its own",
+       "a surface around its particles"},
   };
 }
 

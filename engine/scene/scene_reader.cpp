@@ -97,6 +97,7 @@ class SceneReader {
     body.line = node.place.line;
     read_fields(node, path, fields(body), source_keys(), problems_);
     read_source(node, path, files_, body.source, problems_);
+    check_file(node, path, "skin", files_, body.skin, problems_);
   }
 
   void read_collider(const Node& node, const std::string& path) {

@@ -112,6 +112,24 @@ class ShapeCheck {
                     "unknown shape '" + shape + "'" + suggestion(shape, known));
   }
 
+  /// key: what names it.
+  void check_file(const std::filesystem::path& name, const char* key = "file") const {
+    // Whoever types a name may well mean another place; the scene's author may not. What lies there is not
+    // said.
+    const bool typed = !place_of(key).given_by.empty();
+    if (!typed && !files_->may_name(name))
+      return complain(key, toml_string(name.string()),
+                      "a file below " + files_->root().string() +
+                          ", unless paths outside are allowed (--allow-outside-paths)");
+    const std::filesystem::path file = files_->full_name(name);
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (std::filesystem::is_regular_file(status)) return;
+    complain(key, toml_string(name.string()),
+             std::filesystem::exists(status) ? file.string() + " is not a file"
+                                             : "there is no file " + file.string());
+  }
+
  private:
   static std::string at_most_particles() { return "at most " + std::to_string(k_most_particles); }
 
@@ -121,23 +139,6 @@ class ShapeCheck {
                     "is not allowed beside spacing: exactly one of the two");
     if (!sampling.spacing && !sampling.count)
       problems_.add(table_.place, path_, "has neither spacing nor count: exactly one of the two is needed");
-  }
-
-  void check_file(const std::filesystem::path& name) const {
-    // Whoever types a name may well mean another place; the scene's author may not. What lies there is not
-    // said.
-    const bool typed = !place_of("file").given_by.empty();
-    if (!typed && !files_->may_name(name))
-      return complain("file", toml_string(name.string()),
-                      "a file below " + files_->root().string() +
-                          ", unless paths outside are allowed (--allow-outside-paths)");
-    const std::filesystem::path file = files_->full_name(name);
-    std::error_code error;
-    const auto status = std::filesystem::status(file, error);
-    if (std::filesystem::is_regular_file(status)) return;
-    complain("file", toml_string(name.string()),
-             std::filesystem::exists(status) ? file.string() + " is not a file"
-                                             : "there is no file " + file.string());
   }
 
   void complain(const std::string& key, const std::string& given, const std::string& allowed) const {
@@ -219,6 +220,11 @@ void read_source(const Node& body, const std::string& body_path, const SceneFile
   } else if (read_whole(entry->node, path, fields(source), {}, problems)) {
     std::visit(check, source);
   }
+}
+
+void check_file(const Node& table, const std::string& path, const char* key, const SceneFiles& files,
+                const std::filesystem::path& name, Problems& problems) {
+  if (!name.empty()) ShapeCheck(table, path, &files, problems).check_file(name, key);
 }
 
 void read_shape(const Node& table, const std::string& collider_path, Collider& collider, Problems& problems) {

@@ -17,6 +17,9 @@ const std::vector<std::string>& shape_keys();   ///< of a collider
 /// body: the table of a [[body]]; files: those that it may name.
 void read_source(const Node& body, const std::string& path, const SceneFiles& files, BodySource& source,
                  Problems& problems);
+/// Checks the file that a key of a table names, where it names one.
+void check_file(const Node& table, const std::string& path, const char* key, const SceneFiles& files,
+                const std::filesystem::path& name, Problems& problems);
 /// table: that of a [[collider]].
 void read_shape(const Node& table, const std::string& path, Collider& collider, Problems& problems);
 

@@ -8,6 +8,7 @@
 #include "config/field_checks.h"
 #include "config/field_tables.h"
 #include "mallow/body.h"
+#include "mallow/mesh.h"
 #include "shapes/primitives.h"
 
 namespace mallow {
@@ -58,26 +59,46 @@ ImplicitShape implicit_shape(const std::string& name) {
   throw ConfigError("implicit", '"' + name + "\" is not a known shape: one of " + known);
 }
 
-ImplicitShape place(const ImplicitShape& shape, const Placement& placement) {
-  const Vec3 half = 0.5f * (shape.bounds.max - shape.bounds.min);
-  const Vec3 middle = shape.bounds.min + half;
+namespace {
+
+/// x -> scale R (x − middle) + center.
+struct PlacedBox {
+  float scale;
+  Eigen::Matrix3f rotation;
+  Vec3 middle, half, center;
+};
+
+PlacedBox placed(const Aabb& bounds, const Placement& placement) {
   Checks checks;
   check_fields("", placement, checks);
   checks.finish();
-
+  const Vec3 half = 0.5f * (bounds.max - bounds.min);
+  const Vec3 middle = bounds.min + half;
   // The size is measured before the turn: how large a body is must not depend on how it lies.
-  const float scale = placement.size ? *placement.size / (2.0f * half.maxCoeff()) : 1.0f;
-  const Eigen::Matrix3f rotation = turn(placement.rotate);
-  const Vec3 center = placement.center.value_or(middle);
-  const Vec3 reach = scale * (rotation.cwiseAbs() * half);
-  const Eigen::Matrix3f back = rotation.transpose() / scale;
-  return {
-      [distance = shape.distance, back, center, middle, scale](const Vec3& x) {
-        return scale * distance(back * (x - center) + middle);
-      },
-      {center - reach, center + reach},
-      shape.volume ? std::optional(*shape.volume * std::pow(static_cast<double>(scale), 3)) : std::nullopt,
-      shape.notes};
+  return {placement.size ? *placement.size / (2.0f * half.maxCoeff()) : 1.0f, turn(placement.rotate), middle,
+          half, placement.center.value_or(middle)};
+}
+
+}  // namespace
+
+ImplicitShape place(const ImplicitShape& shape, const Placement& placement) {
+  const PlacedBox box = placed(shape.bounds, placement);
+  const Vec3 reach = box.scale * (box.rotation.cwiseAbs() * box.half);
+  const Eigen::Matrix3f back = box.rotation.transpose() / box.scale;
+  return {[distance = shape.distance, back, box](const Vec3& x) {
+            return box.scale * distance(back * (x - box.center) + box.middle);
+          },
+          {box.center - reach, box.center + reach},
+          shape.volume ? std::optional(*shape.volume * std::pow(static_cast<double>(box.scale), 3))
+                       : std::nullopt,
+          shape.notes};
+}
+
+Mesh place(Mesh mesh, const Placement& placement, const std::optional<Aabb>& whole) {
+  const PlacedBox box = placed(whole.value_or(bounds(mesh)), placement);
+  for (Vec3& x : mesh.vertices) x = box.scale * (box.rotation * (x - box.middle)) + box.center;
+  for (Vec3& normal : mesh.normals) normal = box.rotation * normal;
+  return mesh;
 }
 
 }  // namespace mallow

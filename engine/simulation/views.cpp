@@ -127,14 +127,30 @@ std::size_t Simulation::row(ParticleId id) const {
 
 namespace {
 
+/// field: what was asked for, by which there is no shape to tell of.
+void require_shape(const BodyState& body, const char* field, const char* subject) {
+  if (body.shape.built && body.shape.reference.size() == body.size()) return;
+  throw ConfigError(field, subject + ("'" + body.name) +
+                               "', which has no reference shape now: its alpha is 1, or prepare() is due");
+}
+
 /// The body of a row, with a shape to tell of.
 const BodyState& shaped(const Simulation::State& s, std::size_t row) {
   const BodyState& body = s.body_of(row);
-  if (!body.shape.built)
-    throw ConfigError("particle",
-                      "is of body '" + body.name +
-                          "', which has no reference shape now: its alpha is 1, or prepare() is due");
+  require_shape(body, "particle", "is of body ");
   return body;
+}
+const BodyState& shaped(const Simulation::State& s, BodyId id) {
+  const BodyState& body = s.body(id);
+  require_shape(body, "body", "is ");
+  return body;
+}
+
+/// R of the region of a particle, counted from the body's first.
+Eigen::Quaternionf rotation_of(const ShapeMatching& shape, std::size_t i) {
+  const std::size_t region = shape.first_region(i);
+  const auto q = [&](std::size_t k) { return shape.rotation[k][region]; };
+  return {q(3), q(0), q(1), q(2)};
 }
 
 }  // namespace
@@ -148,9 +164,20 @@ Vec3 Simulation::rest_position(ParticleId id) const {
 Eigen::Quaternionf Simulation::rotation(ParticleId id) const {
   const std::size_t at = row(id);
   const BodyState& body = shaped(*state_, at);
-  const std::size_t region = body.shape.first_region(at - body.begin);
-  const auto q = [&](std::size_t k) { return body.shape.rotation[k][region]; };
-  return {q(3), q(0), q(1), q(2)};
+  return rotation_of(body.shape, at - body.begin);
+}
+
+VectorView Simulation::rest_positions(BodyId id) const {
+  return view(shaped(*state_, id).shape.reference);
+}
+
+void Simulation::rotations(BodyId id, std::span<Eigen::Quaternionf> rotations) const {
+  const BodyState& body = shaped(*state_, id);
+  if (rotations.size() != body.size())
+    throw ConfigError("rotations", std::to_string(rotations.size()) +
+                                       " are not allowed: one for each of the " +
+                                       std::to_string(body.size()) + " particles of the body");
+  for (std::size_t i = 0; i < rotations.size(); ++i) rotations[i] = rotation_of(body.shape, i);
 }
 
 std::vector<Vec3> Simulation::positions_by_id() const {

@@ -196,5 +196,103 @@ TEST(glb, what_gltf_cannot_say_is_refused_by_name) {
   EXPECT_EQ(folder.entries(), 0u);
 }
 
+/// Three poses, half a second apart.
+std::vector<MeshPose> poses_of(const Mesh& mesh) {
+  std::vector<MeshPose> poses;
+  for (int p = 0; p < 3; ++p) {
+    MeshPose& pose = poses.emplace_back(MeshPose{0.5 * p, mesh.vertices, mesh.normals});
+    for (std::size_t v = 0; v < pose.vertices.size(); ++v) {
+      pose.vertices[v] += static_cast<float>(p) * Vec3(0.5f, static_cast<float>(v), -2);
+      pose.normals[v] = p == 1 ? Vec3(0, 1, 0) : pose.normals[v];
+    }
+  }
+  return poses;
+}
+
+TEST(glb, an_animation_shows_each_pose_at_its_time) {
+  const TemporaryFolder folder;
+  const Mesh mesh = two_tetrahedra();
+  const std::vector<MeshPose> poses = poses_of(mesh);
+  write_animation_glb(folder / "a.glb", mesh, poses, k_bodies);
+  const gltf::Model model = read_glb(folder / "a.glb");
+  ASSERT_EQ(model.animations.size(), 1u);
+  const gltf::Animation& animation = model.animations[0];
+  ASSERT_EQ(animation.samplers.size(), 1u);
+  EXPECT_EQ(animation.samplers[0].interpolation, "LINEAR");
+  const int input = animation.samplers[0].input, output = animation.samplers[0].output;
+  EXPECT_EQ(numbers<float>(model, input), (std::vector<float>{0, 0.5f, 1}));
+  EXPECT_EQ(accessor_of(model, input).minValues, std::vector<double>{0});
+  EXPECT_EQ(accessor_of(model, input).maxValues, std::vector<double>{1});
+  EXPECT_EQ(accessor_of(model, input).type, TINYGLTF_TYPE_SCALAR);
+  const auto weights = numbers<float>(model, output);
+  ASSERT_EQ(weights.size(), 6u) << "a weight for each target at each time";
+
+  ASSERT_EQ(animation.channels.size(), 2u);
+  ASSERT_EQ(model.meshes.size(), 2u);
+  for (std::size_t part = 0; part < 2; ++part) {
+    const gltf::AnimationChannel& channel = animation.channels[part];
+    EXPECT_EQ(channel.target_path, "weights");
+    EXPECT_EQ(channel.sampler, 0);
+    const gltf::Node& node = model.nodes.at(static_cast<std::size_t>(channel.target_node));
+    EXPECT_EQ(node.mesh, static_cast<int>(part));
+    EXPECT_EQ(model.meshes[part].weights, std::vector<double>(2, 0.0));
+    const gltf::Primitive& primitive = model.meshes[part].primitives.at(0);
+    ASSERT_EQ(primitive.targets.size(), 2u);
+    for (const auto& [attribute, column] :
+         {std::pair{"POSITION", &MeshPose::vertices}, {"NORMAL", &MeshPose::normals}}) {
+      const auto base = numbers<Vec3>(model, primitive.attributes.at(attribute));
+      for (std::size_t p = 0; p < 3; ++p) {
+        for (std::size_t v = 0; v < 4; ++v) {
+          Vec3 shown = base.at(v);
+          for (std::size_t t = 0; t < 2; ++t)
+            shown += weights[2 * p + t] * numbers<Vec3>(model, primitive.targets[t].at(attribute)).at(v);
+          EXPECT_LT((shown - (poses[p].*column)[4 * part + v]).norm(), 1e-5f) << attribute << ' ' << p;
+        }
+      }
+    }
+    for (const auto& target : primitive.targets) {
+      const gltf::Accessor& positions = accessor_of(model, target.at("POSITION"));
+      EXPECT_EQ(positions.count, 4u);
+      EXPECT_EQ(positions.minValues.size(), 3u) << "readers need the box of every POSITION";
+      EXPECT_EQ(positions.maxValues.size(), 3u);
+    }
+  }
+}
+
+TEST(glb, an_animation_of_one_pose_stands_still) {
+  const TemporaryFolder folder;
+  const Mesh mesh = two_tetrahedra();
+  std::vector<MeshPose> poses = poses_of(mesh);
+  poses.resize(1);
+  write_animation_glb(folder / "a.glb", mesh, poses, k_bodies);
+  EXPECT_TRUE(read_glb(folder / "a.glb").animations.empty());
+}
+
+TEST(glb, an_animation_needs_poses_of_the_mesh_in_the_order_of_time) {
+  const TemporaryFolder folder;
+  const Mesh mesh = two_tetrahedra();
+  const auto refused = [&](std::vector<MeshPose> poses, const auto& change, const std::string& part) {
+    change(poses);
+    try {
+      write_animation_glb(folder / "a.glb", mesh, poses, k_bodies);
+      ADD_FAILURE() << part;
+    } catch (const ConfigError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  const std::vector<MeshPose> poses = poses_of(mesh);
+  refused(
+      poses, [](auto& all) { all.clear(); }, "poses: there is none");
+  refused(
+      poses, [](auto& all) { all[2].time = 0.5; }, "poses[2].time");
+  refused(
+      poses, [](auto& all) { all[0].time = -1; }, "poses[0].time");
+  refused(
+      poses, [](auto& all) { all[1].vertices.pop_back(); }, "poses[1]: has 7 vertices");
+  refused(
+      poses, [](auto& all) { all[1].normals.clear(); }, "poses[1]: has 8 vertices and 0 normals");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.glb"));
+}
+
 }  // namespace glb_test
 }  // namespace mallow

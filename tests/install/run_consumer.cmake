@@ -1,5 +1,5 @@
 # Installs libraries of one kind, from this build where it has them and else from one that is made here, and builds and
-# runs programs against them as a project of its own. Two are the README's examples.
+# runs programs against them as a project of its own. The README shows its examples as they are.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
@@ -11,7 +11,7 @@ endfunction()
 file(REMOVE_RECURSE ${WORK_DIR}/source ${WORK_DIR}/build ${WORK_DIR}/prefix)
 file(COPY ${SOURCE_DIR}/tests/install/consumer/ DESTINATION ${WORK_DIR}/source)
 file(READ ${SOURCE_DIR}/README.md readme)
-foreach(name hello surface)
+foreach(name hello surface skin)
   file(READ ${SOURCE_DIR}/tools/examples/${name}.cpp program)
   string(FIND "${readme}" "```cpp\n${program}```" place)
   if(place EQUAL -1)

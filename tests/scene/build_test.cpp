@@ -209,5 +209,77 @@ TEST_F(build_scene, runs_and_comes_to_the_same_state_from_the_printed_scene) {
   EXPECT_NE(first.positions_by_id()[0], build(scene, 1).positions_by_id()[0]);
 }
 
+/// Boxes of side 2, of which `fine` has one vertex more.
+constexpr const char* k_box =
+    "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2\n"
+    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+class skin_of_scene : public SceneFixture {
+ protected:
+  skin_of_scene() {
+    write("box.obj", k_box);
+    write("fine.obj", std::string(k_box) + "v 1 1 2.25\n");
+    write("map.obj", k_mapped_cube);
+  }
+  Scene scene(const std::string& body, const std::string& alpha = "0.5") const {
+    return read("[solver]\nsupport_radius = 0.42\n[[material]]\nname = \"a\"\nalpha = " + alpha +
+                "\n[[body]]\nmaterial = \"a\"\n" + body + "\n");
+  }
+  static Mesh skin_of(const Scene& scene) {
+    Simulation simulation = build(scene, 1);
+    std::vector<Skin> all = skins(scene, simulation, 1);
+    EXPECT_EQ(all.size(), 1u);
+    EXPECT_EQ(skinned_bodies(scene), std::vector<bool>{true});
+    return all.at(0).update(simulation);
+  }
+};
+
+TEST_F(skin_of_scene, goes_where_the_bodys_own_mesh_went) {
+  const Mesh mesh = skin_of(
+      scene("skin = \"fine.obj\"\nmesh = { file = \"box.obj\", spacing = 0.2, rotate = [0, 0, 90], size = 1, "
+            "center = [5, 6, 7] }"));
+  ASSERT_EQ(mesh.vertices.size(), 9u);
+  // Scaled by a half about the middle of the box, which the ninth vertex is outside of.
+  EXPECT_LT((mesh.vertices[8] - Vec3(5, 6, 7.625f)).norm(), 1e-5f);
+  EXPECT_LT((mesh.vertices[0] - Vec3(5.5f, 5.5f, 6.5f)).norm(), 1e-5f);
+}
+
+TEST_F(skin_of_scene, lies_as_it_is_where_the_body_is_not_placed) {
+  const Mesh beside = skin_of(scene("skin = \"fine.obj\"\nmesh = { file = \"box.obj\", spacing = 0.2 }"));
+  EXPECT_LT((beside.vertices[8] - Vec3(1, 1, 2.25f)).norm(), 1e-5f);
+  const Mesh on_box = skin_of(scene("skin = \"box.obj\"\nbox = { count = [10, 10, 10], spacing = 0.2 }"));
+  EXPECT_LT((on_box.vertices[6] - Vec3(2, 2, 2)).norm(), 1e-5f);
+}
+
+TEST_F(skin_of_scene, in_the_coordinates_of_a_map_is_moved_with_the_mesh) {
+  const Mesh mesh =
+      skin_of(scene("skin = \"map.obj\"\nmesh = { file = \"map.obj\", spacing = 0.2, center = [0, 0, 1] }"));
+  EXPECT_LT((mesh.vertices[0] - Vec3(-1, -1, 0)).norm(), 1e-5f);
+}
+
+TEST_F(skin_of_scene, names_the_body_whose_skin_cannot_be) {
+  const auto error_of = [&](const Scene& scene) -> std::string {
+    try {
+      Simulation simulation = build(scene, 1);
+      skins(scene, simulation, 1);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const std::string far =
+      error_of(scene("skin = \"box.obj\"\nbox = { count = [9, 9, 9], spacing = 0.2, corner = [9, 0, 0] }"));
+  EXPECT_NE(far.find("body[0].skin: mesh.vertices[0]: "), std::string::npos) << far;
+  const std::string body = "skin = \"box.obj\"\nbox = { count = [9, 9, 9], spacing = 0.2 }";
+  const std::string fluid = error_of(scene(body, "[[0, 0], [1, 1]]"));
+  EXPECT_NE(fluid.find("is not allowed where alpha reaches 1"), std::string::npos) << fluid;
+  const std::vector<std::string> missing = problems(
+      "[solver]\nsupport_radius = 0.42\n[[material]]\nname = \"a\"\n[[body]]\nmaterial = \"a\"\n"
+      "skin = \"none.obj\"\nbox = { count = [9, 9, 9], spacing = 0.2 }\n");
+  ASSERT_EQ(missing.size(), 1u);
+  EXPECT_NE(missing[0].find("body[0].skin: \"none.obj\" is not allowed: there is no file"), std::string::npos)
+      << missing[0];
+}
+
 }  // namespace build_test
 }  // namespace mallow

@@ -57,6 +57,7 @@ material = "jelly \"red\""
 sphere = { radius = 2, spacing = 0.5 }
 [[body]]
 material = "jelly \"red\""
+skin = "tetra.off"
 mesh = { file = "tetra.off", spacing = 0.5, jitter = 0.25, rotate = [90, 0, 0], size = 3, center = [9, 9, 9] }
 [[body]]
 material = "jelly \"red\""
@@ -182,6 +183,8 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_EQ(ball.sampling.count, 30);
   EXPECT_FALSE(ball.sampling.spacing);
   EXPECT_EQ(ball.sampling.jitter, 0.125f);
+  EXPECT_EQ(read.bodies[2].skin, "");
+  EXPECT_EQ(read.bodies[3].skin, "tetra.off");
   const auto& mesh = std::get<MeshSource>(read.bodies[3].source);
   EXPECT_EQ(mesh.file, "tetra.off");
   EXPECT_EQ(mesh.sampling.spacing, 0.5f);

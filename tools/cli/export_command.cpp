@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "program/body_appearances.h"
 #include "program/cached_run.h"
 #include "program/failure.h"
+#include "program/frame_surface.h"
 #include "program/input_files.h"
 #include "program/output_files.h"
 #include "program/run_mark.h"
@@ -32,6 +34,7 @@ namespace fs = std::filesystem;
 struct ExportOptions : program::CachedRunOptions {
   std::vector<std::string> surface;    ///< formats
   std::vector<std::string> particles;  ///< formats
+  std::vector<std::string> skins;      ///< formats
   std::string up = "z";
   std::string out;
 };
@@ -111,8 +114,8 @@ class Series {
 };
 
 void check_formats(const ExportOptions& options) {
-  if (options.surface.empty() && options.particles.empty()) {
-    throw ConfigError("--surface, --particles", "at least one is needed, with the formats to write");
+  if (options.surface.empty() && options.particles.empty() && options.skins.empty()) {
+    throw ConfigError("--surface, --particles, --skins", "at least one is needed, with the formats to write");
   }
 }
 
@@ -134,6 +137,7 @@ void refuse_inputs(const ExportOptions& options, const program::CachedRun& run, 
   };
   check("surface", options.surface);
   check("particles", options.particles);
+  if (!options.skins.empty()) inputs.refuse(out / "skins.glb", "--out");
 }
 
 /// Two exports into one folder would mix their frames.
@@ -203,12 +207,45 @@ class FrameWriter {
   float voxel_size_;
 };
 
+/// The skins of all frames, which become one animation that plays as the film does.
+class SkinAnimation {
+ public:
+  /// Throws IoError where no body has a skin.
+  explicit SkinAnimation(const program::CachedRun& run) : run_(run), skinned_(skinned_bodies(run.scene)) {
+    if (std::find(skinned_.begin(), skinned_.end(), true) == skinned_.end())
+      throw IoError({run.cache.folder().string(), 0, 0, "--skins", "no body of the run's scene has a skin"});
+  }
+  /// mesh: as the cache has it.
+  void add(const Mesh& mesh, int number) {
+    Mesh part = program::part_of(mesh, skinned_);
+    if (poses_.empty()) first_ = part;
+    if (part.triangles != first_.triangles || part.normals.size() != first_.vertices.size())
+      throw IoError({run_.cache.surface_file(number).string(), 0, 0, "--skins",
+                     "has other skins than the frames before it; run the scene again"});
+    poses_.push_back({static_cast<double>(number) / run_.scene.render.frames_per_second,
+                      std::move(part.vertices), std::move(part.normals)});
+  }
+  void write(const fs::path& file, std::span<const MeshBody> bodies) const {
+    if (poses_.empty()) return;
+    write_animation_glb(file, first_, poses_, bodies);
+    std::printf("skins %zu\n", poses_.size());
+  }
+
+ private:
+  const program::CachedRun& run_;
+  std::vector<bool> skinned_;
+  Mesh first_;
+  std::vector<MeshPose> poses_;
+};
+
 void export_frames(const ExportOptions& options) {
   check_formats(options);
   const program::CachedRun run = program::open_cached_run(options, "");
   print_warning(run.cache.lock_warning());
   const program::Cache& cache = run.cache;
-  if (!options.surface.empty()) require_surfaces(cache);
+  if (!options.surface.empty() || !options.skins.empty()) require_surfaces(cache);
+  std::optional<SkinAnimation> skins;
+  if (!options.skins.empty()) skins.emplace(run);
   const fs::path out = options.out.empty() ? cache.export_folder() : fs::path(options.out);
   refuse_inputs(options, run, out);
   const program::RunLock lock = lock_folder(out);
@@ -224,8 +261,10 @@ void export_frames(const ExportOptions& options) {
           writer.write_particles(frame, format, file);
         });
       }
-      if (options.surface.empty() || !fs::exists(cache.surface_file(number))) return;
+      if ((options.surface.empty() && !skins) || !fs::exists(cache.surface_file(number))) return;
       const Mesh mesh = read_mesh(cache.surface_file(number));
+      if (skins) skins->add(mesh, number);
+      if (options.surface.empty()) return;
       surfaces.add(number, frame.time, [&](const std::string& format, const fs::path& file) {
         if (format == "vdb")
           writer.write_level_set(frame, file);
@@ -235,6 +274,7 @@ void export_frames(const ExportOptions& options) {
     });
     surfaces.finish(writer.bodies(), writer.usd());
     particles.finish(writer.bodies(), writer.usd());
+    if (skins) skins->write(out / "skins.glb", writer.bodies());
   } catch (const std::exception& error) {
     throw program::RunFailure(error.what());
   }
@@ -260,6 +300,12 @@ void add_export_command(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"vdb", "vtp", "csv"}));
+  command
+      ->add_option("--skins", options->skins,
+                   "Formats of the skins of all frames as one animation: glb (glTF; Blender, web), skins.glb")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"glb"}));
   command
       ->add_option(
           "--up", options->up,

@@ -59,6 +59,7 @@ struct Run {
   program::RunPlan plan;
   program::RunReport report;
   std::optional<Simulation> simulation;
+  std::vector<Skin> skins;  ///< that are drawn
   std::optional<program::Cache> cache;
 };
 
@@ -123,7 +124,7 @@ void describe(const Scene& scene, int threads, Simulation& simulation, program::
 }
 
 Run begin(const RunOptions& options, int threads) {
-  Run run{.scene = scene_of(options), .plan = {}, .report = {}, .simulation = {}, .cache = {}};
+  Run run{.scene = scene_of(options), .plan = {}, .report = {}, .simulation = {}, .skins = {}, .cache = {}};
   refuse_inputs(options, run.scene);
   if (!options.out.empty()) program::Cache::check_names(options.out, run.scene);
   run.plan = {.frames = run.scene.run.frames,
@@ -140,6 +141,7 @@ Run begin(const RunOptions& options, int threads) {
     std::vector<std::string> notes;
     run.simulation.emplace(build(run.scene, threads, &notes));
     print_notes(notes);
+    if (run.plan.surface && !options.out.empty()) run.skins = skins(run.scene, *run.simulation, threads);
     describe(run.scene, threads, *run.simulation, run.report);
   }
   if (!options.out.empty()) {
@@ -198,8 +200,8 @@ Run resume(const RunOptions& options, int threads) {
   take_changes(cache.moved_here(scene_now), own, saved.scene);
   if (options.frames) saved.scene.run.frames = *options.frames;
 
-  Run run{std::move(saved.scene), saved.plan, std::move(saved.report), std::move(saved.simulation),
-          std::move(cache)};
+  Run run{std::move(saved.scene), saved.plan,      std::move(saved.report), std::move(saved.simulation),
+          std::move(saved.skins), std::move(cache)};
   if (options.frames) run.plan.steps.reset();
   if (options.steps) run.plan.steps = options.steps;
   run.plan.frames = run.scene.run.frames;
@@ -235,7 +237,7 @@ void simulate(Run& run, const program::Cache* cache) {
   else
     callbacks.after_frame = [&](const program::RunReport& report) { progress.show(report.frames); };
   const program::RunEnd end =
-      program::run_frames(run.scene, *run.simulation, run.plan, cache, run.report, callbacks);
+      program::run_frames(run.scene, *run.simulation, run.skins, run.plan, cache, run.report, callbacks);
   if (end == program::RunEnd::complete) return;
   const std::string said = "interrupted after " + std::to_string(run.report.steps) + " steps";
   throw program::RunFailure(cache ? said + "; to go on: mallow run --resume " +

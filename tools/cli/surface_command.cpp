@@ -1,6 +1,7 @@
 #include "cli/surface_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "program/background_writer.h"
 #include "program/cached_run.h"
 #include "program/failure.h"
+#include "program/frame_surface.h"
 
 namespace mallow::cli {
 namespace {
@@ -27,10 +29,23 @@ void draw_surfaces(const program::CachedRunOptions& options) {
     std::filesystem::create_directories(run.cache.surface_file(0).parent_path());
     Surfacer surfacer(run.scene.surface, run.threads);
     program::BackgroundWriter files;
+    // Skins follow what only the run knew: they stay as they were drawn.
+    const std::vector<bool> skinned = skinned_bodies(run.scene);
+    const auto draw = [&](const ParticleFrame& frame, int number) {
+      SurfaceParticles particles = surface_particles(frame, run.spacings);
+      const std::filesystem::path earlier = run.cache.surface_file(number);
+      const bool any = std::ranges::find(skinned, true) != skinned.end();
+      if (!any || !std::filesystem::exists(earlier)) return surfacer.draw(particles);
+      std::erase_if(particles.bodies, [&](const SurfaceBody& body) { return skinned[body.body]; });
+      Mesh mesh;
+      if (!particles.bodies.empty()) mesh = surfacer.draw(particles);
+      program::append(program::part_of(read_mesh(earlier), skinned), mesh);
+      return mesh;
+    };
     count = for_each_frame(run.cache.particle_frames(), "surfacing", [&](int number) {
       const program::StageTimer timer(seconds, program::Stage::surface);
       const ParticleFrame frame = read_particles(run.cache.particles_file(number));
-      const auto mesh = std::make_shared<const Mesh>(surfacer.draw(surface_particles(frame, run.spacings)));
+      const auto mesh = std::make_shared<const Mesh>(draw(frame, number));
       files.add([file = run.cache.surface_file(number), mesh] { write_mesh_ply(file, *mesh); });
     });
     {

@@ -243,6 +243,7 @@ void Cache::check_names(const fs::path& folder, const Scene& scene) {
   for (const SceneBody& body : moved.bodies) {
     if (const auto* mesh = std::get_if<MeshSource>(&body.source)) check(mesh->file);
     if (const auto* points = std::get_if<PointsSource>(&body.source)) check(points->file);
+    check(body.skin);
   }
 }
 
@@ -272,6 +273,7 @@ Scene Cache::moved_here(Scene scene) const {
   for (SceneBody& body : scene.bodies) {
     if (auto* mesh = std::get_if<MeshSource>(&body.source)) mesh->file = moved(mesh->file);
     if (auto* points = std::get_if<PointsSource>(&body.source)) points->file = moved(points->file);
+    if (!body.skin.empty()) body.skin = moved(body.skin);
   }
   scene.file = scene_file();
   return scene;

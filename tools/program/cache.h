@@ -33,6 +33,7 @@ class Cache {
                                                 "summary.html",
                                                 "film.mp4",
                                                 "export/surface.pvd",
+                                                "export/skins.glb",
                                                 "export/surface.usda",
                                                 "export/particles.pvd",
                                                 "export/surface.manifest.usda",

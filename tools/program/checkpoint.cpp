@@ -15,6 +15,10 @@ namespace {
 constexpr const char* k_scene = "run.scene";
 constexpr const char* k_plan = "run.plan";
 constexpr const char* k_progress = "run.progress";
+/// Skins are counted from 0.
+std::string skin_chunk(std::size_t number) {
+  return "run.skin." + std::to_string(number);
+}
 
 const std::string& require_chunk(const SavedState& state, const char* name) {
   const std::string* bytes = state.find(name);
@@ -47,6 +51,13 @@ RunPlan read_plan(const std::string& text) {
   return plan;
 }
 
+std::vector<Skin> restore_skins(const SavedState& state, int threads) {
+  std::vector<Skin> skins;
+  while (const std::string* bytes = state.find(skin_chunk(skins.size())))
+    skins.push_back(Skin::restore(*bytes, threads));
+  return skins;
+}
+
 CheckpointedRun load(const fs::path& file, const Cache& cache, int threads) try {
   const SavedState state = read_checkpoint(file);
   RunReport report;
@@ -55,6 +66,7 @@ CheckpointedRun load(const fs::path& file, const Cache& cache, int threads) try 
           read_plan(require_chunk(state, k_plan)),
           std::move(report),
           Simulation::restore(state, threads),
+          restore_skins(state, threads),
           file,
           ""};
 } catch (const ConfigError& error) {
@@ -84,11 +96,13 @@ bool Checkpoints::due_after_frame(int frame) const {
   return interval_.frames > 0 && frame % interval_.frames == 0;
 }
 
-SavedState Checkpoints::take(const Simulation& simulation, const RunReport& report) {
+SavedState Checkpoints::take(const Simulation& simulation, std::span<const Skin> skins,
+                             const RunReport& report) {
   SavedState state = simulation.save();
   state.chunks.push_back({k_scene, scene_});
   state.chunks.push_back({k_plan, plan_});
   state.chunks.push_back({k_progress, dumped(report.progress())});
+  for (std::size_t k = 0; k < skins.size(); ++k) state.chunks.push_back({skin_chunk(k), skins[k].save()});
   taken_ = Clock::now();
   return state;
 }

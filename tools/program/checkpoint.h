@@ -2,11 +2,14 @@
 
 #include <chrono>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "mallow/saved_state.h"
 #include "mallow/scene.h"
 #include "mallow/simulation.h"
+#include "mallow/skin.h"
 #include "program/cache.h"
 #include "program/run_plan.h"
 #include "program/run_report.h"
@@ -20,7 +23,7 @@ class Checkpoints {
 
   bool due_after_step() const;
   bool due_after_frame(int frame) const;
-  SavedState take(const Simulation& simulation, const RunReport& report);
+  SavedState take(const Simulation& simulation, std::span<const Skin> skins, const RunReport& report);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -37,6 +40,7 @@ struct CheckpointedRun {
   RunPlan plan;  ///< without frames and threads, which it does not keep
   RunReport report;
   Simulation simulation;
+  std::vector<Skin> skins;
   std::filesystem::path file;  ///< the checkpoint
   std::string passed_over;     ///< why it is not the newest one; empty where it is
 };

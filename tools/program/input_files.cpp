@@ -25,6 +25,7 @@ InputFiles::InputFiles(const Scene& scene) {
   for (const SceneBody& body : scene.bodies) {
     if (const auto* mesh = std::get_if<MeshSource>(&body.source)) add(folder / mesh->file);
     if (const auto* points = std::get_if<PointsSource>(&body.source)) add(folder / points->file);
+    if (!body.skin.empty()) add(folder / body.skin);
   }
 }
 

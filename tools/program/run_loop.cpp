@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "mallow/files.h"
-#include "mallow/surface.h"
 #include "program/background_writer.h"
 #include "program/checkpoint.h"
 #include "program/failure.h"
+#include "program/frame_surface.h"
 #include "program/stills.h"
 
 namespace mallow::program {
@@ -20,12 +21,16 @@ namespace {
 /// files are written by another thread while it goes on.
 class FrameWriter {
  public:
-  FrameWriter(const Scene& scene, const RunPlan& plan, const Cache& cache, const ParticleFrame& first,
-              RunReport& report)
-      : cache_(cache), report_(report), checkpoints_(scene, plan, cache), whole_frames_(report.frames) {
+  FrameWriter(const Scene& scene, std::span<Skin> skins, const RunPlan& plan, const Cache& cache,
+              const ParticleFrame& first, RunReport& report)
+      : cache_(cache),
+        report_(report),
+        skins_(skins),
+        checkpoints_(scene, plan, cache),
+        whole_frames_(report.frames) {
     if (plan.surface) {
       std::filesystem::create_directories(cache.surface_file(0).parent_path());
-      surfacer_.emplace(scene.surface, plan.threads);
+      surface_.emplace(scene.surface, skins, plan.threads);
     }
     if (plan.images) {
       std::filesystem::create_directories(cache.images_folder());
@@ -53,13 +58,13 @@ class FrameWriter {
       const StageTimer timer(report_.stage_seconds, Stage::particles);
       files_.add([this, number, frame] {
         write_particles(cache_.particles_file(number), *frame);
-        if (!surfacer_) whole_frames_ = number;
+        if (!surface_) whole_frames_ = number;
       });
     }
     auto mesh = std::make_shared<const Mesh>();
-    if (surfacer_) {
+    if (surface_) {
       const StageTimer timer(report_.stage_seconds, Stage::surface);
-      mesh = std::make_shared<const Mesh>(surfacer_->draw(surface_particles(simulation)));
+      mesh = std::make_shared<const Mesh>(surface_->draw(simulation));
       files_.add([this, number, mesh] {
         write_mesh_ply(cache_.surface_file(number), *mesh);
         whole_frames_ = number;
@@ -73,7 +78,7 @@ class FrameWriter {
 
   /// A checkpoint behind the files of all frames so far, so that those need not be made again.
   void write_checkpoint(const Simulation& simulation) {
-    const auto state = std::make_shared<const SavedState>(checkpoints_.take(simulation, report_));
+    const auto state = std::make_shared<const SavedState>(checkpoints_.take(simulation, skins_, report_));
     files_.add([this, state] { mallow::write_checkpoint(cache_.checkpoint_file(), *state); });
   }
   void after_step(const Simulation& simulation) {
@@ -85,15 +90,16 @@ class FrameWriter {
 
   /// Waits until all files are there.
   void finish() {
-    const StageTimer timer(report_.stage_seconds, surfacer_ ? Stage::surface : Stage::particles);
+    const StageTimer timer(report_.stage_seconds, surface_ ? Stage::surface : Stage::particles);
     files_.finish();
   }
 
  private:
   const Cache& cache_;
   RunReport& report_;
+  std::span<Skin> skins_;
   Checkpoints checkpoints_;
-  std::optional<Surfacer> surfacer_;
+  std::optional<FrameSurface> surface_;
   std::optional<Stills> stills_;
   int whole_frames_;        ///< the last frame of which all files are there; read when none is being written
   BackgroundWriter files_;  // last: its thread uses the others
@@ -116,12 +122,12 @@ void write_last_checkpoint(const Simulation& simulation, FrameWriter& writer, co
 
 }  // namespace
 
-RunEnd run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan, const Cache* cache,
-                  RunReport& report, const RunCallbacks& callbacks) {
+RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> skins, const RunPlan& plan,
+                  const Cache* cache, RunReport& report, const RunCallbacks& callbacks) {
   std::optional<FrameWriter> writer;
   if (cache) {
     const auto first = first_frame(simulation, *cache);
-    writer.emplace(scene, plan, *cache, *first, report);
+    writer.emplace(scene, skins, plan, *cache, *first, report);
     if (report.steps == 0) writer->write(0, simulation, first);
   }
 

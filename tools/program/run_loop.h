@@ -1,9 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <span>
 
 #include "mallow/scene.h"
 #include "mallow/simulation.h"
+#include "mallow/skin.h"
 #include "program/cache.h"
 #include "program/run_plan.h"
 #include "program/run_report.h"
@@ -20,11 +22,11 @@ struct RunCallbacks {
 
 enum class RunEnd { complete, stopped };
 
-/// Runs a scene to its end, from where `simulation` and `report` are, and writes its frames and checkpoints
-/// into `cache`, where there is one (else null). `report` is kept up to date: it is right also when this
-/// throws. A run that is stopped ends with a checkpoint, from which it can be resumed. Throws RunFailure
-/// where that cannot be written, and what steps and files throw.
-RunEnd run_frames(const Scene& scene, Simulation& simulation, const RunPlan& plan, const Cache* cache,
-                  RunReport& report, const RunCallbacks& callbacks = {});
+/// Runs a scene to its end, from where `simulation`, its skins and `report` are, and writes its frames and
+/// checkpoints into `cache`, where there is one (else null). `report` is kept up to date: it is right also
+/// when this throws. A run that is stopped ends with a checkpoint, from which it can be resumed. Throws
+/// RunFailure where that cannot be written, and what steps and files throw.
+RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> skins, const RunPlan& plan,
+                  const Cache* cache, RunReport& report, const RunCallbacks& callbacks = {});
 
 }  // namespace mallow::program

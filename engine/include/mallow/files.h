@@ -128,6 +128,20 @@ MALLOW_EXPORT void write_mtl(const std::filesystem::path& file, std::span<const 
 MALLOW_EXPORT void write_mesh_glb(const std::filesystem::path& file, const Mesh& mesh,
                                   std::span<const MeshBody> bodies);
 
+/// Where the vertices of a mesh are at a time.
+struct MeshPose {
+  double time = 0;             ///< [s]
+  std::vector<Vec3> vertices;  ///< [m]
+  std::vector<Vec3> normals;   ///< one for each vertex
+};
+/// The same with one animation, "motion", of a mesh that keeps its vertices: a morph target for each pose
+/// after the first, with normals, and weights that go from one to the next in a straight line. mesh: gives
+/// triangles and material ids, its own places are passed over. poses: at least one, at ascending times >= 0,
+/// with as many vertices and normals as the mesh. A pose takes 24 bytes a vertex. Throws ConfigError where
+/// poses are not as said, and as write_mesh_glb() does.
+MALLOW_EXPORT void write_animation_glb(const std::filesystem::path& file, const Mesh& mesh,
+                                       std::span<const MeshPose> poses, std::span<const MeshBody> bodies);
+
 /// How meshes stand in the space and time of USD, where a time code is a frame.
 struct UsdOptions {
   UpAxis up = UpAxis::z;

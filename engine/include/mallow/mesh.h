@@ -2,8 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "mallow/body.h"
 #include "mallow/export.h"
 #include "mallow/vec3.h"
 
@@ -20,6 +23,11 @@ struct Mesh {
 
 /// The smallest box that holds all vertices; {0, 0} for an empty mesh.
 MALLOW_EXPORT Aabb bounds(const Mesh& mesh);
+
+/// The mesh where place() puts a shape with the bounds `whole`, its own where that is left out: what is drawn
+/// for a body goes where the body went. Velocities are left as they are. Throws ConfigError where a value is
+/// out of range.
+MALLOW_EXPORT Mesh place(Mesh mesh, const Placement& placement, const std::optional<Aabb>& whole = {});
 
 /// The same surface with one vertex for all corners at the same place, where files give each face corners of
 /// its own; vertices stand in the order in which they first appear. Triangles that have one place twice are

@@ -14,6 +14,7 @@
 #include "mallow/material.h"
 #include "mallow/quality.h"
 #include "mallow/simulation.h"
+#include "mallow/skin.h"
 #include "mallow/solver_config.h"
 #include "mallow/surface_config.h"
 
@@ -61,6 +62,10 @@ struct SceneBody {
   bool merges = false;     ///< Body::merges
   BodySource source;
   Vec3 velocity{0, 0, 0};
+  /// A mesh that follows the body and is drawn in place of a surface around its particles, relative to the
+  /// scene; empty: none. It is placed as the body's own mesh or implicit shape is, with the same turn, scale
+  /// and shift, and lies as it is where the body has neither.
+  std::filesystem::path skin = {};
   int line = 0;  ///< of the scene file; 0 where it did not come from one
 };
 
@@ -143,6 +148,12 @@ MALLOW_EXPORT Body sample(const SceneBody& body, const std::filesystem::path& sc
 /// all bodies, each with the body's path in front. Throws ConfigError with all problems found.
 MALLOW_EXPORT Simulation build(const Scene& scene, int threads = 0,
                                std::vector<std::string>* notes = nullptr);
+/// The skins of a scene's bodies, in their order. simulation: what build() made, before its first step.
+/// `threads` as in SolverConfig. Throws ConfigError with all problems found: a mesh that is not near its
+/// body, an alpha that reaches 1, a file that cannot be read.
+MALLOW_EXPORT std::vector<Skin> skins(const Scene& scene, Simulation& simulation, int threads = 0);
+/// Whether each body that build() makes has a skin, in order of BodyId.
+MALLOW_EXPORT std::vector<bool> skinned_bodies(const Scene& scene);
 /// Simulated time of a frame [s]: what the scene says, or Δt0. info: of its simulation.
 MALLOW_EXPORT double frame_time(const Scene& scene, const SimulationInfo& info);
 /// What can be run, but is hardly meant, a sentence each: that of the simulation, and where the frames cover

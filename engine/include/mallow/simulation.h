@@ -292,6 +292,12 @@ class MALLOW_EXPORT Simulation {
   /// R of the region that a particle owns, as the last step left it; with a region_stride above 1, of the
   /// first region that it is in. Throws as rest_position() does. [TK eq. 7]
   Eigen::Quaternionf rotation(ParticleId id) const;
+  /// rest_position() of all particles of a body: entry k is of row rows(body).begin + k. Throws ConfigError
+  /// where there is no such body, and where it keeps no reference shape.
+  VectorView rest_positions(BodyId body) const;
+  /// rotation() of all particles of a body, in the same order; one entry for each, or ConfigError. Throws as
+  /// rest_positions() does.
+  void rotations(BodyId body, std::span<Eigen::Quaternionf> rotations) const;
 
   /// Copies in the order of slots, whatever that of rows is: entry i is particle i where none was removed.
   std::vector<Vec3> positions_by_id() const;
