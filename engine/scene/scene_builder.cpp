@@ -21,10 +21,11 @@ struct Groups {
   };
   std::vector<Group> list;
   std::vector<std::size_t> of_body;
+  std::vector<std::size_t> of_emitter;  ///< materials
 };
 
-/// Throws ConfigError where a body names a material that is not there, or a group changes its material. What
-/// read_scene() gives has neither; a scene that was put together in code may.
+/// Throws ConfigError where a body or an emitter names a material that is not there, or a group changes its
+/// material. What read_scene() gives has neither; a scene that was put together in code may.
 Groups groups_of(const Scene& scene) {
   std::map<std::string, std::size_t> material_index;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) material_index.emplace(scene.materials[i].name, i);
@@ -50,6 +51,15 @@ Groups groups_of(const Scene& scene) {
                    "'" + body.material + "' is not allowed: group '" + body.group + "' is of '" +
                        scene.materials[groups.list[group].material].name + "'");
     groups.of_body.push_back(group);
+  }
+  for (std::size_t i = 0; i < scene.emitters.size(); ++i) {
+    const SceneEmitter& emitter = scene.emitters[i];
+    const auto material = material_index.find(emitter.material);
+    if (material == material_index.end())
+      problems.add({.line = emitter.line}, element_path("emitter", i) + ".material",
+                   "unknown material '" + emitter.material + "'");
+    else
+      groups.of_emitter.push_back(material->second);
   }
   problems.finish();
   return groups;
@@ -173,12 +183,14 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
   Problems problems(scene.file.string());
 
   std::map<std::size_t, MaterialId> materials;
-  for (const auto& group : groups.list) {
-    const SceneMaterial& material = scene.materials[group.material];
-    if (materials.contains(group.material)) continue;
+  const auto add_material = [&](std::size_t number) {
+    const SceneMaterial& material = scene.materials[number];
+    if (materials.contains(number)) return;
     collect(problems, 0, "material." + material.name,
-            [&] { materials[group.material] = simulation.add_material(material.material, material.name); });
-  }
+            [&] { materials[number] = simulation.add_material(material.material, material.name); });
+  };
+  for (const auto& group : groups.list) add_material(group.material);
+  for (const std::size_t material : groups.of_emitter) add_material(material);
   problems.finish();
   std::vector<std::optional<BodyId>> ids(groups.list.size());
   std::size_t particles = 0;
@@ -209,6 +221,14 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
   for (std::size_t i = 0; i < scene.pins.size(); ++i)
     collect(problems, scene.pins[i].line, element_path("pin", i),
             [&] { simulation.pin(scene.pins[i].box, scene.pins[i].velocity); });
+  for (std::size_t i = 0; i < scene.emitters.size(); ++i)
+    collect(problems, scene.emitters[i].line, element_path("emitter", i), [&] {
+      simulation.add_emitter(scene.emitters[i], materials.at(groups.of_emitter[i]),
+                             element_path("emitter", i));
+    });
+  for (std::size_t i = 0; i < scene.sinks.size(); ++i)
+    collect(problems, scene.sinks[i].line, element_path("sink", i),
+            [&] { simulation.add_sink(scene.sinks[i].box, scene.sinks[i].outside); });
   collect(problems, 0, {}, [&] { simulation.prepare(); });
   problems.finish();
   return simulation;
@@ -245,7 +265,9 @@ std::vector<bool> skinned_bodies(const Scene& scene) {
 
 std::vector<std::size_t> body_materials(const Scene& scene) {
   std::vector<std::size_t> materials;
-  for (const auto& group : scene_file::groups_of(scene).list) materials.push_back(group.material);
+  const scene_file::Groups groups = scene_file::groups_of(scene);
+  for (const auto& group : groups.list) materials.push_back(group.material);
+  materials.insert(materials.end(), groups.of_emitter.begin(), groups.of_emitter.end());
   return materials;
 }
 

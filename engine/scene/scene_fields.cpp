@@ -81,6 +81,20 @@ BoundFields fields(ScenePin& pin) {
            "of the particles that are in the box at the start, for the whole run"}};
 }
 
+BoundFields fields(SceneEmitter& emitter) {
+  const BoundFields place{
+      {"material", &emitter.material, k_any, "", "name of its [[material]]", k_required},
+      {"translate", &emitter.translate, k_finite, "m", "where the nozzle is at the start"},
+      {"rotate", &emitter.rotate, k_finite, "degrees",
+       "turn of the nozzle about x, then y, then z; unturned the strand leaves it upwards, along z"},
+  };
+  return joined(place, fields(static_cast<Emitter&>(emitter)));
+}
+
+BoundFields fields(SceneSink& sink) {
+  return {{"outside", &sink.outside, k_any, "", "it takes what leaves the box, not what comes into it"}};
+}
+
 BoundFields fields(Aabb& box) {
   return {
       {"min", &box.min, k_finite, "m", "lowest corner", k_required},

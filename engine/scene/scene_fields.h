@@ -21,6 +21,8 @@ BoundFields fields(ImplicitSource& source);
 BoundFields fields(SceneCollider& collider);  ///< without its shape
 BoundFields fields(Primitive& primitive);
 BoundFields fields(ScenePin& pin);  ///< without its box
+BoundFields fields(SceneEmitter& emitter);
+BoundFields fields(SceneSink& sink);  ///< without its box
 BoundFields fields(Aabb& box);
 
 /// One of the keys of which a table must hold exactly one: what a body or a collider is.

@@ -79,6 +79,9 @@ std::string print_scene(const Scene& scene) {
     text += "\n[[collider]]\n" + shape_line(collider) + lines_of(fields(collider));
   for (ScenePin& pin : copy.pins)
     text += "\n[[pin]]\nbox = " + inline_table(fields(pin.box)) + '\n' + lines_of(fields(pin));
+  for (SceneEmitter& emitter : copy.emitters) text += "\n[[emitter]]\n" + lines_of(fields(emitter));
+  for (SceneSink& sink : copy.sinks)
+    text += "\n[[sink]]\nbox = " + inline_table(fields(sink.box)) + '\n' + lines_of(fields(sink));
   text += "\n[surface]\n" + lines_of(fields(copy.surface));
   text += "\n[run]\n" + lines_of(fields(copy.run));
   return text + "\n[render]\n" + lines_of(fields(copy.render));
@@ -104,6 +107,10 @@ std::string describe_scene_keys() {
       text += key_lines(prefix + kind.key, fields(primitive));
     }
   text += key_lines("pin[]", fields(pin)) + key_lines("pin[].box", fields(pin.box));
+  SceneEmitter emitter;
+  SceneSink sink;
+  text += key_lines("emitter[]", fields(emitter)) + key_lines("sink[]", fields(sink)) +
+          key_lines("sink[].box", fields(sink.box));
   return text + key_lines("surface", fields(scene.surface)) + key_lines("run", fields(scene.run)) +
          key_lines("render", fields(scene.render));
 }

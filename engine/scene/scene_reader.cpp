@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "colliders/pose.h"
+#include "config/validation.h"
 #include "scene/document.h"
 #include "scene/field_reader.h"
 #include "scene/nearest_name.h"
@@ -35,15 +36,17 @@ class SceneReader {
   }
 
   Scene read() {
-    const std::vector<std::string> sections{"solver", "material", "body", "collider",
-                                            "pin",    "surface",  "run",  "render"};
+    const std::vector<std::string> sections{"solver",  "material", "body",    "collider", "pin",
+                                            "emitter", "sink",     "surface", "run",      "render"};
     read_fields(root_, "", {}, sections, problems_);
     read_section("solver", fields(scene_.solver));
     check_update_times();
     read_list("material", 1, &SceneReader::read_material);
-    read_list("body", 1, &SceneReader::read_body);
+    read_list("body", find(root_, "emitter") ? 0 : 1, &SceneReader::read_body);
     read_list("collider", 0, &SceneReader::read_collider);
     read_list("pin", 0, &SceneReader::read_pin);
+    read_list("emitter", 0, &SceneReader::read_emitter);
+    read_list("sink", 0, &SceneReader::read_sink);
     read_section("surface", fields(scene_.surface));
     read_section("run", fields(scene_.run));
     read_section("render", fields(scene_.render));
@@ -111,12 +114,38 @@ class SceneReader {
     ScenePin& pin = scene_.pins.emplace_back();
     pin.line = node.place.line;
     read_fields(node, path, fields(pin), std::vector<std::string>{"box"}, problems_);
+    read_box(node, path, pin.box);
+  }
+
+  void read_box(const Node& node, const std::string& path, Aabb& box) {
     if (!node.get_if<Table>()) return;
     const std::string box_path = join_path(path, "box");
-    const Node* box = find(node, "box");
-    if (!box) return problems_.add(node.place, box_path, "is missing: { min = [...], max = [...] }");
-    if (read_whole(*box, box_path, fields(pin.box), {}, problems_))
-      check_box(pin.box, *box, box_path, problems_);
+    const Node* given = find(node, "box");
+    if (!given) return problems_.add(node.place, box_path, "is missing: { min = [...], max = [...] }");
+    if (read_whole(*given, box_path, fields(box), {}, problems_)) check_box(box, *given, box_path, problems_);
+  }
+
+  void read_emitter(const Node& node, const std::string& path) {
+    SceneEmitter& emitter = scene_.emitters.emplace_back();
+    emitter.line = node.place.line;
+    if (!read_whole(node, path, fields(emitter), {}, problems_)) return;
+    emitter.pose = pose_of(emitter.translate, emitter.rotate);
+    Checks checks;
+    check(emitter, checks);
+    try {
+      checks.finish();
+    } catch (const ConfigError& error) {
+      for (const Problem& problem : error.problems())
+        problems_.add(node.place, path + problem.field.substr(std::string("emitter").size()),
+                      problem.message);
+    }
+  }
+
+  void read_sink(const Node& node, const std::string& path) {
+    SceneSink& sink = scene_.sinks.emplace_back();
+    sink.line = node.place.line;
+    read_fields(node, path, fields(sink), std::vector<std::string>{"box"}, problems_);
+    read_box(node, path, sink.box);
   }
 
   /// Names are unique, bodies use names that there are, and every material is used.
@@ -145,7 +174,16 @@ class SceneReader {
         problems_.add(place_of("body", i, "material"), element_path("body", i) + ".material",
                       "unknown material '" + name + "'" + (problems_.full() ? "" : suggestion(name, known)));
     }
-    if (scene_.bodies.empty()) return;
+    for (std::size_t i = 0; i < scene_.emitters.size(); ++i) {
+      const std::string& name = scene_.emitters[i].material;
+      if (name.empty()) continue;
+      if (const auto material = index_of.find(name); material != index_of.end())
+        used[material->second] = true;
+      else
+        problems_.add(place_of("emitter", i, "material"), element_path("emitter", i) + ".material",
+                      "unknown material '" + name + "'" + (problems_.full() ? "" : suggestion(name, known)));
+    }
+    if (scene_.bodies.empty() && scene_.emitters.empty()) return;
     for (const auto& [name, i] : index_of)
       if (!used[i])
         problems_.add(place_of("material", i, "name"), element_path("material", i),

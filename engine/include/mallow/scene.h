@@ -77,6 +77,22 @@ struct SceneCollider : Collider {
   bool visible = true;      ///< in pictures; it acts on particles in any case
 };
 
+/// An emitter of a scene. `material` is the name of one of its materials.
+struct SceneEmitter : Emitter {
+  std::string material = {};
+  /// What scene files make of the pose: read_scene() sets both, print_scene() prints these.
+  Vec3 translate{0, 0, 0};  ///< [m]
+  Vec3 rotate{0, 0, 0};     ///< about x, then y, then z [degrees]
+  int line = 0;             ///< of the scene file; 0 where it did not come from one
+};
+
+/// A sink of a scene: particles that come into the box, or out of it, are removed.
+struct SceneSink {
+  Aabb box;
+  bool outside = false;
+  int line = 0;  ///< of the scene file; 0 where it did not come from one
+};
+
 /// A pin of a scene: what is in the box when the scene begins moves with `velocity` [m/s].
 struct ScenePin {
   Aabb box;
@@ -111,6 +127,8 @@ struct Scene {
   std::vector<SceneBody> bodies = {};
   std::vector<SceneCollider> colliders = {};
   std::vector<ScenePin> pins = {};
+  std::vector<SceneEmitter> emitters = {};
+  std::vector<SceneSink> sinks = {};
   SurfaceConfig surface;
   RunConfig run;
   RenderConfig render;
@@ -159,7 +177,7 @@ MALLOW_EXPORT double frame_time(const Scene& scene, const SimulationInfo& info);
 /// What can be run, but is hardly meant, a sentence each: that of the simulation, and where the frames cover
 /// almost no time.
 MALLOW_EXPORT std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info);
-/// The material of each body that build() makes, in order of BodyId.
+/// The material of each body that build() makes, in order of BodyId: the strands of emitters come last.
 MALLOW_EXPORT std::vector<std::size_t> body_materials(const Scene& scene);
 
 }  // namespace mallow
