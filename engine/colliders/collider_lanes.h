@@ -23,7 +23,7 @@ struct BlockBounds {
 
 /// A shape as its lanes read it; what the numbers mean is said there. Lengths in m.
 struct ShapeNumbers {
-  float at[8];
+  float at[12];
   bool inside;  ///< particles are kept in
 };
 

@@ -246,6 +246,35 @@ void resolve(const ShapeNumbers& numbers, const ContactSurface& surface, const C
     resolve_in(shape, Upright{surface}, step, position, before, rows, count, velocity, fastest);
 }
 
+/// For shapes that are convex: their least_distance(), or, where `inside`, that of their hollow.
+template <class Shape>
+float least_distance_of_convex(const ShapeNumbers& numbers, bool inside, const float* min, const float* max) {
+  const Shape shape(numbers);
+  if (!inside) {
+    // Distance to a convex shape is a convex function: it lies above each of its tangents.
+    float middle[3], half[3];
+    for (int k = 0; k < 3; ++k) {
+      half[k] = 0.5f * max[k] - 0.5f * min[k];
+      middle[k] = 0.5f * max[k] + 0.5f * min[k];
+    }
+    const Surface s = shape.nearest(all_lanes(middle));
+    const auto drop = [](float slope, float way) { return slope < 0 ? -slope * way : slope * way; };
+    return s.distance[0] -
+           (drop(s.normal.x[0], half[0]) + (drop(s.normal.y[0], half[1]) + drop(s.normal.z[0], half[2])));
+  }
+  // In a hollow it is a concave one, which is least in a corner.
+  Lanes least = all_lanes(__builtin_inff());
+  for (std::size_t first = 0; first < 8; first += k_width) {
+    float corner[3][k_width];
+    for (std::size_t l = 0; l < k_width; ++l)
+      for (std::size_t k = 0; k < 3; ++k) corner[k][l] = ((first + l) >> k & 1) != 0 ? max[k] : min[k];
+    least = smaller(least, shape.nearest({load(corner[0]), load(corner[1]), load(corner[2])}).distance);
+  }
+  float result = least[0];
+  for (std::size_t l = 1; l < k_width; ++l) result = least[l] < result ? least[l] : result;
+  return result;
+}
+
 template <class Shape>
 float least_distance(const ShapeNumbers& numbers, const float* min, const float* max) noexcept {
   return Shape::least_distance(numbers, min, max);

@@ -29,12 +29,19 @@ TEST(contact, leaves_a_velocity_alone_that_does_not_reach_the_surface) {
 
 // Of every shape, from any distance, at any speed: at the end of the step it is where it touches.
 TEST(contact, ends_a_step_that_would_pass_the_surface_at_the_surface) {
-  const std::vector<std::variant<Plane, Sphere, Box, Union>> shapes = {
+  const std::vector<Collider::Shape> shapes = {
       Plane{{0, 0, 2}, -3},
       Sphere{{0, 0, -3.5f}, 2},
       Sphere{{0, 0, 6}, 7.5f, true},
       Box{{-2, -2, -4}, {2, 2, -1.5f}},
       Box{{-2, -2, -1.5f}, {2, 2, 900}, true},
+      Capsule{{-3, -1, -3.5f}, {3, 1, -3.5f}, 2},
+      Capsule{{0, 0, 6}, {1, 1, 7}, 7.5f, true},
+      Cylinder{{-3, 0, -3.5f}, {3, 0, -3.5f}, 2},
+      Cylinder{{0, 0, -4}, {0, 0, -1.5f}, 2},
+      Cylinder{{0, 0, -1.5f}, {0, 0, 900}, 8, true},
+      Cone{{0, 0, -1.5f}, {0, 0, -4}, 2, 3},
+      Cone{{0, 0, -1.5f}, {0, 0, 900}, 4, 90, true},
       Union{{Sphere{{0, 0, -3.5f}, 2}, Plane{{0, 1, 0}, -9}}},
   };
   for (const auto& shape : shapes) {
@@ -52,7 +59,10 @@ TEST(contact, ends_a_step_that_would_pass_the_surface_at_the_surface) {
 TEST(contact, lets_a_particle_by_that_passes_an_obstacle) {
   // Nearer to it than its way is long, and towards it, but aside of it.
   for (const Collider& obstacle :
-       {Collider{.shape = Sphere{{0, 0, 0}, 1}}, Collider{.shape = Box{{-1, -1, -1}, {1, 1, 1}}}})
+       {Collider{.shape = Sphere{{0, 0, 0}, 1}}, Collider{.shape = Box{{-1, -1, -1}, {1, 1, 1}}},
+        Collider{.shape = Capsule{{0, -3, 0}, {0, 3, 0}, 1}},
+        Collider{.shape = Cylinder{{0, -3, 0}, {0, 3, 0}, 1}},
+        Collider{.shape = Cone{{0, 0, 0}, {0, 0, 4}, 1}}})
     for (const float aside : {1.75f, 2.0f, 4.0f})
       EXPECT_EQ(resolve(obstacle, {aside, 0, 6}, {0, 0, -100}), Vec3(0, 0, -100)) << aside;
 }
@@ -144,10 +154,19 @@ Eigen::Vector3d literal(const Collider& collider, const Vec3& x, const Vec3& bef
 }
 
 const Box k_room{{-2, -1.5f, -1}, {2, 1.5f, 1}, true};
-const std::vector<std::variant<Plane, Sphere, Box, Union>> k_shapes = {
-    Plane{{1, -1, 2}, -0.3f},          Sphere{{0.2f, 0, 0.1f}, 1},
-    Sphere{{0.1f, 0, 0}, 2, true},     Box{{-1, -0.5f, -0.7f}, {1, 0.6f, 0.4f}},
-    Box{k_room.min, k_room.max, true}, Union{{Sphere{{1, 0, 0}, 0.5f}, Box{{-1, -1, -1}, {0, 0, 0}}}},
+const std::vector<Collider::Shape> k_shapes = {
+    Plane{{1, -1, 2}, -0.3f},
+    Sphere{{0.2f, 0, 0.1f}, 1},
+    Sphere{{0.1f, 0, 0}, 2, true},
+    Box{{-1, -0.5f, -0.7f}, {1, 0.6f, 0.4f}},
+    Box{k_room.min, k_room.max, true},
+    Capsule{{-0.5f, 0, -0.3f}, {0.4f, 0.5f, 0.2f}, 0.6f},
+    Capsule{{-0.5f, 0, -0.3f}, {0.4f, 0.5f, 0.2f}, 1.6f, true},
+    Cylinder{{-0.5f, 0, -0.3f}, {0.4f, 0.5f, 0.2f}, 0.7f},
+    Cylinder{{-1.5f, -1, -0.9f}, {1, 1.5f, 1.2f}, 1.5f, true},
+    Cone{{-0.5f, 0, -0.3f}, {0.4f, 0.5f, 0.2f}, 1, 0.4f},
+    Cone{{-1.5f, -1, -0.9f}, {1, 1.5f, 1.2f}, 2, 1, true},
+    Union{{Sphere{{1, 0, 0}, 0.5f}, Box{{-1, -1, -1}, {0, 0, 0}}}},
 };
 
 /// However it stands, moves and turns.

@@ -30,8 +30,37 @@ struct Box {
   bool inside = false;  ///< true: particles are kept in
 };
 
+/// All points within `radius` of the line from start to end. Particles are kept out of it, or in it. Valid
+/// where start and end are apart by [1e-15, 1e15].
+struct Capsule {
+  Vec3 start{0, 0, 0};
+  Vec3 end{0, 0, 1};
+  float radius = 1.0f;  ///< > 0
+  bool inside = false;  ///< true: particles are kept in
+};
+
+/// A solid cylinder with flat ends, whose axis is the line from start to end. Particles are kept out of it,
+/// or in it. Valid where start and end are apart by [1e-15, 1e15].
+struct Cylinder {
+  Vec3 start{0, 0, 0};
+  Vec3 end{0, 0, 1};
+  float radius = 1.0f;  ///< > 0
+  bool inside = false;  ///< true: particles are kept in
+};
+
+/// A solid cone, cut off where both radii are above 0, whose axis is the line from start to end. Particles
+/// are kept out of it, or in it. Valid where start and end are apart by [1e-15, 1e15] and a radius is above
+/// 0.
+struct Cone {
+  Vec3 start{0, 0, 0};
+  Vec3 end{0, 0, 1};
+  float start_radius = 1.0f;  ///< of the flat end at start, >= 0; 0: the tip
+  float end_radius = 0.0f;    ///< of the flat end at end, >= 0; 0: the tip
+  bool inside = false;        ///< true: particles are kept in
+};
+
 /// Every shape but the union of them. engine/colliders/shapes.h says what a new one needs.
-using Primitive = std::variant<Plane, Sphere, Box>;
+using Primitive = std::variant<Plane, Sphere, Box, Capsule, Cylinder, Cone>;
 
 /// Several primitives that act as one obstacle: the nearest one counts. Not empty.
 struct Union {
@@ -49,7 +78,8 @@ struct Pose {
 /// An obstacle: a shape in a frame of its own, how the frame stands and how it moves. Contact is model 2,
 /// section 4 A: no penetration, restitution, Coulomb friction.
 struct Collider {
-  std::variant<Plane, Sphere, Box, Union> shape = Plane{};
+  using Shape = std::variant<Plane, Sphere, Box, Capsule, Cylinder, Cone, Union>;
+  Shape shape = Plane{};
   Pose pose = {};
   Vec3 velocity{0, 0, 0};          ///< of pose.translation [m/s]
   Vec3 angular_velocity{0, 0, 0};  ///< about pose.translation, along the axes of the world [rad/s]
@@ -81,7 +111,8 @@ void visit_parts(const Collider& collider, const Visit& visit) {
 }
 
 /// Signed distance to a shape [m], positive where particles may be, and its gradient (unit length).
-/// At a point where the distance has no gradient (a sphere's centre) the normal is one of the possible ones.
+/// At a point where the distance has no gradient (a sphere's centre, an axis) the normal is one of the
+/// possible ones.
 struct SurfacePoint {
   float distance;
   Vec3 normal;
@@ -93,6 +124,12 @@ MALLOW_EXPORT SurfacePoint nearest(const Sphere& sphere, const Vec3& x);
 /// @copydoc nearest(const Plane&, const Vec3&)
 MALLOW_EXPORT SurfacePoint nearest(const Box& box, const Vec3& x);
 /// @copydoc nearest(const Plane&, const Vec3&)
+MALLOW_EXPORT SurfacePoint nearest(const Capsule& capsule, const Vec3& x);
+/// @copydoc nearest(const Plane&, const Vec3&)
+MALLOW_EXPORT SurfacePoint nearest(const Cylinder& cylinder, const Vec3& x);
+/// @copydoc nearest(const Plane&, const Vec3&)
+MALLOW_EXPORT SurfacePoint nearest(const Cone& cone, const Vec3& x);
+/// @copydoc nearest(const Plane&, const Vec3&)
 MALLOW_EXPORT SurfacePoint nearest(const Union& shapes, const Vec3& x);
 /// x in the world.
 MALLOW_EXPORT SurfacePoint nearest(const Collider& collider, const Vec3& x);
@@ -103,6 +140,12 @@ MALLOW_EXPORT Aabb bounds(const Plane& plane);
 MALLOW_EXPORT Aabb bounds(const Sphere& sphere);
 /// @copydoc bounds(const Plane&)
 MALLOW_EXPORT Aabb bounds(const Box& box);
+/// @copydoc bounds(const Plane&)
+MALLOW_EXPORT Aabb bounds(const Capsule& capsule);
+/// @copydoc bounds(const Plane&)
+MALLOW_EXPORT Aabb bounds(const Cylinder& cylinder);
+/// @copydoc bounds(const Plane&)
+MALLOW_EXPORT Aabb bounds(const Cone& cone);
 
 /// A plane of a frame, in the world, with a unit normal.
 MALLOW_EXPORT Plane placed(const Plane& plane, const Pose& pose);
