@@ -10,6 +10,7 @@
 //     Surface nearest(const LaneVec3& x) const;   // signed distance and its gradient
 //     LaneMask is_near(const LaneVec3& x, const Lanes& reach) const;  // not farther than reach; cheap
 //     static float least_distance(const ShapeNumbers&, const float* min, const float* max);
+//     float flat_way() const;  // only of what may be hollow: a way along it that meets nothing more of it
 //   };
 //
 // and makes its table of it: lanes_of<BoxLanes>().
@@ -227,8 +228,17 @@ void resolve_in(const Shape& shape, const Frame& frame, const ContactStep& step,
     const LaneVec3 way = step.time_step * (free - u);
     const Surface met =
         frame.seen(meet(shape, step.contact_offset, frame.to_shape(x), frame.turned_back(way)));
-    const LaneVec3 v =
+    LaneVec3 v =
         resolve_contact(frame.surface, frame.velocity_under(u, met), met, step, get(listed, before), free);
+    if constexpr (requires { shape.flat_way(); }) {
+      // What slides along one part of it may meet the next in the same step.
+      const LaneVec3 slide = step.time_step * (v - u);
+      if (any(squared(slide) > shape.flat_way() * shape.flat_way())) {
+        const Surface next =
+            frame.seen(meet(shape, step.contact_offset, frame.to_shape(x), frame.turned_back(slide)));
+        v = resolve_contact(frame.surface, frame.velocity_under(u, next), next, step, get(listed, before), v);
+      }
+    }
     put(listed, v, velocity);
     const Lanes squares = squared(v);
     for (std::size_t l = 0; l < listed.count; ++l) fastest = fastest < squares[l] ? squares[l] : fastest;

