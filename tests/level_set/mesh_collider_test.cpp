@@ -34,7 +34,8 @@ TEST(mesh_collider, of_a_ball_is_near_the_ball_everywhere_and_flips_inside) {
   const DistanceField field = mesh_collider(mesh, 64), hollow = mesh_collider(mesh, 64, true);
   for (const Vec3& x : random_points(5000, Vec3(-3, -2, -1), Vec3(5, 6, 7))) {
     const SurfacePoint expected = nearest(Sphere{{1, 2, 3}, 2}, x), point = nearest(field, x);
-    // From a voxel on, which is 1/16, points of cells may lie beyond the band, where sweeping is a little off.
+    // From a voxel on, which is 1/16, points of cells may lie beyond the band, where sweeping is a little
+    // off.
     if (std::abs(expected.distance) < 0.06f) {
       EXPECT_NEAR(point.distance, expected.distance, 0.01f);
       EXPECT_LT((point.normal - expected.normal).norm(), 0.06f);
