@@ -44,8 +44,7 @@ TEST_F(bench_scaling, too_many_particles_are_refused_before_anything_runs) {
 TEST_F(bench_scaling, a_file_of_someone_else_is_not_overwritten) {
   const std::filesystem::path notes = folder_ / "notes.json";
   std::ofstream(notes) << "{\"mine\": 1}\n";
-  expect_refused("scaling", {"--json", notes.string()},
-                 {"--json", "notes.json", "no results of mallow-bench"});
+  expect_refused("scaling", {"--json", notes.string()}, {"--json", "notes.json", "no results of mallow-bench"});
   EXPECT_EQ(read_text(notes), "{\"mine\": 1}\n");
 }
 
