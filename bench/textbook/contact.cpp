@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <variant>
 
 namespace mallow::textbook {
@@ -77,6 +78,10 @@ class Meeting {
       (*this)(Plane{Vec3::Unit(axis), box.min[axis]});
       (*this)(Plane{-Vec3::Unit(axis), -box.max[axis]});
     }
+  }
+  template <class Shape>
+  void operator()(const Shape&) {
+    throw std::invalid_argument("the textbook implementation knows planes, spheres and boxes alone");
   }
   void operator()(const Union& shapes) {
     for (const Primitive& part : shapes.parts)

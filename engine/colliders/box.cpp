@@ -24,7 +24,7 @@ ShapeNumbers ShapeTraits<Box>::numbers(const Box& box, const Eigen::Vector3d& by
 
 Crossings ShapeTraits<Box>::cross(const Box& box, const Vec3& origin, const Vec3& direction) {
   constexpr float k_far = std::numeric_limits<float>::infinity();
-  Crossings result{Crossing{-k_far, {0, 0, 0}}, Crossing{k_far, {0, 0, 0}}};
+  Crossings result{Crossing{-k_far, {0, 0, 0}}, Crossing{k_far, {0, 0, 0}}, Crossing{}, Crossing{}};
   for (int axis = 0; axis < 3; ++axis) {
     const float speed = direction[axis];
     const float low = box.min[axis] - origin[axis];

@@ -19,6 +19,8 @@ void pass_shape(Archive& archive, Variant& shapes) {
           pass_list(archive, shape.parts, 16, [&](auto& part) { pass_shape(archive, part); });
         } else {
           pass_fields(archive, shape);
+          using Traits = ShapeTraits<std::remove_const_t<Shape>>;
+          if constexpr (requires { Traits::pass_data(archive, shape); }) Traits::pass_data(archive, shape);
         }
       },
       shapes);
@@ -35,6 +37,11 @@ void pass_collider(Archive& archive, Collider& collider) {
   pass_shape(archive, collider.shape);
   pass_pose(archive, collider.pose);
   pass_fields(archive, collider);
+  pass_list(archive, collider.keyframes, 8 + 56, [&](auto& key) {
+    archive(key.time);
+    archive.array(key.pose.translation.data(), 3);
+    archive.array(key.pose.rotation.data(), 4);
+  });
 }
 
 }  // namespace mallow

@@ -13,8 +13,10 @@ void check_shape(const Shape& shape, Checks& checks) {
   check_fields(path, shape, checks);
   const std::optional<ShapeProblem> problem = ShapeTraits<Shape>::problem(shape);
   if (!problem) return;
+  bool is_field = false;
   for_fields<Shape>([&](const auto& field) {
     if (std::string_view(problem->key) != field.name) return;
+    is_field = true;
     const auto& value = shape.*field.member;
     std::ostringstream text;
     if constexpr (std::is_same_v<decltype(value), const Vec3&>)
@@ -23,14 +25,15 @@ void check_shape(const Shape& shape, Checks& checks) {
       text << value;
     checks.problem(path + field.name, text.str() + " is not allowed: " + problem->allowed);
   });
+  if (!is_field) checks.problem(path + problem->key, std::string("must be ") + problem->allowed);
 }
 
 }  // namespace
 
 void check_pose(const std::string& path, const Pose& pose, Checks& checks) {
-  checks.vector(path + "translation", pose.translation.cast<float>());
+  checks.vector(path + ".translation", pose.translation.cast<float>());
   const double length = pose.rotation.norm();
-  checks.number(path + "rotation", length, length > 0, "a quaternion of a finite length above 0");
+  checks.number(path + ".rotation", length, length > 0, "a quaternion of a finite length above 0");
 }
 
 void check(const Collider& collider, Checks& checks) {
@@ -38,8 +41,15 @@ void check(const Collider& collider, Checks& checks) {
   if (shapes && shapes->parts.empty())
     checks.problem("collider.union", "has no parts: at least one is needed");
   visit_parts(collider, [&](const auto& shape) { check_shape(shape, checks); });
-  check_pose("collider.pose.", collider.pose, checks);
+  check_pose("collider.pose", collider.pose, checks);
   check_fields("collider.", collider, checks);
+  for (std::size_t k = 0; k < collider.keyframes.size(); ++k) {
+    const std::string path = "collider.keyframes[" + std::to_string(k) + ']';
+    const double time = collider.keyframes[k].time;
+    checks.number(path + ".time", time, k == 0 || time > collider.keyframes[k - 1].time,
+                  "a time after that of the keyframe before");
+    check_pose(path + ".pose", collider.keyframes[k].pose, checks);
+  }
 }
 
 }  // namespace mallow

@@ -23,8 +23,10 @@ struct BlockBounds {
 
 /// A shape as its lanes read it; what the numbers mean is said there. Lengths in m.
 struct ShapeNumbers {
-  float at[8];
-  bool inside;  ///< particles are kept in
+  float at[12];
+  bool inside;                ///< particles are kept in
+  const float* data[2] = {};  ///< what a heavy shape holds
+  std::size_t sizes[3] = {};  ///< and how much of it
 };
 
 /// What all parts of a collider share. Where it does not turn, its shapes are given where they are, and

@@ -10,6 +10,7 @@
 //     Surface nearest(const LaneVec3& x) const;   // signed distance and its gradient
 //     LaneMask is_near(const LaneVec3& x, const Lanes& reach) const;  // not farther than reach; cheap
 //     static float least_distance(const ShapeNumbers&, const float* min, const float* max);
+//     float flat_way() const;  // only of what may be hollow: a way along it that meets nothing more of it
 //   };
 //
 // and makes its table of it: lanes_of<BoxLanes>().
@@ -227,8 +228,17 @@ void resolve_in(const Shape& shape, const Frame& frame, const ContactStep& step,
     const LaneVec3 way = step.time_step * (free - u);
     const Surface met =
         frame.seen(meet(shape, step.contact_offset, frame.to_shape(x), frame.turned_back(way)));
-    const LaneVec3 v =
+    LaneVec3 v =
         resolve_contact(frame.surface, frame.velocity_under(u, met), met, step, get(listed, before), free);
+    if constexpr (requires { shape.flat_way(); }) {
+      // What slides along one part of it may meet the next in the same step.
+      const LaneVec3 slide = step.time_step * (v - u);
+      if (any(squared(slide) > shape.flat_way() * shape.flat_way())) {
+        const Surface next =
+            frame.seen(meet(shape, step.contact_offset, frame.to_shape(x), frame.turned_back(slide)));
+        v = resolve_contact(frame.surface, frame.velocity_under(u, next), next, step, get(listed, before), v);
+      }
+    }
     put(listed, v, velocity);
     const Lanes squares = squared(v);
     for (std::size_t l = 0; l < listed.count; ++l) fastest = fastest < squares[l] ? squares[l] : fastest;
@@ -244,6 +254,35 @@ void resolve(const ShapeNumbers& numbers, const ContactSurface& surface, const C
     resolve_in(shape, Turning{surface}, step, position, before, rows, count, velocity, fastest);
   else
     resolve_in(shape, Upright{surface}, step, position, before, rows, count, velocity, fastest);
+}
+
+/// For shapes that are convex: their least_distance(), or, where `inside`, that of their hollow.
+template <class Shape>
+float least_distance_of_convex(const ShapeNumbers& numbers, bool inside, const float* min, const float* max) {
+  const Shape shape(numbers);
+  if (!inside) {
+    // Distance to a convex shape is a convex function: it lies above each of its tangents.
+    float middle[3], half[3];
+    for (int k = 0; k < 3; ++k) {
+      half[k] = 0.5f * max[k] - 0.5f * min[k];
+      middle[k] = 0.5f * max[k] + 0.5f * min[k];
+    }
+    const Surface s = shape.nearest(all_lanes(middle));
+    const auto drop = [](float slope, float way) { return slope < 0 ? -slope * way : slope * way; };
+    return s.distance[0] -
+           (drop(s.normal.x[0], half[0]) + (drop(s.normal.y[0], half[1]) + drop(s.normal.z[0], half[2])));
+  }
+  // In a hollow it is a concave one, which is least in a corner.
+  Lanes least = all_lanes(__builtin_inff());
+  for (std::size_t first = 0; first < 8; first += k_width) {
+    float corner[3][k_width];
+    for (std::size_t l = 0; l < k_width; ++l)
+      for (std::size_t k = 0; k < 3; ++k) corner[k][l] = ((first + l) >> k & 1) != 0 ? max[k] : min[k];
+    least = smaller(least, shape.nearest({load(corner[0]), load(corner[1]), load(corner[2])}).distance);
+  }
+  float result = least[0];
+  for (std::size_t l = 1; l < k_width; ++l) result = least[l] < result ? least[l] : result;
+  return result;
 }
 
 template <class Shape>

@@ -26,6 +26,21 @@ SurfacePoint nearest(const Sphere& sphere, const Vec3& x) {
 SurfacePoint nearest(const Box& box, const Vec3& x) {
   return nearest_of_one(box, x);
 }
+SurfacePoint nearest(const Capsule& capsule, const Vec3& x) {
+  return nearest_of_one(capsule, x);
+}
+SurfacePoint nearest(const Cylinder& cylinder, const Vec3& x) {
+  return nearest_of_one(cylinder, x);
+}
+SurfacePoint nearest(const Cone& cone, const Vec3& x) {
+  return nearest_of_one(cone, x);
+}
+SurfacePoint nearest(const ConvexHull& hull, const Vec3& x) {
+  return nearest_of_one(hull, x);
+}
+SurfacePoint nearest(const DistanceField& field, const Vec3& x) {
+  return nearest_of_one(field, x);
+}
 
 SurfacePoint nearest(const Union& shapes, const Vec3& x) {
   SurfacePoint best{std::numeric_limits<float>::infinity(), Vec3::UnitZ()};

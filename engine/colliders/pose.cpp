@@ -1,6 +1,7 @@
 #include "colliders/pose.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -16,6 +17,17 @@ Eigen::Quaterniond exponential(const Eigen::Vector3d& v) {
   const double angle = v.norm();
   if (angle == 0) return Eigen::Quaterniond::Identity();
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, v / angle));
+}
+
+/// The rotation vector that turns one pose to the other, the shorter way round; 0 where they are turned
+/// alike.
+Eigen::Vector3d turn_between(const Pose& from, const Pose& to) {
+  if (from.rotation == to.rotation) return {0, 0, 0};
+  Eigen::Quaterniond turn = quaternion(to) * quaternion(from).conjugate();
+  if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
+  const double sine = turn.vec().norm();
+  if (sine == 0) return {0, 0, 0};
+  return 2 * std::atan2(sine, turn.w()) / sine * turn.vec();
 }
 
 bool stands_turned(const Pose& pose) {
@@ -72,8 +84,41 @@ Aabb placed(const Aabb& box, const Pose& pose) {
   return {(middle - half).cast<float>(), (middle + half).cast<float>()};
 }
 
-void move_colliders(double time_step, std::span<Collider> colliders) {
-  for (Collider& collider : colliders) collider.pose = pose_after(collider, time_step);
+Pose pose_at(std::span<const PoseKeyframe> keyframes, double time) {
+  const auto next = std::upper_bound(keyframes.begin(), keyframes.end(), time,
+                                     [](double t, const PoseKeyframe& key) { return t < key.time; });
+  if (next == keyframes.begin()) return keyframes.front().pose;
+  if (next == keyframes.end()) return keyframes.back().pose;
+  const PoseKeyframe &from = *(next - 1), &to = *next;
+  const double share = (time - from.time) / (to.time - from.time);
+  Pose pose;
+  pose.translation = from.pose.translation + share * (to.pose.translation - from.pose.translation);
+  pose.rotation = (exponential(share * turn_between(from.pose, to.pose)) * quaternion(from.pose)).coeffs();
+  return pose;
+}
+
+void drive_colliders(double end, double time_step, std::span<Collider> colliders) {
+  for (Collider& collider : colliders) {
+    if (collider.keyframes.empty()) continue;
+    const Pose there = pose_at(collider.keyframes, end);
+    collider.velocity = ((there.translation - collider.pose.translation) / time_step).cast<float>();
+    collider.angular_velocity = (turn_between(collider.pose, there) / time_step).cast<float>();
+  }
+}
+
+void move_colliders(double end, double time_step, std::span<Collider> colliders) {
+  for (Collider& collider : colliders)
+    collider.pose =
+        collider.keyframes.empty() ? pose_after(collider, time_step) : pose_at(collider.keyframes, end);
+}
+
+double greatest_speed(const Collider& collider) {
+  double speed = collider.velocity.cast<double>().norm();
+  for (std::size_t k = 1; k < collider.keyframes.size(); ++k) {
+    const PoseKeyframe &from = collider.keyframes[k - 1], &to = collider.keyframes[k];
+    speed = std::max(speed, (to.pose.translation - from.pose.translation).norm() / (to.time - from.time));
+  }
+  return speed;
 }
 
 }  // namespace mallow

@@ -17,7 +17,11 @@ bool turns(const Collider& collider);
 /// where the turned collider has it. [1/s]
 Eigen::Matrix3d mean_spin(const Vec3& angular_velocity, double time_step);
 
-/// Poses at the end of a step.
-void move_colliders(double time_step, std::span<Collider> colliders);
+/// Gives those that have keyframes the velocities with which a step that ends at `end` [s] takes them there.
+void drive_colliders(double end, double time_step, std::span<Collider> colliders);
+/// Poses at the end of a step, `end` [s].
+void move_colliders(double end, double time_step, std::span<Collider> colliders);
+/// Largest speed of the pose's translation: from one keyframe to the next, or `velocity`. [m/s]
+double greatest_speed(const Collider& collider);
 
 }  // namespace mallow

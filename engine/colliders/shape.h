@@ -23,8 +23,8 @@ struct Crossing {
   float t = std::numeric_limits<float>::infinity();
   Vec3 normal{0, 0, 0};
 };
-/// A line passes a convex shape twice at most.
-using Crossings = std::array<Crossing, 2>;
+/// A line passes a convex shape twice at most; of others the first places in front of its origin are enough.
+using Crossings = std::array<Crossing, 4>;
 
 /// What a shape is to the rest of the engine, specialised in its own header. What it does to particles is in
 /// its lanes. Exported, as the scene reader and the renderer use it.

@@ -6,6 +6,11 @@
 // files hold, shape.h and collider_lanes.h say; a shape that is heavy holds it in a std::shared_ptr<const
 // ...>.
 #include "colliders/box.h"
+#include "colliders/capsule.h"
+#include "colliders/cone.h"
+#include "colliders/cylinder.h"
+#include "colliders/distance_field.h"
+#include "colliders/hull.h"
 #include "colliders/plane.h"
 #include "colliders/sphere.h"
 

@@ -159,7 +159,7 @@ struct FieldTable<Emitter> {
             k_required},
       Field{"velocity", &Emitter::velocity, k_finite, "m/s", "the nozzle moves with it"},
       Field{"speed", &Emitter::speed, k_not_negative, "m/s", "of what leaves the nozzle, seen from it"},
-      Field{"start", &Emitter::start, k_not_negative, "s", "it flows from this time on"},
+      Field{"start", &Emitter::start, k_not_negative, "s", "it flows from this time on", "at once"},
       Field{"stop", &Emitter::stop, k_not_negative, "s", "and until this", "it goes on"},
       Field{"jitter", &Emitter::jitter, k_jitter, "h",
             "random displacement of every particle across the flow, per axis"},

@@ -34,6 +34,11 @@ struct ValueText {
   std::string operator()(const T* choice) const {
     return toml_string(choices(T{})[static_cast<std::size_t>(*choice)]);
   }
+  std::string operator()(const std::vector<Vec3>* points) const {
+    std::string text;
+    for (const Vec3& point : *points) text += (text.empty() ? "[" : ", ") + (*this)(&point);
+    return text.empty() ? text : text + ']';
+  }
   std::string operator()(const AlphaSchedule* alpha) const {
     const std::vector<AlphaKey>& keys = alpha->keys();
     if (keys.size() == 1 && keys[0].time == 0) return number_text(keys[0].alpha);
@@ -52,6 +57,7 @@ struct Allowed {
   Range range;
   std::string operator()(const std::string*) const { return "a string"; }
   std::string operator()(const std::filesystem::path*) const { return "the name of a file, a string"; }
+  std::string operator()(const std::vector<Vec3>*) const { return "a list of points, each of 3 numbers"; }
   template <class T>
   std::string operator()(const T*) const {
     return mallow::allowed<T>(range);

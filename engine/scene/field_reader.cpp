@@ -62,6 +62,16 @@ class ValueReader {
     if (const auto read = read_three<float>()) *vector = Vec3(read->data());
   }
 
+  void operator()(std::vector<Vec3>* points) const {
+    const Array* given = node_.get_if<Array>();
+    if (!given || given->empty()) return complain();
+    std::vector<Vec3> read(given->size());
+    const std::size_t problems_before = problems_.count();
+    for (std::size_t i = 0; i < read.size(); ++i)
+      read_number((*given)[i], element_path(path_, i), field_.range, &read[i]);
+    if (problems_.count() == problems_before) *points = std::move(read);
+  }
+
   void operator()(Count3* count) const {
     if (const auto read = read_three<int>()) *count = *read;
   }

@@ -263,6 +263,22 @@ std::vector<bool> skinned_bodies(const Scene& scene) {
   return skinned;
 }
 
+std::vector<std::filesystem::path*> named_files(Scene& scene) {
+  std::vector<std::filesystem::path*> files;
+  for (SceneBody& body : scene.bodies) {
+    if (auto* mesh = std::get_if<MeshSource>(&body.source)) files.push_back(&mesh->file);
+    if (auto* points = std::get_if<PointsSource>(&body.source)) files.push_back(&points->file);
+    if (!body.skin.empty()) files.push_back(&body.skin);
+  }
+  for (SceneCollider& collider : scene.colliders)
+    for (ShapeSource& source : collider.sources) {
+      if (auto* hull = std::get_if<HullSource>(&source); hull && !hull->file.empty())
+        files.push_back(&hull->file);
+      if (auto* mesh = std::get_if<MeshColliderSource>(&source)) files.push_back(&mesh->file);
+    }
+  return files;
+}
+
 std::vector<std::size_t> body_materials(const Scene& scene) {
   std::vector<std::size_t> materials;
   const scene_file::Groups groups = scene_file::groups_of(scene);

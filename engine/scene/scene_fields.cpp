@@ -72,8 +72,34 @@ BoundFields fields(SceneCollider& collider) {
   return joined(pose, joined(fields(static_cast<Collider&>(collider)), look));
 }
 
-BoundFields fields(Primitive& primitive) {
-  return std::visit([](auto& shape) { return fields(shape); }, primitive);
+BoundFields fields(HullSource& source) {
+  return {
+      {"file", &source.file, k_any, "",
+       "mesh whose corners are the points, OBJ, PLY, STL or OFF, relative to the scene; this or points",
+       "points"},
+      {"points", &source.points, k_finite, "m", "that the hull holds, 4 or more", "those of file"},
+      {"inside", &source.inside, k_any, "", "particles are kept in, not out"},
+  };
+}
+
+BoundFields fields(MeshColliderSource& source) {
+  return {
+      {"file", &source.file, k_any, "", "closed mesh, OBJ, PLY, STL or OFF, relative to the scene",
+       k_required},
+      {"voxels", &source.voxels, between(8, 512), "", "along its longest side; thinner parts may be missed"},
+      {"size", &source.size, k_positive, "m", "longest side", "as in the file"},
+      {"center", &source.center, k_finite, "m", "middle of its box", "where the file has it"},
+      {"inside", &source.inside, k_any, "", "particles are kept in, not out"},
+  };
+}
+
+BoundFields fields(SceneKeyframe& keyframe) {
+  return {
+      {"time", &keyframe.time, k_finite, "s", "when it is there, after the keyframe before", k_required},
+      {"translate", &keyframe.translate, k_finite, "m", "where the origin of its shape is then"},
+      {"rotate", &keyframe.rotate, k_finite, "degrees",
+       "turn of its shape about x, then y, then z; from one to the next the shorter way round"},
+  };
 }
 
 BoundFields fields(ScenePin& pin) {
@@ -111,9 +137,9 @@ const std::vector<Kind<BodySource>>& source_kinds() {
   return kinds;
 }
 
-const std::vector<Kind<Primitive>>& primitive_kinds() {
-  static const std::vector<Kind<Primitive>> kinds = []<class... Shapes>(const std::variant<Shapes...>&) {
-    return std::vector<Kind<Primitive>>{{ShapeTraits<Shapes>::k_key, Shapes{}}...};
+const std::vector<Kind<SceneShape>>& primitive_kinds() {
+  static const std::vector<Kind<SceneShape>> kinds = []<class... Shapes>(const std::variant<Shapes...>&) {
+    return std::vector<Kind<SceneShape>>{{ShapeTraits<Shapes>::k_key, typename InScenes<Shapes>::Type{}}...};
   }(Primitive{});
   return kinds;
 }

@@ -19,11 +19,35 @@ BoundFields fields(MeshSource& source);
 BoundFields fields(PointsSource& source);
 BoundFields fields(ImplicitSource& source);
 BoundFields fields(SceneCollider& collider);  ///< without its shape
-BoundFields fields(Primitive& primitive);
+BoundFields fields(HullSource& source);
+BoundFields fields(MeshColliderSource& source);
+BoundFields fields(SceneKeyframe& keyframe);
 BoundFields fields(ScenePin& pin);  ///< without its box
 BoundFields fields(SceneEmitter& emitter);
 BoundFields fields(SceneSink& sink);  ///< without its box
 BoundFields fields(Aabb& box);
+
+/// What scene files hold in place of a shape: itself, or what it is made of.
+template <class Shape>
+struct InScenes {
+  using Type = Shape;
+};
+template <>
+struct InScenes<ConvexHull> {
+  using Type = HullSource;
+};
+template <>
+struct InScenes<DistanceField> {
+  using Type = MeshColliderSource;
+};
+template <class... Shapes>
+std::variant<typename InScenes<Shapes>::Type...> scene_shape(const std::variant<Shapes...>&);
+/// A Primitive as scene files hold it, with the same index.
+using SceneShape = decltype(scene_shape(Primitive{}));
+
+inline BoundFields fields(SceneShape& shape) {
+  return std::visit([](auto& one) { return fields(one); }, shape);
+}
 
 /// One of the keys of which a table must hold exactly one: what a body or a collider is.
 template <class Variant>
@@ -31,8 +55,8 @@ struct Kind {
   const char* key;
   Variant value;  ///< with its defaults
 };
-const std::vector<Kind<BodySource>>& source_kinds();    ///< in the order of BodySource
-const std::vector<Kind<Primitive>>& primitive_kinds();  ///< in the order of Primitive
+const std::vector<Kind<BodySource>>& source_kinds();     ///< in the order of BodySource
+const std::vector<Kind<SceneShape>>& primitive_kinds();  ///< in the order of Primitive
 
 inline BoundFields fields(BodySource& source) {
   return std::visit([](auto& one) { return fields(one); }, source);
@@ -40,9 +64,11 @@ inline BoundFields fields(BodySource& source) {
 inline const char* key_of(const BodySource& source) {
   return source_kinds()[source.index()].key;
 }
-inline const char* key_of(const Primitive& primitive) {
-  return std::visit([](const auto& one) { return mallow::key_of(one); }, primitive);
+inline const char* key_of(const SceneShape& shape) {
+  return primitive_kinds()[shape.index()].key;
 }
+/// Of list elements: collider[0].keyframes.
+inline constexpr const char* k_keyframes_key = "keyframes";
 
 /// Bodies, materials, colliders and pins of a scene, at most of each.
 inline constexpr std::size_t k_most_entries = 10'000;

@@ -29,19 +29,50 @@ std::string inline_table(const BoundFields& fields) {
   return "{" + text + " }";
 }
 
-std::string shape_line(Collider& collider) {
-  struct Print {
-    std::string operator()(Primitive primitive) const {
-      return std::string(key_of(primitive)) + " = " + inline_table(fields(primitive));
-    }
-    std::string operator()(const Union& parts) const {
-      std::string text;
-      for (const Primitive& part : parts.parts)
-        text += (text.empty() ? " { " : ", { ") + (*this)(part) + " }";
-      return std::string(k_union_key) + " = [" + text + " ]";
-    }
+/// What scenes hold of one part: what it was made of, or itself.
+SceneShape in_scenes(const Primitive& primitive, const ShapeSource& source) {
+  if (const auto* hull = std::get_if<HullSource>(&source)) return *hull;
+  if (const auto* mesh = std::get_if<MeshColliderSource>(&source)) return *mesh;
+  return std::visit(
+      []<class Shape>(const Shape& shape) -> SceneShape {
+        if constexpr (std::is_same_v<Shape, ConvexHull>)
+          return HullSource{.points = shape.data->corners, .inside = shape.inside};
+        else if constexpr (std::is_same_v<Shape, DistanceField>)
+          return MeshColliderSource{.inside = shape.inside};
+        else
+          return shape;
+      },
+      primitive);
+}
+
+std::string shape_line(const SceneCollider& collider) {
+  std::size_t part = 0;
+  const auto print = [&](const Primitive& primitive) {
+    SceneShape shape =
+        in_scenes(primitive, part < collider.sources.size() ? collider.sources[part] : ShapeSource{});
+    ++part;
+    return std::string(key_of(shape)) + " = " + inline_table(fields(shape));
   };
-  return std::visit(Print{}, collider.shape) + '\n';
+  std::string text;
+  const bool is_union = std::holds_alternative<Union>(collider.shape);
+  visit_parts(collider, [&](const auto& shape) {
+    text += is_union ? (text.empty() ? " { " : ", { ") + print(shape) + " }" : print(shape);
+  });
+  return (is_union ? std::string(k_union_key) + " = [" + text + " ]" : text) + '\n';
+}
+
+/// Of a collider that has keyframes they stand in place of what they set.
+std::string motion_lines(SceneCollider& collider) {
+  BoundFields lines = fields(collider);
+  if (collider.scene_keyframes.empty()) return lines_of(lines);
+  std::erase_if(lines, [](const BoundField& field) {
+    const std::string_view name = field.name;
+    return name == "translate" || name == "rotate" || name == "velocity" || name == "angular_velocity";
+  });
+  std::string text;
+  for (SceneKeyframe& key : collider.scene_keyframes)
+    text += (text.empty() ? " " : ", ") + inline_table(fields(key));
+  return std::string(k_keyframes_key) + " = [" + text + " ]\n" + lines_of(lines);
 }
 
 /// A line of describe_scene_keys(), in columns.
@@ -76,7 +107,7 @@ std::string print_scene(const Scene& scene) {
     text += "\n[[body]]\n" + lines_of(fields(body)) + key_of(body.source) + " = " +
             inline_table(fields(body.source)) + '\n';
   for (SceneCollider& collider : copy.colliders)
-    text += "\n[[collider]]\n" + shape_line(collider) + lines_of(fields(collider));
+    text += "\n[[collider]]\n" + shape_line(collider) + motion_lines(collider);
   for (ScenePin& pin : copy.pins)
     text += "\n[[pin]]\nbox = " + inline_table(fields(pin.box)) + '\n' + lines_of(fields(pin));
   for (SceneEmitter& emitter : copy.emitters) text += "\n[[emitter]]\n" + lines_of(fields(emitter));
@@ -103,9 +134,11 @@ std::string describe_scene_keys() {
   text += key_lines("collider[]", fields(collider));
   for (const std::string prefix : {"collider[].", "collider[].union[]."})
     for (const auto& kind : primitive_kinds()) {
-      Primitive primitive = kind.value;
-      text += key_lines(prefix + kind.key, fields(primitive));
+      SceneShape shape = kind.value;
+      text += key_lines(prefix + kind.key, fields(shape));
     }
+  SceneKeyframe keyframe;
+  text += key_lines(std::string("collider[].") + k_keyframes_key + "[]", fields(keyframe));
   text += key_lines("pin[]", fields(pin)) + key_lines("pin[].box", fields(pin.box));
   SceneEmitter emitter;
   SceneSink sink;

@@ -105,9 +105,13 @@ class SceneReader {
 
   void read_collider(const Node& node, const std::string& path) {
     SceneCollider& collider = scene_.colliders.emplace_back();
-    read_fields(node, path, fields(collider), shape_keys(), problems_);
-    read_shape(node, path, collider, problems_);
+    std::vector<std::string> others = shape_keys();
+    others.emplace_back(k_keyframes_key);
+    read_fields(node, path, fields(collider), others, problems_);
+    read_shape(node, path, files_, collider, problems_);
     collider.pose = pose_of(collider.translate, collider.rotate);
+    read_keyframes(node, path, collider, problems_);
+    if (!collider.keyframes.empty()) collider.pose = pose_at(collider.keyframes, 0);
   }
 
   void read_pin(const Node& node, const std::string& path) {

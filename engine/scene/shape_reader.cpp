@@ -5,6 +5,9 @@
 #include <sstream>
 #include <system_error>
 
+#include "colliders/pose.h"
+#include "mallow/files.h"
+#include "mallow/level_set.h"
 #include "scene/field_reader.h"
 #include "scene/nearest_name.h"
 
@@ -103,6 +106,18 @@ class ShapeCheck {
     check_name(implicit.shape, "shape");
   }
 
+  void operator()(const MeshColliderSource& mesh) const { check_file(mesh.file); }
+
+  void operator()(const HullSource& hull) const {
+    if (!hull.file.empty() && !hull.points.empty())
+      problems_.add(place_of("points"), join_path(path_, "points"),
+                    "is not allowed beside file: exactly one of the two");
+    else if (!hull.file.empty())
+      check_file(hull.file);
+    else if (hull.points.empty())
+      problems_.add(table_.place, path_, "has neither file nor points: exactly one of the two is needed");
+  }
+
   /// key: where the name stands, empty where it is the whole value.
   void check_name(const std::string& shape, const std::string& key) const {
     const auto names = implicit_shape_names();
@@ -156,37 +171,91 @@ class ShapeCheck {
   Problems& problems_;
 };
 
-Primitive read_primitive(const Entry& entry, const std::string& path, Problems& problems) {
-  Primitive primitive = kind_of(primitive_kinds(), entry.key);
-  const BoundFields table = fields(primitive);
-  if (!read_whole(entry.node, path, table, {}, problems)) return primitive;
-  const auto problem = std::visit(
-      []<class Shape>(const Shape& shape) { return ShapeTraits<Shape>::problem(shape); }, primitive);
-  for (const BoundField& field : table) {
-    if (!problem || std::string_view(problem->key) != field.name) continue;
-    const Node* given = find(entry.node, field.name);
-    problems.add(given ? given->place : entry.place, join_path(path, field.name),
-                 not_allowed(value_text(field), problem->allowed));
-  }
-  return primitive;
+/// Scaled to a longest side, and moved.
+Mesh placed(Mesh mesh, const MeshColliderSource& source) {
+  const Aabb box = bounds(mesh);
+  const Vec3 middle = 0.5f * (box.min + box.max), center = source.center.value_or(middle);
+  const float scale = source.size ? *source.size / (box.max - box.min).maxCoeff() : 1.0f;
+  for (Vec3& vertex : mesh.vertices) vertex = center + scale * (vertex - middle);
+  return mesh;
 }
 
-Union read_union(const Node& node, const std::string& path, Problems& problems) {
-  Union shapes;
+/// Makes shapes of what scenes hold.
+struct MakeShape {
+  const SceneFiles& files;
+
+  Primitive operator()(const HullSource& source) const {
+    return source.file.empty() ? convex_hull(source.points, source.inside)
+                               : convex_hull(read_mesh(files.full_name(source.file)).vertices, source.inside);
+  }
+  Primitive operator()(const MeshColliderSource& source) const {
+    return mesh_collider(placed(read_mesh(files.full_name(source.file)), source), source.voxels,
+                         source.inside);
+  }
+  template <class Shape>
+  Primitive operator()(const Shape& shape) const {
+    return shape;
+  }
+};
+
+/// One part of a collider.
+struct ReadPart {
+  Primitive shape;
+  ShapeSource source = {};
+};
+
+ReadPart read_primitive(const Entry& entry, const std::string& path, const SceneFiles& files,
+                        Problems& problems) {
+  SceneShape given = kind_of(primitive_kinds(), entry.key);
+  const BoundFields table = fields(given);
+  if (!read_whole(entry.node, path, table, {}, problems)) return {};
+  const std::size_t problems_before = problems.count();
+  const auto check = [&]<class Shape>(const Shape& shape) -> std::optional<ShapeProblem> {
+    if constexpr (std::is_same_v<Shape, HullSource> || std::is_same_v<Shape, MeshColliderSource>) {
+      ShapeCheck(entry.node, path, &files, problems)(shape);
+      return std::nullopt;
+    } else {
+      return ShapeTraits<Shape>::problem(shape);
+    }
+  };
+  const auto problem = std::visit(check, given);
+  for (const BoundField& field : table) {
+    if (!problem || std::string_view(problem->key) != field.name) continue;
+    const Node* at = find(entry.node, field.name);
+    problems.add(at ? at->place : entry.place, join_path(path, field.name),
+                 not_allowed(value_text(field), problem->allowed));
+  }
+  if (problems.count() != problems_before) return {};
+  ReadPart part;
+  if (const auto* hull = std::get_if<HullSource>(&given)) part.source = *hull;
+  if (const auto* mesh = std::get_if<MeshColliderSource>(&given)) part.source = *mesh;
+  try {
+    part.shape = std::visit(MakeShape{files}, given);
+  } catch (const ConfigError& error) {
+    for (const Problem& one : error.problems()) problems.add(entry.place, path, to_string(one));
+  } catch (const IoError& error) {
+    problems.add(entry.place, path, to_string(error.problem()));
+  }
+  return part;
+}
+
+std::vector<ReadPart> read_union(const Node& node, const std::string& path, const SceneFiles& files,
+                                 Problems& problems) {
+  std::vector<ReadPart> parts;
   const Array* list = node.get_if<Array>();
   if (!list || list->empty() || list->size() > k_most_entries) {
     problems.add(node.place, path,
                  not_allowed(describe(node), "a list of 1 to " + std::to_string(k_most_entries) +
                                                  " tables, each with one of " + listed(primitive_keys())));
-    return shapes;
+    return parts;
   }
   for (std::size_t i = 0; i < list->size(); ++i) {
     const std::string part_path = element_path(path, i);
     if (!read_whole((*list)[i], part_path, {}, primitive_keys(), problems)) continue;
     if (const Entry* entry = only_one((*list)[i], part_path, primitive_keys(), problems))
-      shapes.parts.push_back(read_primitive(*entry, join_path(part_path, entry->key), problems));
+      parts.push_back(read_primitive(*entry, join_path(part_path, entry->key), files, problems));
   }
-  return shapes;
+  return parts;
 }
 
 }  // namespace
@@ -227,15 +296,51 @@ void check_file(const Node& table, const std::string& path, const char* key, con
   if (!name.empty()) ShapeCheck(table, path, &files, problems).check_file(name, key);
 }
 
-void read_shape(const Node& table, const std::string& collider_path, Collider& collider, Problems& problems) {
+void read_shape(const Node& table, const std::string& collider_path, const SceneFiles& files,
+                SceneCollider& collider, Problems& problems) {
   const Entry* entry = only_one(table, collider_path, shape_keys(), problems);
   if (!entry) return;
   const std::string path = join_path(collider_path, entry->key);
-  if (entry->key == k_union_key)
-    collider.shape = read_union(entry->node, path, problems);
+  const bool is_union = entry->key == k_union_key;
+  const std::vector<ReadPart> parts = is_union ? read_union(entry->node, path, files, problems)
+                                               : std::vector{read_primitive(*entry, path, files, problems)};
+  Union shapes;
+  bool any_source = false;
+  for (const ReadPart& part : parts) {
+    shapes.parts.push_back(part.shape);
+    collider.sources.push_back(part.source);
+    any_source = any_source || part.source.index() != 0;
+  }
+  if (!any_source) collider.sources.clear();
+  if (is_union)
+    collider.shape = std::move(shapes);
   else
-    std::visit([&](const auto& primitive) { collider.shape = primitive; },
-               read_primitive(*entry, path, problems));
+    std::visit([&](const auto& primitive) { collider.shape = primitive; }, shapes.parts[0]);
+}
+
+void read_keyframes(const Node& table, const std::string& collider_path, SceneCollider& collider,
+                    Problems& problems) {
+  const Node* node = find(table, k_keyframes_key);
+  if (!node) return;
+  const std::string path = join_path(collider_path, k_keyframes_key);
+  const Array* list = node->get_if<Array>();
+  if (!list || list->empty() || list->size() > k_most_entries)
+    return problems.add(
+        node->place, path,
+        not_allowed(describe(*node), "a list of 1 to " + std::to_string(k_most_entries) + " tables"));
+  for (const char* other : {"translate", "rotate", "velocity", "angular_velocity"})
+    if (const Node* beside = find(table, other))
+      problems.add(beside->place, join_path(collider_path, other), "is not allowed beside keyframes");
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    SceneKeyframe& key = collider.scene_keyframes.emplace_back();
+    const std::string key_path = element_path(path, i);
+    if (!read_whole((*list)[i], key_path, fields(key), {}, problems)) continue;
+    if (i > 0 && !(key.time > collider.scene_keyframes[i - 1].time))
+      problems.add((*list)[i].place, key_path,
+                   not_allowed("time " + number_text(key.time), "a time after that of the keyframe before"));
+  }
+  for (const SceneKeyframe& key : collider.scene_keyframes)
+    collider.keyframes.push_back({static_cast<double>(key.time), pose_of(key.translate, key.rotate)});
 }
 
 bool read_whole(const Node& table, const std::string& path, const BoundFields& fields,

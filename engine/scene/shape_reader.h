@@ -20,8 +20,11 @@ void read_source(const Node& body, const std::string& path, const SceneFiles& fi
 /// Checks the file that a key of a table names, where it names one.
 void check_file(const Node& table, const std::string& path, const char* key, const SceneFiles& files,
                 const std::filesystem::path& name, Problems& problems);
-/// table: that of a [[collider]].
-void read_shape(const Node& table, const std::string& path, Collider& collider, Problems& problems);
+/// table: that of a [[collider]]; files: those that it may name, of which its shape is made.
+void read_shape(const Node& table, const std::string& path, const SceneFiles& files, SceneCollider& collider,
+                Problems& problems);
+/// The keyframes of a collider, where it has any.
+void read_keyframes(const Node& table, const std::string& path, SceneCollider& collider, Problems& problems);
 
 /// Reads fields and says whether nothing was wrong with them, so that checks of one against another make
 /// sense.

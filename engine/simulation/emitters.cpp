@@ -66,8 +66,8 @@ void add_layer(const Emitter& emitter, std::uint64_t number, double height, std:
 }
 
 bool flows(const Simulation::State& s, const EmitterState& emitter) {
-  return s.time >= emitter.settings.start && !(s.time >= emitter.settings.stop.value_or(s.time + 1)) &&
-         emitter.settings.speed > 0;
+  return s.time >= emitter.settings.start.value_or(0) &&
+         !(s.time >= emitter.settings.stop.value_or(s.time + 1)) && emitter.settings.speed > 0;
 }
 
 /// `count` layers behind the last, as points of a body.
@@ -141,7 +141,7 @@ std::size_t place_of(const Simulation::State& s, EmitterId id) {
 void check_emitter(const Emitter& emitter) {
   Checks checks;
   check(emitter, checks);
-  check_pose("emitter.pose.", emitter.pose, checks);
+  check_pose("emitter.pose", emitter.pose, checks);
   checks.finish();
 }
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "colliders/collider_checks.h"
+#include "colliders/pose.h"
 #include "config/validation.h"
 #include "core/bounds.h"
 #include "shape_matching/reshape.h"
@@ -298,6 +299,8 @@ ColliderId Simulation::add_collider(const Collider& collider) {
   s.collider_slots.place(s.colliders.size(), {&id, 1});
   s.collider_ids.push_back(id);
   s.colliders.push_back(collider);
+  Collider& added = s.colliders.back();
+  if (!added.keyframes.empty()) added.pose = pose_at(added.keyframes, s.time);
   s.disturbed = true;
   return ColliderId{id};
 }

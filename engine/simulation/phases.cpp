@@ -374,6 +374,8 @@ void plan_motion(Simulation::State& state, float time_step) {
   // its place, steps that a limit varies feed a stiff body. The two are the same where steps are equal.
   const auto last_step = static_cast<float>(state.last_time_step);
   const float pull_time = last_step > 0 ? 0.5f * (last_step + time_step) : time_step;
+  drive_colliders(state.time + static_cast<double>(time_step), static_cast<double>(time_step),
+                  state.colliders);
   place_colliders(state.colliders, state.origin, time_step, state.execution.level, state.placed_colliders);
   state.moving.loads.assign(any_measures_load(state.placed_colliders) ? state.colliders.size() : 0, {});
   state.pin_velocities.clear();
@@ -456,7 +458,7 @@ void resolve_touching(Simulation::State& state, float time_step) {
 void finish_step(Simulation::State& state, const ChosenStep& step) {
   state.store.position.swap(state.store.next_position);
   state.store.velocity.swap(state.store.next_velocity);
-  move_colliders(static_cast<double>(step.time_step), state.colliders);
+  move_colliders(step.end, static_cast<double>(step.time_step), state.colliders);
   move_pins(state, static_cast<double>(step.time_step));
   move_emitters(state, static_cast<double>(step.time_step));
   add_external(state);

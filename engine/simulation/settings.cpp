@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "colliders/pose.h"
 #include "config/validation.h"
 #include "simulation/state.h"
 
@@ -16,7 +17,8 @@ constexpr double k_tolerance = 1e-6;
 /// What moves fastest at the start [m/s].
 float fastest_speed(const Simulation::State& state) {
   float speed = largest_norm(state.store.velocity);
-  for (const Collider& collider : state.colliders) speed = std::max(speed, collider.velocity.norm());
+  for (const Collider& collider : state.colliders)
+    speed = std::max(speed, static_cast<float>(greatest_speed(collider)));
   for (const PinState& pin : state.pins) speed = std::max(speed, pin.velocity.norm());
   return speed;
 }

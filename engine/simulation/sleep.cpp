@@ -26,8 +26,11 @@ double sleep_time(const Simulation::State& state) {
   return static_cast<double>(state.config.sleep_time.value_or(k_sleep_time * state.base_step()));
 }
 
-bool is_moving(const Collider& collider) {
-  return !collider.velocity.isZero(0) || !collider.angular_velocity.isZero(0);
+/// In the step that begins now.
+bool is_moving(const Simulation::State& state, const Collider& collider) {
+  if (collider.keyframes.empty()) return !collider.velocity.isZero(0) || !collider.angular_velocity.isZero(0);
+  return collider.keyframes.back().time > state.time &&
+         collider.keyframes.front().time < state.time + static_cast<double>(state.longest_step());
 }
 
 /// Whether a collider may touch what is in a box.
@@ -39,7 +42,7 @@ bool is_near(const Simulation::State& state, const Collider& collider, const Aab
 
 bool is_near_moving(const Simulation::State& state, const Aabb& box, float spacing) {
   return std::ranges::any_of(state.colliders, [&](const Collider& collider) {
-    return is_moving(collider) && is_near(state, collider, box, spacing);
+    return is_moving(state, collider) && is_near(state, collider, box, spacing);
   });
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "colliders/collider_checks.h"
 #include "config/validation.h"
 #include "core/bounds.h"
 #include "simulation/settings.h"
@@ -244,6 +245,25 @@ void Simulation::set_twist(ColliderId id, const Vec3& velocity, const Vec3& angu
   checks.finish();
   changed.velocity = velocity;
   changed.angular_velocity = angular_velocity;
+  changed.keyframes.clear();
+  s.disturbed = true;
+}
+
+void Simulation::set_pose(ColliderId id, const Pose& pose, double seconds) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  Collider& changed = s.colliders[s.index(id)];
+  Checks checks;
+  check_pose("collider.pose", pose, checks);
+  checks.number("seconds", seconds, seconds >= 0, "a number >= 0");
+  checks.finish();
+  changed.velocity.setZero();
+  changed.angular_velocity.setZero();
+  changed.keyframes.clear();
+  if (seconds > 0)
+    changed.keyframes = {{s.time, changed.pose}, {s.time + seconds, pose}};
+  else
+    changed.pose = pose;
   s.disturbed = true;
 }
 

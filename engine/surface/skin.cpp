@@ -88,7 +88,7 @@ void Skin::Work::find_particles(const Simulation& simulation) {
   const std::span<const ParticleId> all = simulation.ids();
   ids.assign(all.begin() + static_cast<std::ptrdiff_t>(body_rows.begin),
              all.begin() + static_cast<std::ptrdiff_t>(body_rows.end));
-  std::ranges::sort(ids, {}, slot_of);
+  std::ranges::sort(ids, {}, [](ParticleId id) { return slot_of(id); });
   rows.assign(ids.size(), 0);
 }
 

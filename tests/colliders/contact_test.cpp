@@ -29,12 +29,21 @@ TEST(contact, leaves_a_velocity_alone_that_does_not_reach_the_surface) {
 
 // Of every shape, from any distance, at any speed: at the end of the step it is where it touches.
 TEST(contact, ends_a_step_that_would_pass_the_surface_at_the_surface) {
-  const std::vector<std::variant<Plane, Sphere, Box, Union>> shapes = {
+  const std::vector<Collider::Shape> shapes = {
       Plane{{0, 0, 2}, -3},
       Sphere{{0, 0, -3.5f}, 2},
       Sphere{{0, 0, 6}, 7.5f, true},
       Box{{-2, -2, -4}, {2, 2, -1.5f}},
       Box{{-2, -2, -1.5f}, {2, 2, 900}, true},
+      Capsule{{-3, -1, -3.5f}, {3, 1, -3.5f}, 2},
+      Capsule{{0, 0, 6}, {1, 1, 7}, 7.5f, true},
+      Cylinder{{-3, 0, -3.5f}, {3, 0, -3.5f}, 2},
+      Cylinder{{0, 0, -4}, {0, 0, -1.5f}, 2},
+      Cylinder{{0, 0, -1.5f}, {0, 0, 900}, 8, true},
+      Cone{{0, 0, -1.5f}, {0, 0, -4}, 2, 3},
+      Cone{{0, 0, -1.5f}, {0, 0, 900}, 4, 90, true},
+      convex_hull(std::vector<Vec3>{
+          {-3, -3, -4}, {3, -3, -4}, {0, 4, -4}, {-3, -3, -1.5f}, {3, -3, -1.5f}, {0, 4, -1.5f}}),
       Union{{Sphere{{0, 0, -3.5f}, 2}, Plane{{0, 1, 0}, -9}}},
   };
   for (const auto& shape : shapes) {
@@ -52,7 +61,10 @@ TEST(contact, ends_a_step_that_would_pass_the_surface_at_the_surface) {
 TEST(contact, lets_a_particle_by_that_passes_an_obstacle) {
   // Nearer to it than its way is long, and towards it, but aside of it.
   for (const Collider& obstacle :
-       {Collider{.shape = Sphere{{0, 0, 0}, 1}}, Collider{.shape = Box{{-1, -1, -1}, {1, 1, 1}}}})
+       {Collider{.shape = Sphere{{0, 0, 0}, 1}}, Collider{.shape = Box{{-1, -1, -1}, {1, 1, 1}}},
+        Collider{.shape = Capsule{{0, -3, 0}, {0, 3, 0}, 1}},
+        Collider{.shape = Cylinder{{0, -3, 0}, {0, 3, 0}, 1}},
+        Collider{.shape = Cone{{0, 0, 0}, {0, 0, 4}, 1}}})
     for (const float aside : {1.75f, 2.0f, 4.0f})
       EXPECT_EQ(resolve(obstacle, {aside, 0, 6}, {0, 0, -100}), Vec3(0, 0, -100)) << aside;
 }
@@ -144,10 +156,21 @@ Eigen::Vector3d literal(const Collider& collider, const Vec3& x, const Vec3& bef
 }
 
 const Box k_room{{-2, -1.5f, -1}, {2, 1.5f, 1}, true};
-const std::vector<std::variant<Plane, Sphere, Box, Union>> k_shapes = {
-    Plane{{1, -1, 2}, -0.3f},          Sphere{{0.2f, 0, 0.1f}, 1},
-    Sphere{{0.1f, 0, 0}, 2, true},     Box{{-1, -0.5f, -0.7f}, {1, 0.6f, 0.4f}},
-    Box{k_room.min, k_room.max, true}, Union{{Sphere{{1, 0, 0}, 0.5f}, Box{{-1, -1, -1}, {0, 0, 0}}}},
+const std::vector<Collider::Shape> k_shapes = {
+    Plane{{1, -1, 2}, -0.3f},
+    Sphere{{0.2f, 0, 0.1f}, 1},
+    Sphere{{0.1f, 0, 0}, 2, true},
+    Box{{-1, -0.5f, -0.7f}, {1, 0.6f, 0.4f}},
+    Box{k_room.min, k_room.max, true},
+    Capsule{{-0.5f, 0, -0.3f}, {0.4f, 0.5f, 0.2f}, 0.6f},
+    Capsule{{-0.5f, 0, -0.3f}, {0.4f, 0.5f, 0.2f}, 1.6f, true},
+    Cylinder{{-0.5f, 0, -0.3f}, {0.4f, 0.5f, 0.2f}, 0.7f},
+    Cylinder{{-1.5f, -1, -0.9f}, {1, 1.5f, 1.2f}, 1.5f, true},
+    Cone{{-0.5f, 0, -0.3f}, {0.4f, 0.5f, 0.2f}, 1, 0.4f},
+    Cone{{-1.5f, -1, -0.9f}, {1, 1.5f, 1.2f}, 2, 1, true},
+    convex_hull(random_points(14, Vec3::Constant(-1), Vec3(1.2f, 1, 0.9f))),
+    convex_hull(random_points(14, Vec3::Constant(-2), Vec3::Constant(2)), true),
+    Union{{Sphere{{1, 0, 0}, 0.5f}, Box{{-1, -1, -1}, {0, 0, 0}}}},
 };
 
 /// However it stands, moves and turns.
@@ -194,7 +217,7 @@ TEST(contact, takes_what_sticks_along_as_the_collider_turns) {
   for (int step = 0; step < 200; ++step) {
     v = resolve_one_row(table, k_step, x, v, v + Vec3(0, 0, -0.1f));
     x += 0.1f * v;
-    move_colliders(0.1, {&table, 1});
+    move_colliders(0, 0.1, {&table, 1});
   }
   const double angle = static_cast<double>(0.7f) * 20;
   EXPECT_LT(
@@ -211,8 +234,8 @@ TEST(contact, slides_along_the_surface_of_what_turns) {
 
 TEST(pose, after_a_turn_is_the_same_in_one_step_and_in_many) {
   Collider once{.velocity = {1, 2, 3}, .angular_velocity = {0.3f, -0.4f, 1.2f}}, often = once;
-  move_colliders(2, {&once, 1});
-  for (int k = 0; k < 1000; ++k) move_colliders(0.002, {&often, 1});
+  move_colliders(0, 2, {&once, 1});
+  for (int k = 0; k < 1000; ++k) move_colliders(0, 0.002, {&often, 1});
   EXPECT_LT((once.pose.translation - often.pose.translation).norm(), 1e-12);
   EXPECT_LT((once.pose.rotation - often.pose.rotation).norm(), 1e-12);
   EXPECT_NEAR(
@@ -224,7 +247,7 @@ TEST(pose, after_a_turn_is_the_same_in_one_step_and_in_many) {
 TEST(pose, moves_what_is_slower_than_single_precision_shows) {
   Collider slow{.velocity = {1e-4f, 0, 0}, .angular_velocity = {0, 0, 1e-5f}};
   slow.pose.translation = {1e5, 0, 0};
-  for (int k = 0; k < 10000; ++k) move_colliders(1e-2, {&slow, 1});
+  for (int k = 0; k < 10000; ++k) move_colliders(0, 1e-2, {&slow, 1});
   EXPECT_NEAR(slow.pose.translation.x() - 1e5, 1e-2, 1e-7);
   EXPECT_NEAR(rotation_of(slow.pose)(1, 0), 1e-3, 1e-9);
 }
@@ -232,7 +255,7 @@ TEST(pose, moves_what_is_slower_than_single_precision_shows) {
 TEST(pose, of_a_collider_takes_every_part_of_a_union_along) {
   Collider collider{.shape = Union{{Sphere{{1, 0, 0}, 1}, Box{{0, 0, 0}, {1, 1, 1}}, Plane{}}},
                     .velocity = {0, 0, 2}};
-  move_colliders(0.5, {&collider, 1});
+  move_colliders(0, 0.5, {&collider, 1});
   std::vector<PlacedCollider> placed;
   place_colliders({&collider, 1}, {0, 0, 0}, 0.1f, InstructionLevel::baseline, placed);
   ASSERT_EQ(placed[0].parts.size(), 3u);

@@ -13,6 +13,10 @@ namespace collider_test {
 const Plane k_plane{{1.0f, -2.0f, 3.0f}, 2.0f};
 const Sphere k_sphere{{0.3f, -0.2f, 0.5f}, 1.1f, false};
 const Box k_box{{-1.0f, -0.6f, -0.3f}, {0.8f, 1.2f, 0.9f}, false};
+const Capsule k_capsule{{-0.6f, 0.2f, -0.8f}, {0.5f, -0.3f, 0.7f}, 0.7f};
+const Cylinder k_cylinder{{-0.6f, 0.2f, -0.8f}, {0.5f, -0.3f, 0.7f}, 0.8f};
+const Cone k_cone{{-0.6f, 0.2f, -0.8f}, {0.5f, -0.3f, 0.9f}, 1.2f};
+const Cone k_cut_cone{{0.5f, -1, 0}, {0.5f, 1, 0}, 0.4f, 1.1f};
 const Union k_union{{k_sphere, k_box, Plane{{0.0f, 0.0f, 1.0f}, -1.5f}}};
 
 using Nearest = std::function<SurfacePoint(const Vec3&)>;
@@ -95,6 +99,10 @@ TEST(collider, normals_are_gradients) {
   expect_normals_are_gradients([](const Vec3& x) { return nearest(k_plane, x); });
   expect_normals_are_gradients([](const Vec3& x) { return nearest(k_sphere, x); });
   expect_normals_are_gradients([](const Vec3& x) { return nearest(k_box, x); });
+  expect_normals_are_gradients([](const Vec3& x) { return nearest(k_capsule, x); });
+  expect_normals_are_gradients([](const Vec3& x) { return nearest(k_cylinder, x); });
+  expect_normals_are_gradients([](const Vec3& x) { return nearest(k_cone, x); });
+  expect_normals_are_gradients([](const Vec3& x) { return nearest(k_cut_cone, x); });
   expect_normals_are_gradients([](const Vec3& x) { return nearest(k_union, x); });
 }
 
@@ -102,18 +110,27 @@ TEST(collider, normals_lead_to_the_surface) {
   expect_normals_lead_to_the_surface([](const Vec3& x) { return nearest(k_plane, x); });
   expect_normals_lead_to_the_surface([](const Vec3& x) { return nearest(k_sphere, x); });
   expect_normals_lead_to_the_surface([](const Vec3& x) { return nearest(k_box, x); });
+  expect_normals_lead_to_the_surface([](const Vec3& x) { return nearest(k_capsule, x); });
+  expect_normals_lead_to_the_surface([](const Vec3& x) { return nearest(k_cylinder, x); });
+  expect_normals_lead_to_the_surface([](const Vec3& x) { return nearest(k_cone, x); });
+  expect_normals_lead_to_the_surface([](const Vec3& x) { return nearest(k_cut_cone, x); });
 }
 
 TEST(collider, inside_flips_distance_and_normal) {
-  Sphere hollow_sphere = k_sphere;
-  Box hollow_box = k_box;
-  hollow_sphere.inside = hollow_box.inside = true;
-  for (const Vec3& x : random_points(200, Vec3::Constant(-2.0f), Vec3::Constant(2.0f))) {
-    EXPECT_EQ(nearest(hollow_sphere, x).distance, -nearest(k_sphere, x).distance);
-    EXPECT_EQ(nearest(hollow_sphere, x).normal, -nearest(k_sphere, x).normal);
-    EXPECT_EQ(nearest(hollow_box, x).distance, -nearest(k_box, x).distance);
-    EXPECT_EQ(nearest(hollow_box, x).normal, -nearest(k_box, x).normal);
-  }
+  const auto expect_flipped = [](const auto& solid) {
+    auto hollow = solid;
+    hollow.inside = true;
+    for (const Vec3& x : random_points(200, Vec3::Constant(-2.0f), Vec3::Constant(2.0f))) {
+      EXPECT_EQ(nearest(hollow, x).distance, -nearest(solid, x).distance);
+      EXPECT_EQ(nearest(hollow, x).normal, -nearest(solid, x).normal);
+    }
+  };
+  expect_flipped(k_sphere);
+  expect_flipped(k_box);
+  expect_flipped(k_capsule);
+  expect_flipped(k_cylinder);
+  expect_flipped(k_cone);
+  expect_flipped(k_cut_cone);
 }
 
 TEST(collider, union_takes_the_nearest_part) {

@@ -27,6 +27,11 @@ void for_tables(const Visit& visit) {
   visit.template operator()<Collider>("Collider", "collider.h");
   visit.template operator()<Sphere>("Sphere", "collider.h");
   visit.template operator()<Box>("Box", "collider.h");
+  visit.template operator()<Capsule>("Capsule", "collider.h");
+  visit.template operator()<Cylinder>("Cylinder", "collider.h");
+  visit.template operator()<Cone>("Cone", "collider.h");
+  visit.template operator()<ConvexHull>("ConvexHull", "collider.h");
+  visit.template operator()<DistanceField>("DistanceField", "collider.h");
   visit.template operator()<Plane>("Plane", "collider.h");
   visit.template operator()<SurfaceConfig>("SurfaceConfig", "surface_config.h");
   visit.template operator()<RunConfig>("RunConfig", "scene.h");
@@ -77,7 +82,8 @@ T beyond(double bound, int direction) {
   if constexpr (std::is_integral_v<T>)
     return static_cast<T>(static_cast<long>(bound) + direction);
   else
-    return std::nextafter(static_cast<T>(bound), static_cast<T>(direction) * std::numeric_limits<T>::infinity());
+    return std::nextafter(static_cast<T>(bound),
+                          static_cast<T>(direction) * std::numeric_limits<T>::infinity());
 }
 
 /// Bounds that are values of T are allowed, and what lies next to them outside is not.
@@ -135,7 +141,7 @@ std::string names_in_states() {
 }
 
 // What fails here has changed what saved states hold: their version in saved_state.cpp must be counted up.
-TEST(field_table, states_of_version_5_hold_these_settings_in_this_order) {
+TEST(field_table, states_of_version_6_hold_these_settings_in_this_order) {
   EXPECT_EQ(names_in_states<SolverConfig>(),
             "time_step time_step_factor support_radius gravity update_period update_interval formulation "
             "acoustic_limit contact contact_offset rotation_iterations neighbor_slack memory_limit");
@@ -145,6 +151,11 @@ TEST(field_table, states_of_version_5_hold_these_settings_in_this_order) {
   EXPECT_EQ(names_in_states<Collider>(), "velocity angular_velocity restitution friction measure_load");
   EXPECT_EQ(names_in_states<Sphere>(), "center radius inside");
   EXPECT_EQ(names_in_states<Box>(), "min max inside");
+  EXPECT_EQ(names_in_states<Capsule>(), "start end radius inside");
+  EXPECT_EQ(names_in_states<Cylinder>(), "start end radius inside");
+  EXPECT_EQ(names_in_states<Cone>(), "start end start_radius end_radius inside");
+  EXPECT_EQ(names_in_states<ConvexHull>(), "inside");
+  EXPECT_EQ(names_in_states<DistanceField>(), "inside");
   EXPECT_EQ(names_in_states<Plane>(), "normal offset");
 }
 

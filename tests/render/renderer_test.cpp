@@ -241,8 +241,11 @@ TEST(renderer, a_flat_lit_wall_has_no_acne) {
 TEST(renderer, looks_into_kept_in_shapes_through_their_front) {
   const Camera camera = frame_camera(k_bounds, small());
   Renderer renderer(small(), 1);
-  for (const Collider& shell : {Collider{.shape = Box{{-4, -4, 0}, {4, 4, 6}, true}},
-                                Collider{.shape = Sphere{{0, 0, 3}, 5, true}}}) {
+  for (const Collider& shell :
+       {Collider{.shape = Box{{-4, -4, 0}, {4, 4, 6}, true}}, Collider{.shape = Sphere{{0, 0, 3}, 5, true}},
+        Collider{.shape = Capsule{{0, 0, 2}, {0, 0, 4}, 5, true}},
+        Collider{.shape = Cylinder{{0, 0, 0}, {0, 0, 6}, 5, true}},
+        Collider{.shape = Cone{{0, 0, 0}, {0, 0, 6}, 4, 6, true}}}) {
     const Image image = renderer.render(ball({0, 0, 3}, 2, 40, 0), k_palette, {&shell, 1}, camera);
     const auto color = pixel(image, 80, 50);
     EXPECT_GT(color[0], color[2] + 60);

@@ -35,7 +35,8 @@ const Case k_cases[] = {
     {{.solver = "support_radius = 2.0\nfoo = 1"},
      "scene.toml:3:1: solver: unknown key 'foo'; known are time_step, time_step_factor, support_radius, "
      "gravity, "
-     "update_period, update_interval, formulation, acoustic_limit, contact, contact_offset, rotation_iterations, "
+     "update_period, update_interval, formulation, acoustic_limit, contact, contact_offset, "
+     "rotation_iterations, "
      "neighbor_slack, instruction_level and memory_limit"},
     {{.solver = "support_radius = 2.0\nupdate_interval = 10\nupdate_period = 1"},
      "scene.toml:3:19: solver.update_interval: is not allowed beside update_period: give one of the two"},
@@ -168,22 +169,41 @@ const Case k_cases[] = {
      "body[0]"},
     // Colliders and pins.
     {{.rest = "[[collider]]\nfriction = 0.1"},
-     "scene.toml:8:1: collider[0]: has no shape: exactly one of plane, sphere, box, union is needed"},
+     "scene.toml:8:1: collider[0]: has no shape: exactly one of plane, sphere, box, capsule, cylinder, cone, "
+     "hull, mesh, "
+     "union is needed"},
     {{.rest = "[[collider]]\nplane = { normal = [0, 0, 0] }"},
      "scene.toml:9:20: collider[0].plane.normal: [0.0, 0.0, 0.0] is not allowed: a direction, of length in "
      "[1e-15, 1e15]"},
     {{.rest = "[[collider]]\nbox = { min = [0, 0, 0], max = [1, 1, 0] }"},
      "scene.toml:9:32: collider[0].box.max: [1.0, 1.0, 0.0] is not allowed: above min along every "
      "axis"},
+    {{.rest = "[[collider]]\ncapsule = { end = [0, 0, 0], radius = 1 }"},
+     "scene.toml:9:19: collider[0].capsule.end: [0.0, 0.0, 0.0] is not allowed: a point that is [1e-15, "
+     "1e15] "
+     "away from start"},
+    {{.rest = "[[collider]]\ncone = { end = [0, 0, 1], start_radius = 0 }"},
+     "scene.toml:9:42: collider[0].cone.start_radius: 0.0 is not allowed: above 0 where end_radius is 0"},
+    {{.rest = "[[collider]]\nhull = { inside = true }"},
+     "scene.toml:9:8: collider[0].hull: has neither file nor points: exactly one of the two is needed"},
+    {{.rest = "[[collider]]\nhull = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]] }"},
+     "scene.toml:9:1: collider[0].hull: hull.points: enclose nothing: all are in one plane"},
+    {{.rest = "[[collider]]\nmesh = { file = \"none.off\" }"},
+     "scene.toml:9:17: collider[0].mesh.file: \"none.off\" is not allowed: there is no file none.off"},
+    {{.rest = "[[collider]]\nplane = {}\nkeyframes = [{ time = 1 }, { time = 1 }]"},
+     "scene.toml:10:28: collider[0].keyframes[1]: time 1.0 is not allowed: a time after that of the keyframe "
+     "before"},
+    {{.rest = "[[collider]]\nplane = {}\nvelocity = [0, 0, 1]\nkeyframes = [{ time = 1 }]"},
+     "scene.toml:10:12: collider[0].velocity: is not allowed beside keyframes"},
     {{.rest = "[[collider]]\nunion = []"},
      "scene.toml:9:9: collider[0].union: an array of 0 is not allowed: a list of 1 to 10000 tables, each "
      "with one of "
-     "plane, sphere, box"},
+     "plane, sphere, box, capsule, cylinder, cone, hull, mesh"},
     {{.rest = "[[collider]]\nunion = [{ sphere = { radius = 0 } }]"},
      "scene.toml:9:32: collider[0].union[0].sphere.radius: 0 is not allowed: a number > 0"},
     {{.rest = "[[collider]]\nunion = [{ sphere = { radius = 1 }, plane = {} }]"},
      "scene.toml:9:37: collider[0].union[0].plane: is not allowed beside sphere: exactly one of plane, "
-     "sphere, box"},
+     "sphere, box, capsule, cylinder, cone, hull, mesh"},
     {{.rest = "[[collider]]\nplane = {}\nrestitution = 1.5"},
      "scene.toml:10:15: collider[0].restitution: 1.5 is not allowed: a number in [0, 1]"},
     {{.rest = "[[pin]]\nvelocity = [0, 0, 1]"},

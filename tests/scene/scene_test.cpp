@@ -89,7 +89,25 @@ union = [
   { plane = { normal = [1, 0, 0], offset = 2 } },
   { sphere = { center = [1, 2, 3], radius = 4, inside = true } },
   { box = { min = [-1, -2, -3], max = [1, 2, 3], inside = true } },
+  { capsule = { start = [1, 2, 3], end = [4, 5, 6], radius = 0.5, inside = true } },
+  { cylinder = { start = [1, 2, 3], end = [4, 5, 6], radius = 0.5, inside = true } },
+  { cone = { start = [1, 2, 3], end = [4, 5, 6], start_radius = 0.5, end_radius = 0.25, inside = true } },
+  { hull = { file = "tetra.off", inside = true } },
+  { mesh = { file = "tetra.off", voxels = 8, size = 3, center = [9, 9, 9], inside = true } },
 ]
+[[collider]]
+capsule = { start = [1, 2, 3], end = [4, 5, 6], radius = 0.5, inside = true }
+[[collider]]
+cylinder = { start = [1, 2, 3], end = [4, 5, 6], radius = 0.5, inside = true }
+[[collider]]
+cone = { start = [1, 2, 3], end = [4, 5, 6], start_radius = 0.5, end_radius = 0.25, inside = true }
+[[collider]]
+hull = { file = "tetra.off", inside = true }
+[[collider]]
+mesh = { file = "tetra.off", voxels = 8, size = 3, center = [9, 9, 9], inside = true }
+[[collider]]
+hull = { points = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4.5]] }
+keyframes = [{ time = 0.5, translate = [1, 2, 3] }, { time = 1.5, translate = [4, 5, 6], rotate = [0, 0, 90] }]
 [[pin]]
 box = { min = [0, 0, 0], max = [1, 1, 0] }
 velocity = [0, 0, 2]
@@ -194,7 +212,7 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_EQ(std::get<PointsSource>(read.bodies[5].source).spacing, 0.1f);
   EXPECT_EQ(std::get<ImplicitSource>(read.bodies[7].source).sampling.count, 500);
 
-  ASSERT_EQ(read.colliders.size(), 4u);
+  ASSERT_EQ(read.colliders.size(), 10u);
   EXPECT_EQ(std::get<Plane>(read.colliders[0].shape).offset, -3.0f);
   EXPECT_EQ(read.colliders[0].pose.translation, Eigen::Vector3d(1, 2, 3));
   EXPECT_NEAR(read.colliders[0].pose.rotation.z(), std::sqrt(0.5), 1e-7);
@@ -208,8 +226,21 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_TRUE(std::get<Sphere>(read.colliders[1].shape).inside);
   EXPECT_EQ(std::get<Box>(read.colliders[2].shape).min, Vec3(-1, -2, -3));
   const auto& parts = std::get<Union>(read.colliders[3].shape).parts;
-  ASSERT_EQ(parts.size(), 3u);
+  ASSERT_EQ(parts.size(), 8u);
+  EXPECT_NEAR(nearest(std::get<ConvexHull>(read.colliders[7].shape), {1, 1, 0.25f}).distance, 0.25f, 1e-6f);
+  EXPECT_TRUE(std::get<ConvexHull>(parts[6]).inside);
+  EXPECT_NEAR(bounds(std::get<DistanceField>(read.colliders[8].shape)).max.x(), 10.5f, 0.2f);
+  EXPECT_TRUE(std::get<DistanceField>(read.colliders[8].shape).inside);
+  EXPECT_EQ(nearest(std::get<ConvexHull>(read.colliders[9].shape), {1, 1, -2}).distance, 2);
+  ASSERT_EQ(read.colliders[9].keyframes.size(), 2u);
+  EXPECT_EQ(read.colliders[9].keyframes[1].time, 1.5);
+  EXPECT_EQ(read.colliders[9].keyframes[1].pose.translation, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(read.colliders[9].pose.translation, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(std::get<Box>(parts[2]).max, Vec3(1, 2, 3));
+  EXPECT_EQ(std::get<Capsule>(read.colliders[4].shape).end, Vec3(4, 5, 6));
+  EXPECT_TRUE(std::get<Cylinder>(read.colliders[5].shape).inside);
+  EXPECT_EQ(std::get<Cone>(read.colliders[6].shape).end_radius, 0.25f);
+  EXPECT_EQ(std::get<Cone>(parts[5]).start, Vec3(1, 2, 3));
 
   EXPECT_EQ(read.pins.at(0).box.max, Vec3(1, 1, 0));
   EXPECT_EQ(read.pins.at(0).velocity, Vec3(0, 0, 2));
@@ -245,13 +276,21 @@ TEST_F(every_key, that_is_described_is_known_to_the_reader) {
     int element = 0;
     if (key.starts_with("body[].") && key.find('.', 7) != std::string::npos)
       element = index[key.substr(7, key.find('.', 7) - 7)];
-    if (key.starts_with("collider[].sphere")) element = 1;
-    if (key.starts_with("collider[].box")) element = 2;
+    const std::vector<std::string> shapes{"plane",    "sphere", "box",  "capsule",
+                                          "cylinder", "cone",   "hull", "mesh"};
+    for (std::size_t kind = 0; kind < shapes.size(); ++kind) {
+      // The union stands after the first three.
+      if (key.starts_with("collider[]." + shapes[kind] + '.'))
+        element = static_cast<int>(kind < 3 ? kind : kind + 1);
+      if (const auto at = key.find("union[]." + shapes[kind] + '.'); at != std::string::npos)
+        key.insert(at + 6, std::to_string(kind));
+    }
     if (key.starts_with("collider[].union")) element = 3;
-    if (const auto at = key.find("union[]"); at != std::string::npos)
-      key.insert(at + 6, key.find("sphere") != std::string::npos ? "1"
-                         : key.find("box") != std::string::npos  ? "2"
-                                                                 : "0");
+    if (const auto at = key.find("keyframes[]"); at != std::string::npos) {
+      key.insert(at + 10, "0");
+      element = 9;
+    }
+    if (key == "collider[].hull.points") element = 9;
     if (const auto at = key.find("[]"); at != std::string::npos) key.insert(at + 1, std::to_string(element));
     const auto found = problems(k_every_key, {key + "=1979-05-27"});
     ASSERT_FALSE(found.empty()) << key;

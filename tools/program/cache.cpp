@@ -231,7 +231,7 @@ Cache Cache::open(const fs::path& folder, Access access) {
 }
 
 void Cache::check_names(const fs::path& folder, const Scene& scene) {
-  const Scene moved = Cache(folder).moved_here(scene);
+  Scene moved = Cache(folder).moved_here(scene);
   const auto check = [&](const fs::path& file) {
     try {
       nlohmann::json(file.string()).dump();
@@ -240,11 +240,7 @@ void Cache::check_names(const fs::path& folder, const Scene& scene) {
                          "' is not UTF-8, so that no scene.toml can hold it");
     }
   };
-  for (const SceneBody& body : moved.bodies) {
-    if (const auto* mesh = std::get_if<MeshSource>(&body.source)) check(mesh->file);
-    if (const auto* points = std::get_if<PointsSource>(&body.source)) check(points->file);
-    check(body.skin);
-  }
+  for (const fs::path* file : named_files(moved)) check(*file);
 }
 
 void Cache::refuse_inputs(const fs::path& folder, const InputFiles& inputs, const std::string& option,
@@ -270,11 +266,7 @@ Scene Cache::moved_here(Scene scene) const {
     const fs::path folder = fs::weakly_canonical((home / file).parent_path(), unknown);
     return (folder / file.filename()).lexically_proximate(here);
   };
-  for (SceneBody& body : scene.bodies) {
-    if (auto* mesh = std::get_if<MeshSource>(&body.source)) mesh->file = moved(mesh->file);
-    if (auto* points = std::get_if<PointsSource>(&body.source)) points->file = moved(points->file);
-    if (!body.skin.empty()) body.skin = moved(body.skin);
-  }
+  for (fs::path* file : named_files(scene)) *file = moved(*file);
   scene.file = scene_file();
   return scene;
 }

@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 
 #include <optional>
-#include <variant>
 
 #include "mallow/errors.h"
 
@@ -22,11 +21,8 @@ std::optional<std::pair<std::uintmax_t, std::uintmax_t>> id_of(const std::filesy
 InputFiles::InputFiles(const Scene& scene) {
   add(scene.file);
   const std::filesystem::path folder = scene.file.parent_path();
-  for (const SceneBody& body : scene.bodies) {
-    if (const auto* mesh = std::get_if<MeshSource>(&body.source)) add(folder / mesh->file);
-    if (const auto* points = std::get_if<PointsSource>(&body.source)) add(folder / points->file);
-    if (!body.skin.empty()) add(folder / body.skin);
-  }
+  Scene copy = scene;
+  for (const std::filesystem::path* file : named_files(copy)) add(folder / *file);
 }
 
 void InputFiles::add(const std::filesystem::path& file) {

@@ -25,7 +25,9 @@ std::vector<Collider> visible_colliders(const Scene& scene) {
 /// The same where they are at a time.
 std::vector<Collider> colliders_at(const Scene& scene, double time) {
   std::vector<Collider> colliders = visible_colliders(scene);
-  for (Collider& collider : colliders) collider.pose = pose_after(collider, time);
+  for (Collider& collider : colliders)
+    collider.pose =
+        collider.keyframes.empty() ? pose_after(collider, time) : pose_at(collider.keyframes, time);
   return colliders;
 }
 

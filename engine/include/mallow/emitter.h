@@ -25,10 +25,10 @@ struct Emitter {
   /// Where the nozzle is: the strand leaves it along its z axis. It is in the way of nothing; a collider may
   /// be put around it, which layers pass until they are free.
   Pose pose = {};
-  Vec3 velocity{0, 0, 0};           ///< of the nozzle [m/s]
-  float speed = 1.0f;               ///< of the strand, from the nozzle on [m/s], >= 0
-  double start = 0;                 ///< it flows from this time on [s]
-  std::optional<double> stop = {};  ///< and until this [s], >= 0; left out: it goes on
+  Vec3 velocity{0, 0, 0};            ///< of the nozzle [m/s]
+  float speed = 1.0f;                ///< of the strand, from the nozzle on [m/s], >= 0
+  std::optional<double> start = {};  ///< it flows from this time on [s], >= 0; left out: at once
+  std::optional<double> stop = {};   ///< and until this [s], >= 0; left out: it goes on
   /// Random displacement of every point across the flow, at most jitter h per axis, in [0, 0.45]. Layers of a
   /// disc are turned besides, each by 2.4 rad: a strand of straight rows does not buckle.
   float jitter = k_default_jitter;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mallow/body.h"
+#include "mallow/collider.h"
 #include "mallow/export.h"
 #include "mallow/mesh.h"
 #include "mallow/vec3.h"
@@ -26,6 +27,13 @@ inline constexpr int k_mesh_voxels = 192;
 /// count: inside is behind an odd number of them. The shape's volume is the mesh's. Throws ConfigError where
 /// the mesh is empty, open (why_not_closed) or has a vertex that is not finite.
 MALLOW_EXPORT ImplicitShape mesh_shape(const Mesh& mesh, int voxels = k_mesh_voxels, int threads = 0);
+
+/// A closed mesh as an obstacle, where the mesh lies: signed distances on a grid with `voxels` voxels along
+/// its longest side, in [8, 512]; parts thinner than a voxel may be missed. Which side is inside is what
+/// mesh_shape() says. Grids that are still in use are made once for equal meshes. Throws what mesh_shape()
+/// does.
+MALLOW_EXPORT DistanceField mesh_collider(const Mesh& mesh, int voxels = 64, bool inside = false,
+                                          int threads = 0);
 
 /// The level sets of the frame drawn last as the content of a VDB file: grids "surface", or "surface_0" and
 /// on where there are several surfaces; see level_set() in mallow/openvdb.h.

@@ -69,12 +69,39 @@ struct SceneBody {
   int line = 0;  ///< of the scene file; 0 where it did not come from one
 };
 
+/// A convex hull of the corners of a mesh, or of points.
+struct HullSource {
+  std::filesystem::path file = {};  ///< relative to the scene; empty: `points` are given
+  std::vector<Vec3> points = {};    ///< [m]
+  bool inside = false;              ///< ConvexHull::inside
+};
+/// A closed mesh of a file as an obstacle, see mesh_collider().
+struct MeshColliderSource {
+  std::filesystem::path file = {};  ///< relative to the scene
+  int voxels = 64;                  ///< along its longest side, in [8, 512]
+  std::optional<float> size = {};   ///< longest side [m], > 0; left out: as in the file
+  std::optional<Vec3> center = {};  ///< middle of its box [m]; left out: where the file has it
+  bool inside = false;              ///< DistanceField::inside
+};
+/// What a shape was made of that scene files do not hold as it is.
+using ShapeSource = std::variant<std::monostate, HullSource, MeshColliderSource>;
+
+/// A PoseKeyframe as scene files have it.
+struct SceneKeyframe {
+  float time = 0;           ///< [s], after that of the keyframe before
+  Vec3 translate{0, 0, 0};  ///< [m]
+  Vec3 rotate{0, 0, 0};     ///< about x, then y, then z [degrees]
+};
+
 /// A collider of a scene.
 struct SceneCollider : Collider {
   /// What scene files make of the pose: read_scene() sets both, print_scene() prints these.
   Vec3 translate{0, 0, 0};  ///< [m]
   Vec3 rotate{0, 0, 0};     ///< about x, then y, then z [degrees]
   bool visible = true;      ///< in pictures; it acts on particles in any case
+  /// Of its parts in order, where any of them is a hull or a mesh: read_scene() makes those parts of these.
+  std::vector<ShapeSource> sources = {};
+  std::vector<SceneKeyframe> scene_keyframes = {};  ///< what scene files make of `keyframes`, as of the pose
 };
 
 /// An emitter of a scene. `material` is the name of one of its materials.
@@ -133,6 +160,9 @@ struct Scene {
   RunConfig run;
   RenderConfig render;
 };
+
+/// The names of meshes and points in a scene, relative to it.
+MALLOW_EXPORT std::vector<std::filesystem::path*> named_files(Scene& scene);
 
 /// How a scene is read.
 struct SceneReadOptions {

@@ -186,10 +186,14 @@ class MALLOW_EXPORT Simulation {
   const Material& material_settings(MaterialId material) const;
   /// Alpha of a material alone.
   void set_alpha(MaterialId material, const AlphaSchedule& alpha);
-  /// The velocity of a collider from now on [m/s], finite.
+  /// The velocity of a collider from now on [m/s], finite. It has no keyframes then.
   void set_velocity(ColliderId collider, const Vec3& velocity);
   /// [m/s], and [rad/s] about its pose's translation.
   void set_twist(ColliderId collider, const Vec3& velocity, const Vec3& angular_velocity);
+  /// Puts a collider where it then stands still, without keyframes. seconds: 0, it is there at once and moves
+  /// nothing on the way; > 0, it takes so long [s] and moves what it meets. Throws ConfigError where a number
+  /// is out of range.
+  void set_pose(ColliderId collider, const Pose& pose, double seconds = 0);
   /// The velocity of the particles of a pin from now on [m/s], finite.
   void set_velocity(PinId pin, const Vec3& velocity);
   /// The particles of a pin go `way` [m] in the next `seconds`, > 0, evenly, and stay there.
