@@ -33,6 +33,8 @@ struct ShapeNumbers {
 /// `rotation` and `spin` are not read.
 struct ContactSurface {
   float velocity[3];     ///< u [m/s]
+  float along[3];        ///< of the surface itself, along it [m/s]
+  bool carries;          ///< `along` is not 0
   float restitution;     ///< e
   float friction;        ///< μ_f
   bool turns;            ///< shapes are given in the frame of the collider

@@ -26,6 +26,8 @@ void place(const Collider& collider, const Vec3& origin, float time_step, Instru
   surface.friction = collider.friction;
   surface.turns = turns(collider);
   Eigen::Map<Vec3>(surface.velocity) = collider.velocity;
+  Eigen::Map<Vec3>(surface.along) = collider.surface_velocity;
+  surface.carries = !collider.surface_velocity.isZero(0);
   Eigen::Map<Vec3>(surface.translation) = stands.cast<float>();
   Eigen::Map<RowMajor>(surface.rotation) = rotation_of(collider.pose).cast<float>();
   Eigen::Map<RowMajor>(surface.spin) =

@@ -140,9 +140,13 @@ inline Lanes bounce(float restitution, const Lanes& approach, const Lanes& gap, 
 
 /// The velocity after contact of a particle that comes with `before` (v^t), would move with v, and meets the
 /// plane `met`, which moves with u. [model 2, section 4 A]
-inline LaneVec3 resolve_contact(const ContactSurface& surface, const LaneVec3& u, const Surface& met,
+inline LaneVec3 resolve_contact(const ContactSurface& surface, LaneVec3 u, const Surface& met,
                                 const ContactStep& step, const LaneVec3& before, const LaneVec3& v) {
   const LaneVec3& n = met.normal;
+  if (surface.carries) {
+    const LaneVec3 along = all_lanes(surface.along);
+    u += along - dot(along, n) * n;
+  }
   const Lanes gap = met.distance - step.contact_offset, zero = {};
   const LaneVec3 relative = v - u;
   const Lanes normal_velocity = dot(relative, n);

@@ -83,6 +83,9 @@ struct FieldTable<Material> {
       Field{"cohesion", &Material::cohesion, between(0, 1), "", "share of a negative pressure that acts"},
       Field{"friction", &Material::friction, k_not_negative, "",
             "Coulomb's μ_f where it touches other bodies"},
+      Field{
+          "adhesion", &Material::adhesion, k_not_negative, "Pa",
+          "stress up to which it sticks to other bodies that touch it; that of a pair is the geometric mean"},
       Field{"damping_time", &Material::damping_time, k_not_negative, "s",
             "of elasticity, τ: a mode of frequency ω has a damping ratio of ω τ/2"},
       Field{"deformation_damping", &Material::deformation_damping, k_not_negative, "1/s",
@@ -137,6 +140,8 @@ struct FieldTable<Collider> {
       Field{"velocity", &Collider::velocity, k_finite, "m/s", "the obstacle moves with it"},
       Field{"angular_velocity", &Collider::angular_velocity, k_finite, "rad/s",
             "the obstacle turns with it about the origin of its shape"},
+      Field{"surface_velocity", &Collider::surface_velocity, k_finite, "m/s",
+            "its surface moves along with it while the shape stays, as a belt does"},
       Field{"restitution", &Collider::restitution, between(0, 1), "",
             "share of the normal velocity that bounces back, e"},
       Field{"friction", &Collider::friction, k_not_negative, "", "Coulomb's μ_f"},

@@ -15,9 +15,9 @@ constexpr int k_least_rounds = 4, k_most_rounds = 8;
 constexpr float k_tolerance = 0.01f;
 
 /// Calls body(point, its pairs) for all of a block that have any.
-template <class Body>
-void for_touching(const BlockPairs& block, const Body& body) {
-  const ContactPair* first = block.pairs.data();
+template <class Block, class Body>
+void for_touching(Block& block, const Body& body) {
+  auto* first = block.pairs.data();
   for (const BlockPairs::Touching& touching : block.points) {
     body(touching.point, std::span(first, touching.count));
     first += touching.count;
@@ -25,21 +25,21 @@ void for_touching(const BlockPairs& block, const Body& body) {
 }
 /// The same for all blocks.
 template <class Body>
-void for_touching(const ContactPairs& pairs, const Threads& threads, const Body& body) {
+void for_touching(ContactPairs& pairs, const Threads& threads, const Body& body) {
   parallel_for(threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
     for_touching(pairs.blocks[number], body);
   });
 }
 
-/// Calls visit(pair, v_i − v_j, its part along n) for the pairs of a point that come nearer than they may.
-template <class Visit>
-void for_pushing_pairs(const ContactPairs& pairs, std::uint32_t i, std::span<const ContactPair> own,
-                       const Visit& visit) {
+/// Calls visit(pair, v_i − v_j, its part along n) for the pairs of a point that come nearer than they may, or
+/// stick.
+template <class Pair, class Visit>
+void for_acting_pairs(const ContactPairs& pairs, std::uint32_t i, std::span<Pair> own, const Visit& visit) {
   const Vec3 v = pairs.velocity[i].velocity;
-  for (const ContactPair& pair : own) {
+  for (Pair& pair : own) {
     const Vec3 w = v - pairs.velocity[pair.other].velocity;
     const float along = w.dot(pair.normal);
-    if (along < pair.target) visit(pair, w, along);
+    if (along < pair.target || pair.sticks > 0) visit(pair, w, along);
   }
 }
 
@@ -48,9 +48,9 @@ float count_pushes(const Threads& threads, float time_step, ContactPairs& pairs)
   pairs.partial_excess.assign(pairs.blocks.size(), 0);
   parallel_for(threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
     float most = 0;
-    for_touching(pairs.blocks[number], [&](std::uint32_t i, std::span<const ContactPair> own) {
+    for_touching(pairs.blocks[number], [&](std::uint32_t i, std::span<ContactPair> own) {
       float pushes = 0;
-      for_pushing_pairs(pairs, i, own, [&](const ContactPair& pair, const Vec3&, float along) {
+      for_acting_pairs(pairs, i, own, [&](const ContactPair& pair, const Vec3&, float along) {
         ++pushes;
         most = std::max(most, (pair.target - along) / pairs.points[i].half_spacing);
       });
@@ -62,19 +62,22 @@ float count_pushes(const Threads& threads, float time_step, ContactPairs& pairs)
 }
 
 /// What its pairs do to the velocity of a point in one round. A particle shares its mass between its pairs,
-/// so that all of them together do not overshoot.
-Vec3 impulses(const ContactPairs& pairs, std::uint32_t i, std::span<const ContactPair> own_pairs) {
+/// so that all of them together do not overshoot. What sticks is held back by no more than is left of that.
+Vec3 impulses(const ContactPairs& pairs, std::uint32_t i, std::span<ContactPair> own_pairs) {
   const ContactPoint& own = pairs.points[i];
   const float own_share = pairs.velocity[i].pushes * own.inverse_mass;
   Vec3 sum = Vec3::Zero();
-  for_pushing_pairs(pairs, i, own_pairs, [&](const ContactPair& pair, const Vec3& w, float along) {
+  for_acting_pairs(pairs, i, own_pairs, [&](ContactPair& pair, const Vec3& w, float along) {
     const ContactPoint& other = pairs.points[pair.other];
     const float mass = 1 / (own_share + pairs.velocity[pair.other].pushes * other.inverse_mass);
-    const float push = mass * (pair.target - along);
+    const float friction = own.friction * other.friction;
+    const float push = std::max(mass * (pair.target - along), -pair.sticks);
     const Vec3 slip = w - along * pair.normal;
     const float speed = slip.norm();
+    const float rub = std::min(friction * (std::max(push, 0.0f) + pair.sticks), mass * speed);
     sum += push * pair.normal;
-    if (speed > 0) sum -= std::min(own.friction * other.friction * push, mass * speed) / speed * slip;
+    if (speed > 0) sum -= rub / speed * slip;
+    if (pair.sticks > 0) pair.sticks = std::max(0.0f, pair.sticks - std::max(-push, 0.0f));
   });
   return own.inverse_mass * sum;
 }
@@ -89,14 +92,14 @@ void resolve_body_contacts(const VectorColumn& positions, const std::uint16_t* p
   for (int round = 0; round < k_most_rounds; ++round) {
     const float excess = count_pushes(threads, step.time_step, pairs);
     if (excess == 0 || (round >= k_least_rounds && excess < k_tolerance)) break;
-    for_touching(pairs, threads, [&](std::uint32_t i, std::span<const ContactPair> own) {
+    for_touching(pairs, threads, [&](std::uint32_t i, std::span<ContactPair> own) {
       const ContactVelocity& now = pairs.velocity[i];
       pairs.next_velocity[i].velocity = now.velocity;
       if (now.pushes > 0) pairs.next_velocity[i].velocity += impulses(pairs, i, own);
     });
     pairs.velocity.swap(pairs.next_velocity);
   }
-  for_touching(pairs, threads, [&](std::uint32_t i, std::span<const ContactPair>) {
+  for_touching(pairs, threads, [&](std::uint32_t i, std::span<ContactPair>) {
     if (pairs.points[i].inverse_mass > 0) velocities.set(pairs.near.row[i], pairs.velocity[i].velocity);
   });
 }

@@ -17,6 +17,8 @@ namespace {
 /// throw particles apart, and what rests would tremble [Baumgarte 1972]. Of 200 cubes in a heap the one that
 /// moves most does so at a third of the speed, and head-on nothing comes nearer than without.
 constexpr float k_correction = 0.3f, k_slop = 0.02f;
+/// Gap up to which what sticks is held, in d0.
+constexpr float k_sticking = 0.1f;
 /// Pairs of a point that there is room for from the start: more than rest or flow asks for, so that a motion
 /// that goes on takes no more memory.
 constexpr std::size_t k_room = 8;
@@ -63,6 +65,7 @@ void gather(const VectorColumn& positions, const VectorColumn& velocities, const
                          .depth = depth,
                          .inverse_mass = pin && pin[row] != 0 ? 0.0f : 1.0f / body.mass,
                          .friction = std::sqrt(body.friction),
+                         .adhesion = std::sqrt(body.adhesion),
                          .half_spacing = 0.5f * body.spacing};
     }
   });
@@ -118,7 +121,8 @@ void add_pair(std::uint32_t p, std::uint32_t q, const BodyContactStep& step, con
   float target = -gap / step.time_step;
   if (gap < 0)
     target = std::clamp(k_correction * (target - k_slop * spacing / step.time_step), 0.0f, step.max_push);
-  found.push_back({normal, target, q});
+  const float stress = gap < k_sticking * spacing ? own.adhesion * other.adhesion : 0;
+  found.push_back({normal, target, stress * spacing * spacing * step.time_step, q});
 }
 
 /// So much wider than they would be where nothing rounds are the tests by which points are left out.

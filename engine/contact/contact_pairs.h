@@ -11,6 +11,7 @@ struct ContactPoint {
   float depth;         ///< |N|, from the middle of its region to it [m]
   float inverse_mass;  ///< 1/m, 0 where it is pinned [1/kg]
   float friction;      ///< √μ_f
+  float adhesion;      ///< √a [√Pa]
   float half_spacing;  ///< h/2 [m]
 };
 
@@ -18,6 +19,7 @@ struct ContactPoint {
 struct ContactPair {
   Vec3 normal;          ///< n, from the second body to the first
   float target;         ///< t, what their velocity along n must reach [m/s]
+  float sticks;         ///< impulse by which they may still be held together in this step [N s]
   std::uint32_t other;  ///< the second
 };
 

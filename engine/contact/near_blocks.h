@@ -25,6 +25,7 @@ struct TouchingBody {
   float spacing;               ///< h [m]
   float mass;                  ///< of a particle, m [kg]
   float friction;              ///< Coulomb's μ_f
+  float adhesion;              ///< a [Pa]
   bool sleeps;                 ///< two that do are not looked at
   const ShapeMatching* shape;  ///< null: nothing says which way is out of it
 };

@@ -24,7 +24,9 @@ std::string particle_header(const ParticleFrame& frame, std::size_t bytes_of_bod
   header += std::to_string(frame.step) + "\nelement vertex " + std::to_string(frame.positions.size()) + '\n';
   for (const char* name : {"x", "y", "z", "vx", "vy", "vz"})
     header += std::string("property float ") + name + '\n';
-  return header + "property " + ply_body_type(bytes_of_body) + " group\nend_header\n";
+  header += std::string("property ") + ply_body_type(bytes_of_body) + " group\n";
+  if (!frame.ids.empty()) header += "property uint id\nproperty uint generation\n";
+  return header + "end_header\n";
 }
 
 std::string_view require_comment(const PlyReader& ply, std::string_view begin) {
@@ -59,13 +61,17 @@ void write_particles(const std::filesystem::path& file, const ParticleFrame& fra
   require_valid(frame);
   const std::size_t bytes_of_body = body_bytes(frame.bodies);
   std::string bytes = particle_header(frame, bytes_of_body);
-  const std::size_t total = bytes.size() + frame.positions.size() * (24 + bytes_of_body);
+  const std::size_t total =
+      bytes.size() + frame.positions.size() * (24 + bytes_of_body + (frame.ids.empty() ? 0 : 8));
   require_readable_size(file, total);
   bytes.reserve(total);
   for (std::size_t i = 0; i < frame.positions.size(); ++i) {
     append_little_endian(bytes, frame.positions[i]);
     append_little_endian(bytes, frame.velocities[i]);
     append_body(bytes, frame.bodies[i], bytes_of_body);
+    if (frame.ids.empty()) continue;
+    append_little_endian(bytes, slot_of(frame.ids[i]));
+    append_little_endian(bytes, generation_of(frame.ids[i]));
   }
   write_whole(file, bytes);
 }
@@ -80,6 +86,7 @@ ParticleFrame read_particles(const std::filesystem::path& file) {
   const auto velocity = ply.find_vector(vertex, {"vx", "vy", "vz"}, true);
   const auto body = ply.find_scalar(vertex, "group");
   if (!body) ply.fail("element 'vertex' lacks 'group'");
+  const auto id = ply.find_scalar(vertex, "id"), generation = ply.find_scalar(vertex, "generation");
   while (const PlyElement* element = ply.next_element()) {
     if (element != &vertex) continue;
     frame.positions.reserve(element->count);
@@ -89,6 +96,10 @@ ParticleFrame read_particles(const std::filesystem::path& file) {
       frame.positions.push_back(ply.finite_vector(*position));
       frame.velocities.push_back(ply.finite_vector(*velocity));
       frame.bodies.push_back(ply.index(ply.value(*body), k_most_bodies, "group"));
+      if (!id || !generation) continue;
+      constexpr std::uint64_t k_most = std::uint64_t{1} << 32;
+      frame.ids.push_back(ParticleId{ply.index(ply.value(*generation), k_most, "generation")} << 32 |
+                          ply.index(ply.value(*id), k_most, "id"));
     }
   }
   return frame;
@@ -98,7 +109,7 @@ void write_state_csv(const std::filesystem::path& file, const ParticleFrame& fra
   require_valid(frame);
   std::string text = "id,x,y,z,vx,vy,vz\n";
   for (std::size_t i = 0; i < frame.positions.size(); ++i) {
-    text += std::to_string(i);
+    text += std::to_string(frame.ids.empty() ? i : frame.ids[i]);
     for (const Vec3* vector : {&frame.positions[i], &frame.velocities[i]}) {
       for (const float value : *vector) append_number(text += ',', value, k_float_digits);
     }

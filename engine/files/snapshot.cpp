@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "mallow/errors.h"
 #include "mallow/files.h"
 #include "mallow/simulation.h"
@@ -7,8 +9,14 @@
 namespace mallow {
 
 ParticleFrame snapshot(const Simulation& simulation) {
-  return {simulation.positions_by_id(), simulation.velocities_by_id(), simulation.bodies_by_id(),
-          simulation.time(), simulation.step_count()};
+  ParticleFrame frame{simulation.positions_by_id(), simulation.velocities_by_id(), simulation.bodies_by_id(),
+                      simulation.time(), simulation.step_count()};
+  const std::span<const ParticleId> ids = simulation.ids();
+  // As long as nobody was removed they are the numbers below that of all particles.
+  if (std::ranges::all_of(ids, [&](ParticleId id) { return id < ids.size(); })) return frame;
+  frame.ids.assign(ids.begin(), ids.end());
+  std::ranges::sort(frame.ids, {}, [](ParticleId id) { return slot_of(id); });
+  return frame;
 }
 
 SurfaceParticles surface_particles(const ParticleFrame& frame, std::span<const float> spacings) {

@@ -54,6 +54,7 @@ void require_valid(const ParticleFrame& frame) {
   };
   require("frame.velocities", frame.velocities.size());
   require("frame.bodies", frame.bodies.size());
+  if (!frame.ids.empty()) require("frame.ids", frame.ids.size());
 }
 
 }  // namespace mallow

@@ -36,6 +36,13 @@ struct PolyData {
     begin_array(name, k_float32, 3, vectors.size());
     for (const Vec3& vector : vectors) append_little_endian(bytes, vector);
   }
+  /// A slot may be given again, in the next generation.
+  void add_ids(const std::vector<ParticleId>& ids) {
+    begin_array("Id", k_uint32, 1, ids.size());
+    for (const ParticleId id : ids) append_little_endian(bytes, slot_of(id));
+    begin_array("Generation", k_uint32, 1, ids.size());
+    for (const ParticleId id : ids) append_little_endian(bytes, generation_of(id));
+  }
   void add_bodies(const char* name, const std::vector<std::uint32_t>& bodies) {
     const ArrayType& type = body_bytes(bodies) == k_uint8.bytes ? k_uint8 : k_uint32;
     begin_array(name, type, 1, bodies.size());
@@ -123,7 +130,10 @@ void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame&
   data.xml += "<PointData>\n";
   data.add_vectors("Velocity", frame.velocities);
   data.add_bodies("Group", frame.bodies);
-  data.add_sequence("Id", 0, 1, count);
+  if (frame.ids.empty())
+    data.add_sequence("Id", 0, 1, count);
+  else
+    data.add_ids(frame.ids);
   data.xml += "</PointData>\n";
   data.add_points(frame.positions);
   data.xml += "<Verts>\n";

@@ -444,6 +444,7 @@ void resolve_touching(Simulation::State& state, float time_step) {
                               .spacing = body.spacing,
                               .mass = body.mass,
                               .friction = body.material->settings.friction,
+                              .adhesion = body.material->settings.adhesion,
                               .sleeps = body.island != 0,
                               .shape = body.matches_shape() ? &body.shape : nullptr});
   const ParticleStore& store = state.store;

@@ -28,6 +28,7 @@ double sleep_time(const Simulation::State& state) {
 
 /// In the step that begins now.
 bool is_moving(const Simulation::State& state, const Collider& collider) {
+  if (!collider.surface_velocity.isZero(0)) return true;
   if (collider.keyframes.empty()) return !collider.velocity.isZero(0) || !collider.angular_velocity.isZero(0);
   return collider.keyframes.back().time > state.time &&
          collider.keyframes.front().time < state.time + static_cast<double>(state.longest_step());

@@ -91,6 +91,20 @@ TEST(body_contact, four_cubes_stand_where_their_weight_is_small) {
   }
 }
 
+TEST(body_contact, a_pyramid_of_ten_stands_and_falls_asleep) {
+  Simulation s(solver(0.1f));
+  s.add_collider({.shape = Plane{}, .friction = 0.5f});
+  for (int level = 0; level < 4; ++level)
+    for (int k = 0; k < 4 - level; ++k)
+      s.add_body(box({6, 6, 6}, {6.3 * k + 3.15 * level, 0, 6.1 * level}), material(0.3f));
+  run(s, 130);
+  for (const BodyId body : s.bodies()) EXPECT_FALSE(s.is_awake(body));
+  const std::vector<Vec> at = centers(s);
+  EXPECT_NEAR(at[9].z(), 20.4, 0.4);
+  EXPECT_NEAR(at[9].x(), 12.45, 0.2);
+  for (const Vec& center : at) EXPECT_NEAR(center.y(), 3, 0.2);
+}
+
 /// How far a cube slides in 10 s on a block that is held, where gravity leans by this tangent.
 double slide(float alpha, float friction, float tangent) {
   const float length = std::sqrt(1 + tangent * tangent);
@@ -245,6 +259,44 @@ TEST(body_contact, by_pressure_is_still_there_and_bodies_that_merge_do_not_touch
   for (const float height : {0.0f, 5.0f}) touching.add_body(box({5, 5, 5}, {0, 0, height}), material(0));
   touching.step();
   EXPECT_FALSE(touching.info().sph) << "elastic bodies that touch need no sums over neighbours";
+}
+
+/// How far a cube has come down after 6 s that hangs under, or leans on, a block that is held. across: the
+/// block is beside it.
+double sunk(float adhesion, float friction, bool beside) {
+  Simulation s(solver(0.1f));
+  Material m = material(0);
+  m.adhesion = adhesion;
+  m.friction = friction;
+  s.add_body(box({8, 8, 4}, {-4, -4, 0}), m);
+  s.add_body(beside ? box({4, 4, 4}, {4.02f, -2, 0}) : box({4, 4, 4}, {-2, -2, -4.02f}), m);
+  std::vector<ParticleId> held;
+  for (ParticleId id = 0; id < 256; ++id) held.push_back(id);
+  s.pin(held);
+  const double before = centers(s)[1].z();
+  run(s, 6);
+  return before - centers(s)[1].z();
+}
+
+TEST(body_contact, sticks_up_to_its_stress_and_no_further) {
+  // 64 particles of 1 kg under 0.1 m/s² on 16 m² pull with 0.4 Pa.
+  EXPECT_GT(sunk(0, 0.5f, false), 1.5);
+  EXPECT_GT(sunk(0.25f, 0.5f, false), 0.3);
+  EXPECT_LT(sunk(0.8f, 0.5f, false), 0.3);
+  EXPECT_GT(sunk(0.8f, 0.0f, true), 1.0) << "nothing rubs";
+  EXPECT_LT(sunk(2.0f, 1.0f, true), 0.3);
+}
+
+TEST(collider, carries_what_lies_on_its_surface_and_stays) {
+  Simulation s(solver(0.3f));
+  s.add_body(box({4, 4, 4}, {-2, -2, 0}), material(0));
+  const ColliderId belt = s.add_collider(
+      {.shape = Box{{-100, -9, -3}, {100, 9, 0}}, .surface_velocity = {0.5f, 0, 0.7f}, .friction = 0.8f});
+  run(s, 20);
+  EXPECT_NEAR(s.motion(BodyId{0}).velocity.x(), 0.5, 0.02);
+  EXPECT_NEAR(centers(s)[0].z(), 1.95, 0.1) << "what of it is along the normal counts nowhere";
+  EXPECT_EQ(s.collider(belt).pose.translation, Eigen::Vector3d(0, 0, 0));
+  EXPECT_TRUE(s.is_awake(BodyId{0}));
 }
 
 }  // namespace body_contact_test

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "files/file_fixture.h"
+#include "mallow/simulation.h"
 #include "mallow/surface.h"
 
 namespace mallow {
@@ -23,6 +24,24 @@ TEST(particle_file, gives_the_same_frame_back_to_the_bit) {
   EXPECT_EQ(read.step, frame.step);
   write_particles(folder / "none.ply", ParticleFrame{});
   EXPECT_TRUE(read_particles(folder / "none.ply").positions.empty());
+}
+
+TEST(particle_file, says_which_particle_is_which_once_some_are_gone) {
+  const TemporaryFolder folder;
+  Simulation s({.time_step = 0.1f, .support_radius = 2.1f, .threads = 1});
+  const BodyId first = s.add_body(sample(Lattice{.count = {2, 2, 2}}), Material{});
+  s.add_body(sample(Lattice{.count = {2, 2, 2}, .corner = {9, 0, 0}}), Material{});
+  EXPECT_TRUE(snapshot(s).ids.empty());
+  s.remove_body(first);
+  s.add_body(sample(Lattice{.count = {2, 1, 1}, .corner = {0, 0, 9}}), Material{});
+  const ParticleFrame frame = snapshot(s);
+  ASSERT_EQ(frame.ids.size(), 10u);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(frame.positions[i], s.positions()[s.row(frame.ids[i])]) << i;
+  write_particles(folder / "a.ply", frame);
+  EXPECT_EQ(read_particles(folder / "a.ply").ids, frame.ids);
+  ParticleFrame wrong = frame;
+  wrong.ids.pop_back();
+  EXPECT_THROW(write_particles(folder / "b.ply", wrong), ConfigError);
 }
 
 TEST(particle_frame, is_drawn_as_a_body_for_each_stretch_of_rows_and_refused_where_one_has_no_spacing) {

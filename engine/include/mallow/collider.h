@@ -128,6 +128,9 @@ struct Collider {
   Pose pose = {};
   Vec3 velocity{0, 0, 0};          ///< of pose.translation [m/s]
   Vec3 angular_velocity{0, 0, 0};  ///< about pose.translation, along the axes of the world [rad/s]
+  /// By which the surface itself moves along, as a conveyor's belt does, while the shape stays [m/s]: what of
+  /// it is along the normal counts nowhere.
+  Vec3 surface_velocity{0, 0, 0};
   float restitution = 0.0f;        ///< e in [0, 1]
   float friction = 0.0f;           ///< μ_f >= 0
   bool measure_load = false;       ///< sum up what particles do to it, see Simulation::load()

@@ -12,6 +12,7 @@
 #include "mallow/appearance.h"
 #include "mallow/body.h"
 #include "mallow/export.h"
+#include "mallow/ids.h"
 #include "mallow/mesh.h"
 #include "mallow/saved_state.h"
 
@@ -65,6 +66,7 @@ struct ParticleFrame {
   std::vector<std::uint32_t> bodies;  ///< body of each particle
   double time = 0;                    ///< simulated time [s]
   std::int64_t step = 0;              ///< steps taken
+  std::vector<ParticleId> ids = {};   ///< of each particle, by ascending slot; none: 0, 1, 2, ...
 };
 
 /// The particles of a simulation as they are now.
@@ -75,8 +77,9 @@ MALLOW_EXPORT ParticleFrame snapshot(const Simulation& simulation);
 /// none.
 MALLOW_EXPORT SurfaceParticles surface_particles(const ParticleFrame& frame, std::span<const float> spacings);
 
-/// Binary PLY with x y z vx vy vz group, which is the body, time and step as comments. Bodies are `uchar`
-/// where all are below 256, `uint` where not.
+/// Binary PLY with x y z vx vy vz group, which is the slot of the body, time and step as comments. Bodies are
+/// `uchar` where all are below 256, `uint` where not. A frame with ids has `id` and `generation` too, the slot
+/// of each particle and how many had it before, by which programs follow particles that come and go.
 MALLOW_EXPORT void write_particles(const std::filesystem::path& file, const ParticleFrame& frame);
 /// What write_particles() wrote. Throws IoError.
 MALLOW_EXPORT ParticleFrame read_particles(const std::filesystem::path& file);

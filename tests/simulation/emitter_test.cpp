@@ -1,0 +1,161 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "mallow/errors.h"
+#include "mallow/simulation.h"
+
+namespace mallow {
+namespace emitter_test {
+
+SolverConfig solver(float gravity) {
+  return {.time_step = 0.15f, .support_radius = 2.1f, .gravity = {0, 0, -gravity}, .threads = 2};
+}
+/// A round nozzle at a height that points down.
+Emitter nozzle(double height, float speed = 1) {
+  Emitter emitter{.radius = 2.0f, .spacing = 1, .speed = speed};
+  emitter.pose.translation = {0, 0, height};
+  emitter.pose.rotation = {1, 0, 0, 0};
+  return emitter;
+}
+/// Pieces of particles that are nearer than this to one of their own.
+std::size_t pieces(const Simulation& s, float distance) {
+  const std::size_t n = s.particle_count();
+  std::vector<std::size_t> parent(n);
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::size_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if ((s.positions()[i] - s.positions()[j]).norm() < distance) parent[root(i)] = root(j);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i) count += root(i) == i;
+  return count;
+}
+
+TEST(emitter, lets_a_strand_out_at_its_speed_without_strain) {
+  for (const float alpha : {0.0f, 0.5f, 1.0f}) {
+    SCOPED_TRACE(alpha);
+    Simulation s(solver(0));
+    const EmitterId id =
+        s.add_emitter(nozzle(0, 0.8f), s.add_material({.alpha = alpha, .viscosity = 0.5f}), "strand");
+    EXPECT_EQ(s.find_body("strand"), s.body(id));
+    const std::size_t before = s.particle_count();
+    s.advance(40);
+    const Aabb box = s.bounds(s.body(id));
+    EXPECT_NEAR(box.min.z(), -32 + 0.5, 0.7);
+    EXPECT_EQ(pieces(s, 1.6f), 1u);
+    const double each = 12;
+    EXPECT_NEAR(static_cast<double>(s.particle_count() - before), 32 * each, 9 * each);
+    if (alpha == 0.0f) EXPECT_LT(s.energy().elastic, 1e-3) << "layers rest where they are put";
+  }
+}
+
+TEST(emitter, of_an_elastic_strand_that_moves_lays_down_one_strand) {
+  Simulation s(solver(0.1f));
+  Emitter emitter = nozzle(8, 1);
+  emitter.velocity = {0.9f, 0, 0};
+  const EmitterId id = s.add_emitter(emitter, s.add_material({.alpha = 0.5f}), "strand");
+  s.add_collider({.shape = Plane{}, .friction = 0.5f});
+  s.advance(40);
+  EXPECT_EQ(pieces(s, 2.0f), 1u);
+  EXPECT_GT(s.bounds(s.body(id)).max.x() - s.bounds(s.body(id)).min.x(), 25);
+  EXPECT_NEAR(s.emitter(id).pose.translation.x(), 36, 1e-3);
+}
+
+TEST(emitter, starts_stops_and_ends) {
+  Simulation s(solver(0));
+  Emitter emitter = nozzle(0, 1);
+  emitter.start = 2;
+  emitter.stop = 5;
+  const EmitterId id = s.add_emitter(emitter, s.add_material({}));
+  const double top = s.motion(s.body(id)).center_of_mass.z();
+  s.advance(2);
+  EXPECT_EQ(s.motion(s.body(id)).center_of_mass.z(), top);
+  s.advance(3);
+  const double out = s.bounds(s.body(id)).min.z();
+  EXPECT_NEAR(out, -3, 1);
+  s.advance(3);
+  EXPECT_NEAR(s.bounds(s.body(id)).min.z(), out, 0.3);
+  const BodyId strand = s.body(id);
+  s.remove_emitter(id);
+  EXPECT_THROW(s.emitter(id), ConfigError);
+  s.set_gravity({0, 0, -0.3f});
+  s.advance(3);
+  EXPECT_LT(s.motion(strand).velocity.z(), -0.8) << "what it held is free";
+}
+
+TEST(emitter, grows_no_longer_than_its_budget_and_sinks_take_what_comes_to_them) {
+  Simulation s(solver(0.3f));
+  Emitter emitter = nozzle(10, 1.5f);
+  emitter.most_particles = 400;
+  const EmitterId id = s.add_emitter(emitter, s.add_material({.alpha = 1.0f, .viscosity = 0.5f}));
+  s.add_sink(Aabb{{-50, -50, -20}, {50, 50, 0}});
+  std::size_t most = 0;
+  for (int k = 0; k < 400; ++k) {
+    s.step();
+    most = std::max(most, s.particle_count());
+    ASSERT_GT(s.bounds(s.body(id)).min.z(), -1.5f);
+  }
+  EXPECT_LT(most, 400u + 8 * 12);
+  EXPECT_GT(most, 300u);
+  EXPECT_GT(s.particle_count(), 100u);
+}
+
+TEST(emitter, has_the_same_bits_on_any_number_of_threads_and_after_a_restore) {
+  const auto run = [](int threads, bool restored) {
+    SolverConfig config = solver(0.1f);
+    config.threads = threads;
+    Simulation s(config);
+    s.add_collider({.shape = Plane{}, .friction = 0.5f});
+    Emitter emitter = nozzle(6, 1);
+    emitter.velocity = {0.5f, 0, 0};
+    s.add_emitter(emitter, s.add_material({.alpha = 0.5f}));
+    s.add_sink(Aabb{{-100, -100, -100}, {100, 100, 100}}, true);
+    for (int k = 0; k < 100; ++k) s.step();
+    if (restored) s = Simulation::restore(s.save(), threads);
+    for (int k = 0; k < 150; ++k) s.step();
+    return s.state_hash();
+  };
+  const std::uint64_t expected = run(1, false);
+  EXPECT_EQ(run(3, false), expected);
+  EXPECT_EQ(run(2, true), expected);
+}
+
+TEST(emitter, is_refused_where_it_is_wrong) {
+  Simulation s(solver(0));
+  const MaterialId jelly = s.add_material({});
+  const auto problem = [&](const std::function<void(Emitter&)>& change) {
+    Emitter emitter = nozzle(0);
+    change(emitter);
+    try {
+      s.add_emitter(emitter, jelly);
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing was refused");
+  };
+  const std::vector<std::pair<std::function<void(Emitter&)>, const char*>> cases{
+      {[](Emitter& e) { e.radius = {}; }, "emitter.radius: give the radius"},
+      {[](Emitter& e) { e.width = 3.0f; }, "emitter.radius: give the radius"},
+      {[](Emitter& e) { e.radius = -1.0f; }, "emitter.radius: -1 is not allowed"},
+      {[](Emitter& e) { e.speed = -1; }, "emitter.speed"},
+      {[](Emitter& e) { e.spacing = 0; }, "emitter.spacing"},
+      {[](Emitter& e) { e.radius = 1e6f; }, "emitter.spacing: makes layers of over a million"},
+      {[](Emitter& e) { e.pose.rotation.setZero(); }, "emitter.pose.rotation"},
+      {[](Emitter& e) { e.jitter = 1; }, "emitter.jitter"},
+      {[](Emitter& e) { e.most_particles = 0; }, "emitter.most_particles"},
+  };
+  for (const auto& [change, text] : cases) EXPECT_NE(problem(change).find(text), std::string::npos) << text;
+  EXPECT_THROW(s.remove_emitter(EmitterId{0}), ConfigError);
+  EXPECT_THROW(s.remove_sink(SinkId{0}), ConfigError);
+  EXPECT_THROW(s.add_sink(Aabb{{0, 0, 0}, {0, 1, 1}}), ConfigError);
+  EXPECT_EQ(s.particle_count(), 0u);
+}
+
+}  // namespace emitter_test
+}  // namespace mallow
