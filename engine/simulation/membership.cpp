@@ -60,11 +60,6 @@ void insert_points(Simulation::State& s, const Points& points, BodyState& body) 
   s.rows_changed();
 }
 
-void measure_rigid(const Simulation::State& s, BodyState& body) {
-  const Eigen::Vector3d near = s.store.position.get(body.begin).cast<double>();
-  body.rigid = rigid_motion(sum_rigid(s.store.position, s.store.velocity, body.begin, body.end, near), near);
-}
-
 /// The reference shape of a body has changed: its rows are sorted for it, and its regions built anew on
 /// rotations that their particles had.
 void rebuild_shape(Simulation::State& s, BodyState& body, std::vector<Eigen::Vector4f> rotations) {
@@ -271,7 +266,7 @@ void erase_particles(Simulation::State& s, std::span<const ParticleId> ids) {
   const std::vector<std::uint32_t> rows = rows_of(s, ids);
   // From the last body on: the rows of those before it stay where they are.
   for (std::size_t end = rows.size(); end > 0;) {
-    BodyState& body = const_cast<BodyState&>(s.body_of(rows[end - 1]));
+    BodyState& body = s.body_of(rows[end - 1]);
     std::size_t begin = end;
     while (begin > 0 && rows[begin - 1] >= body.begin) --begin;
     wake_island(s, body);
@@ -347,7 +342,7 @@ void hold_particles(Simulation::State& s, PinId pin, std::span<const ParticleId>
   for (const ParticleId id : ids) {
     const std::size_t row = *s.store.slots.find(id);
     s.store.pin[row] = static_cast<std::uint16_t>(slot_of(pin) + 1);
-    wake_island(s, const_cast<BodyState&>(s.body_of(row)));
+    wake_island(s, s.body_of(row));
   }
 }
 
@@ -358,7 +353,7 @@ void Simulation::unpin(PinId id) {
   for (std::size_t row = 0; row < s.store.pin.size(); ++row) {
     if (s.store.pin[row] != slot_of(id) + 1) continue;
     s.store.pin[row] = 0;
-    wake_island(s, const_cast<BodyState&>(s.body_of(row)));
+    wake_island(s, s.body_of(row));
   }
   s.pin_slots.give_back(static_cast<std::uint64_t>(id));
 }

@@ -38,6 +38,11 @@ void derive_density(const SolverConfig& config, BodyState& body) {
       material.rest_density.value_or(static_cast<float>(static_cast<double>(body.mass) * per_mass));
 }
 
+void measure_rigid(const Simulation::State& s, BodyState& body) {
+  const Eigen::Vector3d near = s.store.position.get(body.begin).cast<double>();
+  body.rigid = rigid_motion(sum_rigid(s.store.position, s.store.velocity, body.begin, body.end, near), near);
+}
+
 void describe_bodies(Simulation::State& state) {
   Sph& sph = state.sph;
   sph.groups.clear();
@@ -161,9 +166,7 @@ void Simulation::prepare() {
   for (BodyState& body : s.bodies) {
     if (body.grew && body.keeps_reference()) {
       take_reference(s, body);
-      const Eigen::Vector3d near = s.store.position.get(body.begin).cast<double>();
-      body.rigid =
-          rigid_motion(sum_rigid(s.store.position, s.store.velocity, body.begin, body.end, near), near);
+      measure_rigid(s, body);
     }
     body.grew = false;
   }

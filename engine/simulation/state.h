@@ -85,8 +85,8 @@ struct EmitterState {
   Emitter settings;
   BodyId body{};
   PinId pin{};
-  std::uint64_t layers = 0;                  ///< that there have been
-  double offset = 0;                         ///< how far the first of them has come [m]
+  std::uint64_t layers = 0;                       ///< that there have been
+  double offset = 0;                              ///< how far the first of them has come [m]
   std::deque<std::vector<ParticleId>> held = {};  ///< the last of them, the next to leave first
 };
 
@@ -163,6 +163,7 @@ struct Simulation::State {
   const BodyState& body_of(std::size_t row) const {
     return *std::ranges::upper_bound(bodies, row, {}, &BodyState::end);
   }
+  BodyState& body_of(std::size_t row) { return *std::ranges::upper_bound(bodies, row, {}, &BodyState::end); }
   bool is_far() const { return origin != Vec3(0, 0, 0); }
   /// A position of the store as the user sees it.
   Vec3 far(const Vec3& x) const { return (origin.cast<double>() + x.cast<double>()).cast<float>(); }
@@ -247,6 +248,9 @@ void wake_island(Simulation::State& state, BodyState& body);
 void wake_all(Simulation::State& state);
 /// Bodies that sleep are left where they are: in both sets of columns that steps go to and fro between.
 void hold_sleepers(Simulation::State& state);
+
+/// positions, velocities of a body -> its rigid motion, where they were changed other than by a step.
+void measure_rigid(const Simulation::State& state, BodyState& body);
 
 /// Throws ConfigError where an id names none of a kind.
 [[noreturn]] void refuse_id(const char* kind, std::uint64_t id, const Slots& slots);

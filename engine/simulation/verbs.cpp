@@ -18,17 +18,8 @@ void check_finite(const char* field, const Vec3& value) {
   checks.finish();
 }
 
-std::size_t row_of(const Simulation::State& s, ParticleId id) {
-  if (const std::optional<std::size_t> row = s.store.slots.find(id)) return *row;
-  throw ConfigError("particle", why_unknown(s.store, id));
-}
-
 bool is_pinned(const Simulation::State& s, std::size_t row) {
   return !s.store.pin.empty() && s.store.pin[row] != 0;
-}
-
-void wake_row(Simulation::State& s, std::size_t row) {
-  wake_island(s, const_cast<BodyState&>(s.body_of(row)));
 }
 
 /// Of a body [m], relative to the origin.
@@ -36,12 +27,6 @@ Eigen::Vector3d middle_of(const Simulation::State& s, const BodyState& body) {
   Eigen::Vector3d sum(0, 0, 0);
   for (std::size_t row = body.begin; row < body.end; ++row) sum += s.store.position.get(row).cast<double>();
   return sum / static_cast<double>(body.size());
-}
-
-/// Velocities of a body were changed: what damping goes towards follows.
-void measure_rigid(const Simulation::State& s, BodyState& body) {
-  const Eigen::Vector3d near = s.store.position.get(body.begin).cast<double>();
-  body.rigid = rigid_motion(sum_rigid(s.store.position, s.store.velocity, body.begin, body.end, near), near);
 }
 
 /// A material becomes what settings say, and its bodies with it.
@@ -130,11 +115,11 @@ void Simulation::set_velocity(std::span<const ParticleId> ids, const Vec3& veloc
   state_->refuse_in_callback();
   State& s = *state_;
   check_finite("velocity", velocity);
-  for (const ParticleId id : ids) row_of(s, id);
+  for (const ParticleId id : ids) row(id);
   for (const ParticleId id : ids) {
-    const std::size_t row = row_of(s, id);
-    if (!is_pinned(s, row)) s.store.velocity.set(row, velocity);
-    wake_row(s, row);
+    const std::size_t at = row(id);
+    if (!is_pinned(s, at)) s.store.velocity.set(at, velocity);
+    wake_island(s, s.body_of(at));
   }
 }
 

@@ -96,7 +96,7 @@ TEST(body_contact, a_pyramid_of_ten_stands_and_falls_asleep) {
   s.add_collider({.shape = Plane{}, .friction = 0.5f});
   for (int level = 0; level < 4; ++level)
     for (int k = 0; k < 4 - level; ++k)
-      s.add_body(box({6, 6, 6}, {6.3 * k + 3.15 * level, 0, 6.1 * level}), material(0.3f));
+      s.add_body(box({6, 6, 6}, Vec(6.3 * k + 3.15 * level, 0, 6.1 * level).cast<float>()), material(0.3f));
   run(s, 130);
   for (const BodyId body : s.bodies()) EXPECT_FALSE(s.is_awake(body));
   const std::vector<Vec> at = centers(s);

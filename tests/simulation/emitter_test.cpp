@@ -51,7 +51,7 @@ TEST(emitter, lets_a_strand_out_at_its_speed_without_strain) {
     EXPECT_EQ(pieces(s, 1.6f), 1u);
     const double each = 12;
     EXPECT_NEAR(static_cast<double>(s.particle_count() - before), 32 * each, 9 * each);
-    if (alpha == 0.0f) EXPECT_LT(s.energy().elastic, 1e-3) << "layers rest where they are put";
+    EXPECT_LT(s.energy().elastic, alpha < 0.1f ? 1e-3 : 10.0) << "layers rest where they are put";
   }
 }
 
