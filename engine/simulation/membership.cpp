@@ -71,6 +71,7 @@ void rebuild_shape(Simulation::State& s, BodyState& body, std::vector<Eigen::Vec
   build_regions(s.execution, s.region_scratch, body.shape);
   set_particle_rotations(sorted, body.shape);
   measure_rigid(s, body);
+  s.held = false;
 }
 
 std::vector<std::uint32_t> rows_of(const Simulation::State& s, std::span<const ParticleId> ids) {
@@ -148,7 +149,7 @@ void Simulation::State::rows_changed() {
   sph.grid.order.resize(0);
   sph_ran = false;
   prepared = false;
-  hold_sleepers(*this);
+  held = false;
 }
 
 BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name) {

@@ -148,6 +148,7 @@ void take_reference(Simulation::State& state, BodyState& body) {
   sort_reference(state.execution, pillars, body.shape);
   state.store.permute(body.begin, pillars.order.span(), state.execution.threads);
   state.rows_moved();
+  state.held = false;
 }
 
 namespace {

@@ -142,6 +142,7 @@ void wake_all(Simulation::State& state) {
 }
 
 void hold_sleepers(Simulation::State& state) {
+  state.held = true;
   ParticleStore& store = state.store;
   for (BodyState& body : state.bodies) {
     if (body.moves()) continue;
@@ -156,6 +157,7 @@ void hold_sleepers(Simulation::State& state) {
 }
 
 void wake_bodies(Simulation::State& state) {
+  if (!state.held) hold_sleepers(state);
   if (state.disturbed) wake_all(state);
   state.disturbed = false;
   for (BodyState& body : state.bodies)

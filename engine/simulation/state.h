@@ -133,6 +133,7 @@ struct Simulation::State {
 
   bool prepared = false;
   bool disturbed = false;         ///< something has changed that bodies which sleep may feel
+  bool held = true;               ///< those that do not move lie where they are in both sets of columns
   bool sph_ran = false;           ///< in the last step
   std::vector<BodyState*> awake;  ///< bodies that move in the step under way
   // Scratch.
@@ -246,7 +247,8 @@ void move_emitters(Simulation::State& state, double time_step);
 /// A body and those that fell asleep with it are awake.
 void wake_island(Simulation::State& state, BodyState& body);
 void wake_all(Simulation::State& state);
-/// Bodies that sleep are left where they are: in both sets of columns that steps go to and fro between.
+/// Bodies that do not move are left where they are: in both sets of columns that steps go to and fro between.
+/// Whoever changes rows other than by a step says that they are not held.
 void hold_sleepers(Simulation::State& state);
 
 /// positions, velocities of a body -> its rigid motion, where they were changed other than by a step.

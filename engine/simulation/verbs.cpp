@@ -109,6 +109,7 @@ void Simulation::set_velocity(BodyId id, const Vec3& velocity, const Vec3& angul
     s.store.velocity.set(row, velocity + spin.cross(from).cast<float>());
   }
   measure_rigid(s, body);
+  s.held = false;
 }
 
 void Simulation::set_velocity(std::span<const ParticleId> ids, const Vec3& velocity) {
@@ -121,6 +122,7 @@ void Simulation::set_velocity(std::span<const ParticleId> ids, const Vec3& veloc
     if (!is_pinned(s, at)) s.store.velocity.set(at, velocity);
     wake_island(s, s.body_of(at));
   }
+  s.held = false;
 }
 
 void Simulation::set_position(BodyId id, const Vec3& center) {
@@ -133,6 +135,7 @@ void Simulation::set_position(BodyId id, const Vec3& center) {
   for (std::size_t row = body.begin; row < body.end; ++row)
     s.store.position.set(row, (s.store.position.get(row).cast<double>() + by).cast<float>());
   measure_rigid(s, body);
+  s.held = false;
   s.rows_moved();
   s.disturbed = true;
 }
@@ -149,6 +152,7 @@ void Simulation::add_impulse(BodyId id, const Vec3& impulse) {
   for (std::size_t row = body.begin; row < body.end; ++row)
     if (!is_pinned(s, row)) s.store.velocity.set(row, s.store.velocity.get(row) + kick);
   measure_rigid(s, body);
+  s.held = false;
 }
 
 std::size_t Simulation::add_impulse(const Vec3& center, float radius, const Vec3& impulse) {
@@ -182,6 +186,7 @@ std::size_t Simulation::add_impulse(const Vec3& center, float radius, const Vec3
     if (count == before) continue;
     wake_island(s, body);
     measure_rigid(s, body);
+    s.held = false;
   }
   return count;
 }
@@ -193,7 +198,7 @@ void Simulation::enable(BodyId id, bool enabled) {
   if (body.enabled == enabled) return;
   wake_island(s, body);
   body.enabled = enabled;
-  hold_sleepers(s);
+  s.held = false;
   s.sph.kept.forget();
   s.disturbed = true;
 }

@@ -57,7 +57,10 @@ bool find_neighbors(const VectorColumn& positions, const Execution& execution, S
     for (std::uint32_t& row : sph.grid.order) row = sph.rows[row];
   build_cluster_lists(sph.grid, radius, execution, sph.lists);
   if (keeps) remember_search(sph.grid, sph.kept);
-  if (sph.groups.size() == 1) return true;
+  if (sph.groups.size() == 1) {
+    sph.group.resize(0);  // bodies may have gone since there were more
+    return true;
+  }
   sph.group.resize(n);
   parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

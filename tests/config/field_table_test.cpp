@@ -25,6 +25,7 @@ void for_tables(const Visit& visit) {
   visit.template operator()<Placement>("Placement", "body.h");
   visit.template operator()<Lattice>("Lattice", "body.h");
   visit.template operator()<Collider>("Collider", "collider.h");
+  visit.template operator()<Emitter>("Emitter", "emitter.h");
   visit.template operator()<Sphere>("Sphere", "collider.h");
   visit.template operator()<Box>("Box", "collider.h");
   visit.template operator()<Capsule>("Capsule", "collider.h");
@@ -144,11 +145,15 @@ std::string names_in_states() {
 TEST(field_table, states_of_version_6_hold_these_settings_in_this_order) {
   EXPECT_EQ(names_in_states<SolverConfig>(),
             "time_step time_step_factor support_radius gravity update_period update_interval formulation "
-            "acoustic_limit contact contact_offset rotation_iterations neighbor_slack memory_limit");
+            "acoustic_limit contact contact_offset sleep_speed sleep_time rotation_iterations neighbor_slack "
+            "memory_limit");
   EXPECT_EQ(names_in_states<Material>(),
             "alpha update_threshold pressure_coefficient viscosity elastic_time_step particle_mass "
-            "rest_density cohesion friction damping_time deformation_damping region_radius region_stride");
-  EXPECT_EQ(names_in_states<Collider>(), "velocity angular_velocity restitution friction measure_load");
+            "rest_density cohesion friction adhesion damping_time deformation_damping region_radius "
+            "region_stride");
+  EXPECT_EQ(names_in_states<Collider>(), "velocity angular_velocity surface_velocity restitution friction measure_load");
+  EXPECT_EQ(names_in_states<Emitter>(),
+            "radius width height spacing velocity speed start stop jitter most_particles");
   EXPECT_EQ(names_in_states<Sphere>(), "center radius inside");
   EXPECT_EQ(names_in_states<Box>(), "min max inside");
   EXPECT_EQ(names_in_states<Capsule>(), "start end radius inside");

@@ -22,6 +22,8 @@ formulation = "printed"
 acoustic_limit = false
 contact = "pressure"
 contact_offset = 0.25
+sleep_speed = 0.5
+sleep_time = 2
 rotation_iterations = 2
 neighbor_slack = 0.125
 memory_limit = 0.5
@@ -38,6 +40,7 @@ particle_mass = 1.25
 rest_density = 1.125
 cohesion = 0.5
 friction = 0.25
+adhesion = 3.5
 damping_time = 0.01
 deformation_damping = 0.125
 region_radius = 2.25
@@ -77,6 +80,7 @@ translate = [1, 2, 3]
 rotate = [0, 0, 90]
 velocity = [0, 0, 0.5]
 angular_velocity = [0, 0.25, 0]
+surface_velocity = [0, 0.5, 0]
 restitution = 0.25
 friction = 0.125
 visible = false
@@ -111,6 +115,26 @@ keyframes = [{ time = 0.5, translate = [1, 2, 3] }, { time = 1.5, translate = [4
 [[pin]]
 box = { min = [0, 0, 0], max = [1, 1, 0] }
 velocity = [0, 0, 2]
+[[emitter]]
+material = "jelly \"red\""
+radius = 2
+spacing = 0.5
+translate = [20, 0, 9]
+rotate = [180, 0, 0]
+velocity = [0.5, 0, 0]
+speed = 1.5
+start = 1
+stop = 7
+jitter = 0.1
+most_particles = 5000
+[[emitter]]
+material = "jelly \"red\""
+width = 2
+height = 3
+spacing = 0.5
+[[sink]]
+box = { min = [0, 0, -9], max = [1, 1, -5] }
+outside = false
 [surface]
 voxels_per_spacing = 3.5
 voxel_size = 0.5

@@ -80,7 +80,7 @@ TEST(emitter, starts_stops_and_ends) {
   const double out = s.bounds(s.body(id)).min.z();
   EXPECT_NEAR(out, -3, 1);
   s.advance(3);
-  EXPECT_NEAR(s.bounds(s.body(id)).min.z(), out, 0.3);
+  EXPECT_NEAR(s.bounds(s.body(id)).min.z(), out, 0.5);
   const BodyId strand = s.body(id);
   s.remove_emitter(id);
   EXPECT_THROW(s.emitter(id), ConfigError);
@@ -94,16 +94,16 @@ TEST(emitter, grows_no_longer_than_its_budget_and_sinks_take_what_comes_to_them)
   Emitter emitter = nozzle(10, 1.5f);
   emitter.most_particles = 400;
   const EmitterId id = s.add_emitter(emitter, s.add_material({.alpha = 1.0f, .viscosity = 0.5f}));
-  s.add_sink(Aabb{{-50, -50, -20}, {50, 50, 0}});
-  std::size_t most = 0;
-  for (int k = 0; k < 400; ++k) {
+  for (int k = 0; k < 150; ++k) s.step();
+  EXPECT_GE(s.particle_count(), 400u);
+  EXPECT_LT(s.particle_count(), 400u + 8 * 12) << "a batch of layers is put behind the nozzle at once";
+  s.add_sink(Aabb{{-1000, -1000, -1000}, {1000, 1000, 0}});
+  for (int k = 0; k < 250; ++k) {
     s.step();
-    most = std::max(most, s.particle_count());
     ASSERT_GT(s.bounds(s.body(id)).min.z(), -1.5f);
   }
-  EXPECT_LT(most, 400u + 8 * 12);
-  EXPECT_GT(most, 300u);
-  EXPECT_GT(s.particle_count(), 100u);
+  EXPECT_LT(s.particle_count(), 400u) << "and it flows on as room is made";
+  EXPECT_GT(s.particle_count(), 150u);
 }
 
 TEST(emitter, has_the_same_bits_on_any_number_of_threads_and_after_a_restore) {

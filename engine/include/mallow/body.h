@@ -42,8 +42,8 @@ struct Lattice {
 /// How a volume is filled: give one of `spacing` and `count`.
 struct Sampling {
   std::optional<float> spacing = {};  ///< h [m], > 0
-  std::optional<int> count =
-      {};  ///< points wanted, in [1, 100000000]; met within 1% where the shape allows it
+  /// Points wanted, in [1, 100000000]; met within 1% where the shape allows it.
+  std::optional<int> count = {};
   /// Random displacement of every lattice point, at most jitter · h per axis and half of that as a rule, in
   /// [0, 0.45], so that points stay a tenth of h apart. It is free of divergence, so that bodies start as
   /// dense as a lattice, and at rest. The same for every run and machine.

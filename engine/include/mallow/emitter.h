@@ -17,8 +17,8 @@ struct Emitter {
   /// Of a layer, around the origin of the pose, across its z axis: give the radius of a disc, or the width
   /// and height of a rectangle, each > 0 [m], or points.
   std::optional<float> radius = {};
-  std::optional<float> width = {};   ///< along x of the pose
-  std::optional<float> height = {};  ///< along y of the pose
+  std::optional<float> width = {};   ///< along x of the pose, > 0
+  std::optional<float> height = {};  ///< along y of the pose, > 0
   /// In the frame of the pose, its z left out; finite, a tenth of the spacing apart at least [m].
   std::vector<Vec3> points = {};
   float spacing = 1.0f;  ///< h [m], > 0
