@@ -43,7 +43,8 @@ void for_acting_pairs(const ContactPairs& pairs, std::uint32_t i, std::span<Pair
   }
 }
 
-/// How many pairs of each point push. Returns the most by which one would be too near, in its spacing.
+/// How many pairs of each point act. Returns the most by which one would be too near, or too far where it
+/// sticks, in its spacing.
 float count_pushes(const Threads& threads, float time_step, ContactPairs& pairs) {
   pairs.partial_excess.assign(pairs.blocks.size(), 0);
   parallel_for(threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
@@ -52,7 +53,7 @@ float count_pushes(const Threads& threads, float time_step, ContactPairs& pairs)
       float pushes = 0;
       for_acting_pairs(pairs, i, own, [&](const ContactPair& pair, const Vec3&, float along) {
         ++pushes;
-        most = std::max(most, (pair.target - along) / pairs.points[i].half_spacing);
+        most = std::max(most, std::abs(pair.target - along) / pairs.points[i].half_spacing);
       });
       pairs.velocity[i].pushes = pushes;
     });
