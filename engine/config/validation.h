@@ -3,6 +3,7 @@
 #include "core/checks.h"
 #include "mallow/body.h"
 #include "mallow/emitter.h"
+#include "mallow/export.h"
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 
@@ -20,7 +21,7 @@ void check(const Material& material, Checks& checks);
 inline constexpr float k_stiffest = 2.5f;
 /// Whether steps of this solver are short enough for the material's springs.
 void check_stiffness(const SolverConfig& config, const Material& material, Checks& checks);
-void check(const Emitter& emitter, Checks& checks);
+MALLOW_EXPORT void check(const Emitter& emitter, Checks& checks);
 void check(const Body& body, Checks& checks);
 
 }  // namespace mallow
