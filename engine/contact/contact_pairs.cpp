@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "contact/meeting_lanes.h"
+#include "core/bounds.h"
 #include "core/parallel.h"
 #include "shape_matching/run_tables.h"
 #include "shape_matching/shape_matching.h"

@@ -10,10 +10,6 @@
 namespace mallow {
 namespace {
 
-bool are_near(const Aabb& a, const Aabb& b, float reach) {
-  return (a.min.array() <= b.max.array() + reach).all() && (b.min.array() <= a.max.array() + reach).all();
-}
-
 /// The motion of some particles that is seen from their mean. What is no number is left for later phases to
 /// find: it counts as no motion here.
 Moving motion_of(const VectorColumn& positions, const VectorColumn& velocities, std::size_t begin,
@@ -52,6 +48,13 @@ void find_motions(const VectorColumn& positions, const VectorColumn& velocities,
       body.velocity += near.block_motion[k].velocity / static_cast<float>(last - first);
     for (std::uint32_t k = first; k < last; ++k) join(body, near.block_motion[k]);
   }
+}
+
+/// How far apart two points may be that touch in this step. spacing: the mean of theirs. closing: how fast
+/// they come nearer [m/s], at most.
+float touching_reach(float spacing, float closing, const BodyContactStep& step) {
+  const float across = k_across * spacing, along = spacing + step.time_step * closing + pushed_together(step);
+  return std::min(step.reach, 1.001f * std::sqrt(across * across + along * along));
 }
 
 /// How far two of these may be apart and touch in this step.
@@ -138,15 +141,6 @@ std::uint32_t find_points(const VectorColumn& positions, const NearBlocks& near,
 }
 
 }  // namespace
-
-bool is_near(const Vec3& x, const Aabb& box, float reach) {
-  return (x.array() >= box.min.array() - reach).all() && (x.array() <= box.max.array() + reach).all();
-}
-
-float touching_reach(float spacing, float closing, const BodyContactStep& step) {
-  const float across = k_across * spacing, along = spacing + step.time_step * closing + pushed_together(step);
-  return std::min(step.reach, 1.001f * std::sqrt(across * across + along * along));
-}
 
 void find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,
                       const std::vector<TouchingBody>& bodies, const BodyContactStep& step,

@@ -63,16 +63,10 @@ struct NearBlocks {
 inline float pushed_together(const BodyContactStep& step) {
   return 0.25f * step.time_step * step.max_push;
 }
-/// How far apart two points may be that touch in this step. spacing: the mean of theirs. closing: how fast
-/// they come nearer [m/s], at most.
-float touching_reach(float spacing, float closing, const BodyContactStep& step);
 
 /// velocities: predicted. The same for any number of threads.
 void find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,
                       const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
                       const Execution& execution, NearBlocks& near);
-
-/// Whether a point is in a box, or not farther from it than `reach` along any axis.
-bool is_near(const Vec3& x, const Aabb& box, float reach);
 
 }  // namespace mallow

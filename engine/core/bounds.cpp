@@ -21,6 +21,14 @@ Aabb box_around(const Aabb& a, const Aabb& b) {
   return {a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)};
 }
 
+bool is_near(const Vec3& x, const Aabb& box, float reach) {
+  return (x.array() >= box.min.array() - reach).all() && (x.array() <= box.max.array() + reach).all();
+}
+
+bool are_near(const Aabb& a, const Aabb& b, float reach) {
+  return (a.min.array() <= b.max.array() + reach).all() && (b.min.array() <= a.max.array() + reach).all();
+}
+
 Aabb box_around(const VectorColumn& points, std::size_t begin, std::size_t end) {
   Aabb box;
   for (std::size_t a = 0; a < 3; ++a) {

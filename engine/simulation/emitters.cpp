@@ -6,6 +6,7 @@
 #include "colliders/collider_checks.h"
 #include "colliders/pose.h"
 #include "config/validation.h"
+#include "core/bounds.h"
 #include "simulation/membership.h"
 #include "simulation/overlaps.h"
 #include "simulation/state.h"
@@ -21,8 +22,8 @@ constexpr double k_turn = 2.4;
 constexpr std::size_t k_batch = 8;
 
 /// So many layers must still be held for what rests beside new ones to rest beside free ones too.
-std::size_t held_layers(const Emitter& emitter, const ShapeMatching& shape) {
-  return 2 * static_cast<std::size_t>(std::ceil(shape.region_radius / emitter.spacing)) + 1;
+std::size_t held_layers(const Emitter& emitter, float region_radius) {
+  return 2 * static_cast<std::size_t>(std::ceil(region_radius / emitter.spacing)) + 1;
 }
 
 /// 32 well-mixed bits as a number in [-1, 1).
@@ -43,21 +44,23 @@ std::vector<Vec> section(const Emitter& emitter) {
   const double height = emitter.radius ? width : static_cast<double>(*emitter.height);
   // A lattice in the middle of it, of whole cells.
   const auto cells = [&](double side) { return std::max(1.0, std::floor(side / h + 1e-3)); };
-  for (double b = 0; b < cells(height); ++b)
-    for (double a = 0; a < cells(width); ++a) {
-      const Vec x(h * (a - 0.5 * (cells(width) - 1)), h * (b - 0.5 * (cells(height) - 1)), 0);
-      if (!emitter.radius || x.norm() <= 0.5 * width || cells(width) == 1) points.push_back(x);
+  const double columns = cells(width), rows = cells(height);
+  for (double b = 0; b < rows; ++b)
+    for (double a = 0; a < columns; ++a) {
+      const Vec x(h * (a - 0.5 * (columns - 1)), h * (b - 0.5 * (rows - 1)), 0);
+      if (!emitter.radius || x.norm() <= 0.5 * width || columns == 1) points.push_back(x);
     }
   return points;
 }
 
 /// Layer `number` of all, at `height` along the flow, in the world.
-void add_layer(const Emitter& emitter, std::uint64_t number, double height, std::vector<Vec3>& positions) {
+void add_layer(const Emitter& emitter, std::span<const Vec> points, std::uint64_t number, double height,
+               std::vector<Vec3>& positions) {
   const Eigen::Matrix3d rotation = rotation_of(emitter.pose);
   const double turn = emitter.radius ? k_turn * static_cast<double>(number) : 0.0;
   const Eigen::AngleAxisd turned(std::remainder(turn, 2 * std::numbers::pi), Vec::UnitZ());
   std::uint64_t k = 0;
-  for (const Vec& x : section(emitter)) {
+  for (const Vec& x : points) {
     const double most = static_cast<double>(emitter.jitter) * static_cast<double>(emitter.spacing);
     const std::uint64_t name = number << 24 ^ k++;
     const Vec moved = x + most * Vec(noise(2 * name), noise(2 * name + 1), 0) + Vec(0, 0, height);
@@ -74,8 +77,9 @@ bool flows(const Simulation::State& s, const EmitterState& emitter) {
 Body next_layers(const EmitterState& emitter, std::size_t count) {
   Body body{.positions = {}, .spacing = emitter.settings.spacing};
   const double h = static_cast<double>(emitter.settings.spacing);
+  const std::vector<Vec> points = section(emitter.settings);
   for (std::size_t k = 0; k < count; ++k)
-    add_layer(emitter.settings, emitter.layers + k,
+    add_layer(emitter.settings, points, emitter.layers + k,
               emitter.offset - h * (static_cast<double>(emitter.layers + k) + 0.5), body.positions);
   return body;
 }
@@ -111,7 +115,7 @@ void flow_out(Simulation::State& s, EmitterState& emitter) {
   s.pin(emitter.pin).velocity = velocity;
   if (!velocity.isZero(0)) wake_island(s, body);
   free_layers(s, emitter, false);
-  if (emitter.held.size() > held_layers(emitter.settings, body.shape) ||
+  if (emitter.held.size() > held_layers(emitter.settings, body.shape.region_radius) ||
       body.size() >= static_cast<std::size_t>(emitter.settings.most_particles))
     return;
   Body points = next_layers(emitter, k_batch);
@@ -124,8 +128,7 @@ void drain(Simulation::State& s, const SinkState& sink) {
   const Aabb box{relative_to(s.origin, sink.box.min), relative_to(s.origin, sink.box.max)};
   for (std::size_t row = 0; row < s.store.size(); ++row) {
     const Vec3 x = s.store.position.get(row);
-    const bool inside = (x.array() >= box.min.array()).all() && (x.array() <= box.max.array()).all();
-    if (inside == sink.outside || (!s.store.pin.empty() && s.store.pin[row] != 0)) continue;
+    if (is_near(x, box) == sink.outside || (!s.store.pin.empty() && s.store.pin[row] != 0)) continue;
     ids.push_back(s.store.id[row]);
   }
   if (!ids.empty()) erase_particles(s, ids);
@@ -168,11 +171,8 @@ EmitterId Simulation::add_emitter(const Emitter& settings, MaterialId material, 
   State& s = *state_;
   check_emitter(settings);
   EmitterState emitter{.id = EmitterId{s.emitter_count}, .settings = settings};
-  // As many layers as are held whatever the radius of the regions is, which add_body() settles.
-  const float radius = s.material(material).settings.region_radius.value_or(s.config.support_radius);
-  ShapeMatching shape;
-  shape.region_radius = radius;
-  const std::size_t count = held_layers(settings, shape) + k_batch;
+  const float region_radius = s.material(material).settings.region_radius.value_or(s.config.support_radius);
+  const std::size_t count = held_layers(settings, region_radius) + k_batch;
   const Body points = next_layers(emitter, count);
   if (name.empty()) name = "strand " + std::to_string(s.emitter_count);
   emitter.body = add_body(points, material, std::move(name));

@@ -62,7 +62,7 @@ void insert_points(Simulation::State& s, const Points& points, BodyState& body) 
 
 /// The reference shape of a body has changed: its rows are sorted for it, and its regions built anew on
 /// rotations that their particles had.
-void rebuild_shape(Simulation::State& s, BodyState& body, std::vector<Eigen::Vector4f> rotations) {
+void rebuild_shape(Simulation::State& s, BodyState& body, std::span<const Eigen::Vector4f> rotations) {
   PillarOrder& pillars = s.region_scratch.pillars;
   sort_reference(s.execution, pillars, body.shape);
   s.store.permute(body.begin, pillars.order.span(), s.execution.threads);
@@ -92,8 +92,7 @@ std::vector<ParticleId> ids_in(const Simulation::State& s, const Aabb& region, c
   std::vector<ParticleId> ids;
   for (std::size_t row = 0; row < s.store.size(); ++row) {
     const Vec3 x = s.far(s.store.position.get(row));
-    if ((x.array() >= region.min.array()).all() && (x.array() <= region.max.array()).all())
-      ids.push_back(s.store.id[row]);
+    if (is_near(x, region)) ids.push_back(s.store.id[row]);
   }
   if (!ids.empty()) return ids;
   std::ostringstream text;
@@ -104,11 +103,7 @@ std::vector<ParticleId> ids_in(const Simulation::State& s, const Aabb& region, c
 /// Bodies that sleep beside a box wake: what they lean on is gone.
 void wake_beside(Simulation::State& s, const Aabb& box) {
   for (BodyState& body : s.bodies) {
-    if (body.island == 0) continue;
-    const float reach = 2 * body.spacing;
-    if ((body.box.min.array() <= box.max.array() + reach).all() &&
-        (box.min.array() <= body.box.max.array() + reach).all())
-      wake_island(s, body);
+    if (body.island != 0 && are_near(body.box, box, 2 * body.spacing)) wake_island(s, body);
   }
 }
 
@@ -132,14 +127,9 @@ void remove_rows(Simulation::State& s, BodyState& body, std::span<const std::uin
   }
   erase_from_reference(places, shape);
   if (!built) return;
-  std::vector<Eigen::Vector4f> left;
-  for (std::size_t i = 0, p = 0; i < rotations.size(); ++i) {
-    if (p < places.size() && places[p] == i)
-      ++p;
-    else
-      left.push_back(rotations[i]);
-  }
-  rebuild_shape(s, body, std::move(left));
+  close_gaps(rotations.data(), rotations.size(), places);
+  rotations.resize(rotations.size() - places.size());
+  rebuild_shape(s, body, rotations);
 }
 
 }  // namespace
@@ -226,7 +216,7 @@ std::vector<ParticleId> extend(Simulation::State& s, BodyState& body, const Body
   shift_rows(s, body, old_end);
   std::vector<ParticleId> ids(s.store.id.begin() + old_end, s.store.id.begin() + body.end);
   if (remembers)
-    rebuild_shape(s, body, std::move(rotations));
+    rebuild_shape(s, body, rotations);
   else
     body.grew = true;
   return ids;

@@ -231,6 +231,7 @@ void call_force(Simulation::State& state) {
     state.force({state.time, state.store.id.span(), {x.x(), n, x.stride()}, {v.x(), n, v.stride()}},
                 {a.x(), n, a.stride()});
   }
+  if (!state.bodies_sleep()) return;
   // What a force acts on does not sleep, or wakes for the next step.
   for (BodyState& body : state.bodies) {
     const auto acts = [&](std::size_t axis) {
@@ -346,7 +347,7 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
       .pin_velocities = state.pin_velocities,
       .measure_external = body.step_weight > 0,
       .measure_rigid = body.keeps_reference() && state.deformation_damping(body) > 0,
-      .measure_speed = state.config.contact == BodyContact::constraint,
+      .measure_speed = state.bodies_sleep(),
       .damping = body.matches_shape() ? -std::expm1(-state.deformation_damping(body) * time_step) : 0.0f,
       .rigid = body.rigid,
       .mass = body.mass,

@@ -26,7 +26,7 @@ void for_rows_in(const Simulation::State& s, const Aabb& box, const Visit& visit
     if (!body.enabled) continue;
     for (std::size_t row = body.begin; row < body.end; ++row) {
       const Vec3 x = s.store.position.get(row);
-      if ((x.array() >= box.min.array()).all() && (x.array() <= box.max.array()).all()) visit(row, body);
+      if (is_near(x, box)) visit(row, body);
     }
   }
 }

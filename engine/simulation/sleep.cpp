@@ -13,10 +13,6 @@ namespace {
 /// Of what is left out: speed in spacings in a Δt0, time in Δt0.
 constexpr float k_sleep_speed = 0.005f, k_sleep_time = 60;
 
-bool may_sleep(const Simulation::State& state) {
-  return state.config.contact == BodyContact::constraint && state.config.sleep_speed.value_or(1) > 0;
-}
-
 double sleep_speed(const Simulation::State& state, const BodyState& body) {
   return static_cast<double>(
       state.config.sleep_speed.value_or(k_sleep_speed * body.spacing / state.base_step()));
@@ -173,13 +169,13 @@ void wake_bodies(Simulation::State& state) {
   std::size_t count = 0;
   for (const BodyState* body : state.awake) count += body->size();
   rows.resize_unset(count);
-  for (auto [body, at] = std::pair(state.awake.begin(), rows.begin()); body != state.awake.end();
-       at += (*body++)->size())
-    std::iota(at, at + (*body)->size(), static_cast<std::uint32_t>((*body)->begin));
+  std::uint32_t* at = rows.data();
+  for (const BodyState* body : state.awake)
+    for (std::size_t row = body->begin; row < body->end; ++row) *at++ = static_cast<std::uint32_t>(row);
 }
 
 void rest_bodies(Simulation::State& state, float time_step) {
-  if (!may_sleep(state)) return;
+  if (!state.bodies_sleep()) return;
   bool any_ready = false;
   for (BodyState* body : state.awake) {
     const double speed = sleep_speed(state, *body);

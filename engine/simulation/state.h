@@ -53,7 +53,7 @@ struct BodyState {
   double step_weight = 0;
   RigidMotion rigid;     ///< kept where deformations are damped towards it
   bool yielded = false;  ///< its reference shape was updated since it was built
-  bool enabled = true;   ///< see Simulation::disable()
+  bool enabled = true;   ///< see Simulation::enable()
   std::uint64_t user_data = 0;
   /// Those that fell asleep together share a number above 0 and wake together; 0: it is awake.
   std::uint32_t island = 0;
@@ -188,6 +188,10 @@ struct Simulation::State {
   bool needs_sph() const;
   /// There are bodies that do not merge, and contact keeps them apart.
   bool bodies_touch() const { return sph.apart && sph.groups.size() > 1; }
+  /// What has been slow for long falls asleep.
+  bool bodies_sleep() const {
+    return config.contact == BodyContact::constraint && config.sleep_speed.value_or(1) > 0;
+  }
   /// Of the pull towards goals, (1 − α)/(Δt0 Δt_SM) [1/s²]. [TK eq. 13]
   float stiffness(const MaterialState& material) const {
     const float elastic_step = material.settings.elastic_time_step.value_or(base_step());
