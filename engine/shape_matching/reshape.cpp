@@ -72,7 +72,9 @@ std::vector<Eigen::Vector4f> particle_rotations(const ShapeMatching& shape) {
   return rotations;
 }
 
-void set_particle_rotations(std::span<const Eigen::Vector4f> rotations, ShapeMatching& shape) {
+void build_regions_from(std::span<const Eigen::Vector4f> rotations, const Execution& execution,
+                        RegionScratch& scratch, ShapeMatching& shape) {
+  build_regions(execution, scratch, shape);
   for (std::size_t j = 0; j < shape.region_weight.size(); ++j)
     for (std::size_t k = 0; k < 4; ++k)
       shape.rotation[k][j] = rotations[shape.first_row(j)][static_cast<Eigen::Index>(k)];

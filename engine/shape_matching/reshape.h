@@ -11,8 +11,9 @@ namespace mallow {
 
 /// R of the region that each particle owns, or is in first, as x y z w.
 std::vector<Eigen::Vector4f> particle_rotations(const ShapeMatching& shape);
-/// Regions that have just been built start from the rotations of their particles.
-void set_particle_rotations(std::span<const Eigen::Vector4f> rotations, ShapeMatching& shape);
+/// build_regions(), but regions start from the rotations of their particles.
+void build_regions_from(std::span<const Eigen::Vector4f> rotations, const Execution& execution,
+                        RegionScratch& scratch, ShapeMatching& shape);
 
 /// places: of particles, ascending, not all of them. Regions are due to be built.
 void erase_from_reference(std::span<const std::uint32_t> places, ShapeMatching& shape);

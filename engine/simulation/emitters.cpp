@@ -95,14 +95,15 @@ void hold_layers(std::span<const ParticleId> ids, std::size_t count, Simulation:
   hold_particles(s, emitter.pin, ids);
 }
 
-/// What has passed the nozzle is free.
-void free_layers(Simulation::State& s, EmitterState& emitter, bool all) {
+/// What has passed the nozzle is free, but for what somebody else has pinned.
+void free_layers(Simulation::State& s, EmitterState& emitter) {
   const double h = static_cast<double>(emitter.settings.spacing);
   while (!emitter.held.empty()) {
     const double number = static_cast<double>(emitter.layers - emitter.held.size());
-    if (!all && emitter.offset - h * (number + 0.5) < 0) break;
+    if (emitter.offset - h * (number + 0.5) < 0) break;
     for (const ParticleId id : emitter.held.front())
-      if (const std::optional<std::size_t> row = s.store.slots.find(id)) s.store.pin[*row] = 0;
+      if (const std::optional<std::size_t> row = s.store.slots.find(id))
+        if (s.store.pin[*row] == slot_of(emitter.pin) + 1) s.store.pin[*row] = 0;
     emitter.held.pop_front();
   }
 }
@@ -114,7 +115,7 @@ void flow_out(Simulation::State& s, EmitterState& emitter) {
   if (flows(s, emitter)) velocity += emitter.settings.speed * along.cast<float>();
   s.pin(emitter.pin).velocity = velocity;
   if (!velocity.isZero(0)) wake_island(s, body);
-  free_layers(s, emitter, false);
+  free_layers(s, emitter);
   if (emitter.held.size() > held_layers(emitter.settings, body.shape.region_radius) ||
       body.size() >= static_cast<std::size_t>(emitter.settings.most_particles))
     return;
@@ -151,9 +152,12 @@ void check_emitter(const Emitter& emitter) {
 }  // namespace
 
 void flow(Simulation::State& s) {
-  // Whoever removes its body takes an emitter with it.
+  // Whoever removes its body, or lets go what it holds, takes an emitter with it.
   std::erase_if(s.emitters, [&](const EmitterState& emitter) {
-    return !s.body_slots.find(static_cast<std::uint64_t>(emitter.body));
+    const bool holds = s.pin_slots.find(static_cast<std::uint64_t>(emitter.pin)).has_value();
+    if (holds && s.body_slots.find(static_cast<std::uint64_t>(emitter.body))) return false;
+    if (holds) release_pin(s, emitter.pin);
+    return true;
   });
   for (EmitterState& emitter : s.emitters) flow_out(s, emitter);
   for (const SinkState& sink : s.sinks) drain(s, sink);
@@ -206,10 +210,8 @@ void Simulation::remove_emitter(EmitterId id) {
   state_->refuse_in_callback();
   State& s = *state_;
   const std::size_t place = place_of(s, id);
-  EmitterState& emitter = s.emitters[place];
-  if (s.body_slots.find(static_cast<std::uint64_t>(emitter.body))) wake_island(s, s.body(emitter.body));
-  free_layers(s, emitter, true);
-  unpin(emitter.pin);
+  const PinId pin = s.emitters[place].pin;
+  if (s.pin_slots.find(static_cast<std::uint64_t>(pin))) release_pin(s, pin);
   s.emitters.erase(s.emitters.begin() + static_cast<std::ptrdiff_t>(place));
 }
 

@@ -68,8 +68,7 @@ void rebuild_shape(Simulation::State& s, BodyState& body, std::span<const Eigen:
   s.store.permute(body.begin, pillars.order.span(), s.execution.threads);
   std::vector<Eigen::Vector4f> sorted(rotations.size());
   for (std::size_t k = 0; k < sorted.size(); ++k) sorted[k] = rotations[pillars.order[k]];
-  build_regions(s.execution, s.region_scratch, body.shape);
-  set_particle_rotations(sorted, body.shape);
+  build_regions_from(sorted, s.execution, s.region_scratch, body.shape);
   measure_rigid(s, body);
   s.held = false;
 }
@@ -287,7 +286,7 @@ ColliderId Simulation::add_collider(const Collider& collider) {
   s.colliders.push_back(collider);
   Collider& added = s.colliders.back();
   if (!added.keyframes.empty()) added.pose = pose_at(added.keyframes, s.time);
-  s.disturbed = true;
+  wake_near(s, added);
   return ColliderId{id};
 }
 
@@ -295,12 +294,12 @@ void Simulation::remove_collider(ColliderId id) {
   state_->refuse_in_callback();
   State& s = *state_;
   const auto at = static_cast<std::ptrdiff_t>(s.index(id));
+  wake_near(s, s.colliders[s.index(id)]);
   s.colliders.erase(s.colliders.begin() + at);
   s.collider_ids.erase(s.collider_ids.begin() + at);
   if (static_cast<std::size_t>(at) < s.moving.loads.size()) s.moving.loads.erase(s.moving.loads.begin() + at);
   s.collider_slots.give_back(static_cast<std::uint64_t>(id));
   s.collider_slots.place(0, s.collider_ids);
-  s.disturbed = true;
 }
 
 PinId Simulation::pin(const Aabb& region, const Vec3& velocity) {
@@ -339,13 +338,14 @@ void hold_particles(Simulation::State& s, PinId pin, std::span<const ParticleId>
 
 void Simulation::unpin(PinId id) {
   state_->refuse_in_callback();
-  State& s = *state_;
+  release_pin(*state_, id);
+}
+
+void release_pin(Simulation::State& s, PinId id) {
   s.pin(id) = {};
-  for (std::size_t row = 0; row < s.store.pin.size(); ++row) {
-    if (s.store.pin[row] != slot_of(id) + 1) continue;
-    s.store.pin[row] = 0;
-    wake_island(s, s.body_of(row));
-  }
+  wake_pinned(s, id);
+  for (std::uint16_t& pin : s.store.pin)
+    if (pin == slot_of(id) + 1) pin = 0;
   s.pin_slots.give_back(static_cast<std::uint64_t>(id));
 }
 

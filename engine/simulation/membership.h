@@ -12,6 +12,8 @@ namespace mallow {
 std::vector<ParticleId> extend(Simulation::State& state, BodyState& body, const Body& points);
 /// As Simulation::remove_particles(); ids: different, and there.
 void erase_particles(Simulation::State& state, std::span<const ParticleId> ids);
+/// As Simulation::unpin().
+void release_pin(Simulation::State& state, PinId pin);
 /// Particles answer to a pin.
 void hold_particles(Simulation::State& state, PinId pin, std::span<const ParticleId> ids);
 

@@ -28,8 +28,6 @@ void pass_clock(Archive& archive, State& state) {
   archive(state.last_time_step);
   archive(state.prepared);
   archive(state.passed_periods);
-  archive(state.islands);
-  archive(state.disturbed);
   auto source = static_cast<std::uint8_t>(state.time_step_source);
   archive(source);
   archive(state.scale.spacing);
@@ -130,8 +128,8 @@ void require_valid(const UnpackingArchive& archive, const Simulation::State& sta
   };
   require(body.begin == begin && body.end >= begin, "its rows must follow those of the body before it");
   require(body.size() > 0, "it has no particles");
-  require(body.island <= state.islands && std::isfinite(body.slow_time) && body.slow_time >= 0,
-          "it sleeps with others that there are not, or the time that it has been slow is below 0");
+  require(std::isfinite(body.slow_time) && body.slow_time >= 0,
+          "the time that it has been slow must be finite and 0 or above");
   for (const float value : {body.spacing, body.mass, body.rest_density})
     require(std::isfinite(value) && value > 0,
             "spacing, particle mass and rest density must be finite and above 0");
@@ -296,6 +294,7 @@ void unpack_emitters(const SavedState& saved, Simulation::State& state) {
     Checks checks;
     for (const EmitterState& emitter : state.emitters) {
       check(emitter.settings, checks);
+      check_pose("emitter.pose", emitter.settings.pose, checks);
       if (!state.pin_slots.find(static_cast<std::uint64_t>(emitter.pin)))
         archive.fail("an emitter holds no pin that there is");
       if (!std::isfinite(emitter.offset) || emitter.held.size() > emitter.layers)
@@ -486,6 +485,10 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
   std::vector<std::uint64_t> body_ids;
   for (const BodyState& body : state.bodies) body_ids.push_back(static_cast<std::uint64_t>(body.id));
   unpack_slots(saved, "body_slots", body_ids, state.body_slots);
+  for (const BodyState& body : state.bodies)
+    if (body.island > state.body_slots.size())
+      throw ConfigError("saved state, chunk 'bodies'",
+                        "body '" + body.name + "': it sleeps with others that there are not");
   unpack_obstacles(saved, state);
   unpack_particles(saved, state);
   unpack_emitters(saved, state);

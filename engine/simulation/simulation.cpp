@@ -7,7 +7,6 @@ namespace mallow {
 
 // Algorithm 3.3 of [TK], as the model settles it. Surfacing is not a phase: it reads the views between steps.
 StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_phase) {
-  s.require_ahead(end);
   Sph& sph = s.sph;
   const VectorColumn& x = s.store.position;
   StepReport report;
@@ -62,6 +61,7 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
 
 StepReport Simulation::step_towards(double end) {
   prepare();
+  state_->require_ahead(end);
   flow(*state_);
   prepare();
   return take_step(*state_, end);

@@ -57,53 +57,35 @@ bool is_kept_awake(const Simulation::State& state, const BodyState& body) {
   return is_near_moving(state, box_of(state, body), body.spacing);
 }
 
-/// Which bodies touch each other, by union and find.
-class Islands {
- public:
-  Islands(std::vector<std::uint32_t>& of, std::size_t bodies) : of_(of) {
-    of_.resize(bodies);
-    std::iota(of_.begin(), of_.end(), 0u);
-  }
-  std::uint32_t root(std::uint32_t body) {
-    while (of_[body] != body) body = of_[body] = of_[of_[body]];
-    return body;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    of_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t>& of_;
-};
-
 /// Those that have a pair of particles near enough to touch, are parts of one, or fell asleep together.
-Islands find_islands(Simulation::State& state) {
-  const std::size_t n = state.bodies.size();
-  Islands islands(state.island_of, n);
-  std::vector<std::uint32_t> first_of_group(state.sph.groups.size(), UINT32_MAX),
-      first_of_island(state.islands + 1, UINT32_MAX);
+void find_islands(Simulation::State& state) {
+  Islands& islands = state.islands;
+  const auto n = static_cast<std::uint32_t>(state.bodies.size());
+  islands.of.resize(n);
+  std::iota(islands.of.begin(), islands.of.end(), 0u);
+  islands.first_of_group.assign(state.sph.groups.size(), UINT32_MAX);
+  islands.first_of_sleepers.assign(state.body_slots.size() + 1, UINT32_MAX);
   const auto join_first = [&](std::uint32_t& first, std::uint32_t body) {
     if (first == UINT32_MAX) first = body;
     islands.join(first, body);
   };
   for (std::uint32_t b = 0; b < n; ++b) {
     if (!state.bodies[b].enabled) continue;
-    join_first(first_of_group[state.bodies[b].sph_group], b);
-    if (const std::uint32_t island = state.bodies[b].island) join_first(first_of_island[island], b);
+    join_first(islands.first_of_group[state.bodies[b].sph_group], b);
+    if (state.bodies[b].island != 0) join_first(islands.first_of_sleepers[state.bodies[b].island], b);
   }
-  if (!state.bodies_touch()) return islands;
   const ContactPairs& pairs = state.contact_pairs;
   const NearBlocks& near = pairs.near;
-  if (near.row.empty()) return islands;
-  for (std::size_t k = 0; k < pairs.blocks.size(); ++k)
+  if (!state.bodies_touch() || near.row.empty()) return;
+  for (std::size_t k = 0; k < pairs.blocks.size(); ++k) {
+    const BodyState* other = nullptr;  // pairs with one body follow each other
     for (const ContactPair& pair : pairs.blocks[k].pairs) {
-      const auto body =
-          static_cast<std::uint32_t>(&state.body_of(near.row[pair.other]) - state.bodies.data());
-      islands.join(near.blocks.blocks[k].range, body);
+      const std::uint32_t row = near.row[pair.other];
+      if (other && row >= other->begin && row < other->end) continue;
+      other = &std::as_const(state).body_of(row);
+      islands.join(near.blocks.blocks[k].range, static_cast<std::uint32_t>(other - state.bodies.data()));
     }
-  return islands;
+  }
 }
 
 void fall_asleep(Simulation::State& state, std::uint32_t island, BodyState& body) {
@@ -134,7 +116,21 @@ void wake_island(Simulation::State& state, BodyState& body) {
 }
 
 void wake_all(Simulation::State& state) {
-  for (BodyState& body : state.bodies) wake_island(state, body);
+  for (BodyState& body : state.bodies) {
+    if (body.island != 0) state.next_events.push_back({BodyEvent::Kind::woke, body.id});
+    body.island = 0;
+    body.slow_time = 0;
+  }
+}
+
+void wake_near(Simulation::State& state, const Collider& collider) {
+  for (BodyState& body : state.bodies)
+    if (body.island != 0 && is_near(state, collider, body.box, body.spacing)) wake_island(state, body);
+}
+
+void wake_pinned(Simulation::State& state, PinId pin) {
+  for (std::size_t row = 0; row < state.store.pin.size(); ++row)
+    if (state.store.pin[row] == slot_of(pin) + 1) wake_island(state, state.body_of(row));
 }
 
 void hold_sleepers(Simulation::State& state) {
@@ -154,8 +150,6 @@ void hold_sleepers(Simulation::State& state) {
 
 void wake_bodies(Simulation::State& state) {
   if (!state.held) hold_sleepers(state);
-  if (state.disturbed) wake_all(state);
-  state.disturbed = false;
   for (BodyState& body : state.bodies)
     if (body.island != 0 && is_near_moving(state, body.box, body.spacing)) wake_island(state, body);
   state.events.swap(state.next_events);
@@ -188,21 +182,20 @@ void rest_bodies(Simulation::State& state, float time_step) {
       any_ready = true;
   }
   if (!any_ready) return;
-  Islands islands = find_islands(state);
-  std::vector<bool> rests(state.bodies.size(), true);
+  find_islands(state);
+  Islands& islands = state.islands;
   const auto root = [&](const BodyState& body) {
     return islands.root(static_cast<std::uint32_t>(&body - state.bodies.data()));
   };
+  // One whose bodies all sleep already goes on as it is.
+  islands.rests.assign(state.bodies.size(), false);
+  for (const BodyState* body : state.awake) islands.rests[root(*body)] = true;
   for (const BodyState* body : state.awake)
-    if (!(body->slow_time >= sleep_time(state))) rests[root(*body)] = false;
-  std::vector<std::uint32_t> number(state.bodies.size(), 0);
-  for (const BodyState* body : state.awake)
-    if (rests[root(*body)] && number[root(*body)] == 0) number[root(*body)] = ++state.islands;
+    if (!(body->slow_time >= sleep_time(state))) islands.rests[root(*body)] = false;
   bool any = false;
   for (BodyState& body : state.bodies) {
-    const std::uint32_t island = body.enabled ? number[root(body)] : 0;
-    if (island == 0) continue;
-    fall_asleep(state, island, body);
+    if (!body.enabled || !islands.rests[root(body)]) continue;
+    fall_asleep(state, slot_of(state.bodies[root(body)].id) + 1, body);
     any = true;
   }
   if (!any) return;

@@ -55,7 +55,8 @@ struct BodyState {
   bool yielded = false;  ///< its reference shape was updated since it was built
   bool enabled = true;   ///< see Simulation::enable()
   std::uint64_t user_data = 0;
-  /// Those that fell asleep together share a number above 0 and wake together; 0: it is awake.
+  /// Those that fell asleep together share a number, that of the slot of one of them and 1, and wake
+  /// together; 0: it is awake.
   std::uint32_t island = 0;
   double slow_time = 0;   ///< for how long it has been slower than what may sleep [s]
   double mean_speed = 0;  ///< of its particles, after the last step [m/s]
@@ -96,6 +97,24 @@ struct SinkState {
   bool outside = false;
 };
 
+/// Which bodies touch each other, by union and find; of bodies by their index.
+struct Islands {
+  std::vector<std::uint32_t> of;
+  // Scratch, by body and by number of the islands that sleep.
+  std::vector<std::uint32_t> first_of_group, first_of_sleepers;
+  std::vector<bool> rests;
+
+  std::uint32_t root(std::uint32_t body) {
+    while (of[body] != body) body = of[body] = of[of[body]];
+    return body;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = root(a);
+    b = root(b);
+    of[std::max(a, b)] = std::min(a, b);
+  }
+};
+
 /// All that a simulation is.
 struct Simulation::State {
   SolverConfig config;
@@ -122,7 +141,6 @@ struct Simulation::State {
   std::uint64_t emitter_count = 0, sink_count = 0;  ///< that there have been
   std::vector<BodyEvent> events;                    ///< of the last step, and of calls before it
   std::vector<BodyEvent> next_events;               ///< of calls since then
-  std::uint32_t islands = 0;                        ///< numbers that were given away
   ForceCallback force;
   Sph sph;
   VectorColumn user_acceleration;  ///< empty without a force callback
@@ -132,7 +150,6 @@ struct Simulation::State {
   std::int64_t far_step = -1;
 
   bool prepared = false;
-  bool disturbed = false;         ///< something has changed that bodies which sleep may feel
   bool held = true;               ///< those that do not move lie where they are in both sets of columns
   bool sph_ran = false;           ///< in the last step
   std::vector<BodyState*> awake;  ///< bodies that move in the step under way
@@ -145,7 +162,7 @@ struct Simulation::State {
   std::vector<TimeStepLimits::Pressure> pressures;
   std::vector<PlacedCollider> placed_colliders;
   std::vector<Vec3> pin_velocities;
-  std::vector<std::uint32_t> island_of;
+  Islands islands;
   RangeBlocks led_blocks;
   VectorColumn led_position;  ///< see lead_positions(); empty without damping
   std::vector<TouchingBody> touching;
@@ -251,6 +268,10 @@ void move_emitters(Simulation::State& state, double time_step);
 /// A body and those that fell asleep with it are awake.
 void wake_island(Simulation::State& state, BodyState& body);
 void wake_all(Simulation::State& state);
+/// Bodies that a collider may touch.
+void wake_near(Simulation::State& state, const Collider& collider);
+/// Bodies with particles that a pin holds.
+void wake_pinned(Simulation::State& state, PinId pin);
 /// Bodies that do not move are left where they are: in both sets of columns that steps go to and fro between.
 /// Whoever changes rows other than by a step says that they are not held.
 void hold_sleepers(Simulation::State& state);

@@ -5,7 +5,7 @@
 
 #include "colliders/collider_checks.h"
 #include "config/validation.h"
-#include "core/bounds.h"
+#include "shape_matching/reshape.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 
@@ -29,29 +29,41 @@ Eigen::Vector3d middle_of(const Simulation::State& s, const BodyState& body) {
   return sum / static_cast<double>(body.size());
 }
 
-/// A material becomes what settings say, and its bodies with it.
-void change(Simulation::State& s, MaterialState& material, const Material& settings) {
-  material.settings = settings;
-  for (BodyState& body : s.bodies) {
-    if (body.material != &material) continue;
-    wake_island(s, body);
-    derive_density(s.config, body);
-    ShapeMatching& shape = body.shape;
-    const float radius = settings.region_radius.value_or(s.config.support_radius);
-    if (shape.region_radius != radius || shape.region_stride != settings.region_stride) shape.built = false;
-    shape.region_radius = radius;
-    shape.region_stride = settings.region_stride;
-    if (!body.keeps_reference()) {
-      // Rows of fluids are sorted, which a reference shape that is kept would not follow.
-      ShapeMatching none;
-      none.region_radius = shape.region_radius;
-      none.region_stride = shape.region_stride;
-      shape = std::move(none);
-    }
+/// Calls change(body) with all bodies of a material.
+template <class Change>
+void for_bodies_of(Simulation::State& s, const MaterialState& material, const Change& change) {
+  for (BodyState& body : s.bodies)
+    if (body.material == &material) change(body);
+}
+
+/// Alpha of its material has changed.
+void follow_alpha(Simulation::State& s, BodyState& body) {
+  wake_island(s, body);
+  ShapeMatching& shape = body.shape;
+  if (!body.keeps_reference()) {
+    // Rows of fluids are sorted, which a reference shape that is kept would not follow.
+    ShapeMatching none;
+    none.region_radius = shape.region_radius;
+    none.region_stride = shape.region_stride;
+    shape = std::move(none);
+  } else if (shape.reference.size() != body.size()) {
     // A fluid that may turn elastic remembers the shape it has now.
-    if (body.keeps_reference() && shape.reference.size() != body.size()) body.grew = true;
+    body.grew = true;
+    s.prepared = false;
   }
-  s.prepared = false;
+}
+
+/// The regions of its material have changed: they start from the rotations that particles have.
+void follow_regions(Simulation::State& s, BodyState& body) {
+  const Material& settings = body.material->settings;
+  ShapeMatching& shape = body.shape;
+  const float radius = settings.region_radius.value_or(s.config.support_radius);
+  if (shape.region_radius == radius && shape.region_stride == settings.region_stride) return;
+  std::vector<Eigen::Vector4f> rotations;
+  if (shape.built) rotations = particle_rotations(shape);
+  shape.region_radius = radius;
+  shape.region_stride = settings.region_stride;
+  if (shape.built) build_regions_from(rotations, s.execution, s.region_scratch, shape);
 }
 
 }  // namespace
@@ -66,7 +78,7 @@ void Simulation::set_gravity(const Vec3& gravity) {
   state_->refuse_in_callback();
   check_finite("solver.gravity", gravity);
   state_->config.gravity = gravity;
-  state_->disturbed = true;
+  wake_all(*state_);
 }
 
 void Simulation::set_material(MaterialId id, const Material& settings) {
@@ -78,7 +90,13 @@ void Simulation::set_material(MaterialId id, const Material& settings) {
   checks.finish();
   check_stiffness(s.config, settings, checks);
   checks.finish();
-  change(s, material, settings);
+  material.settings = settings;
+  for_bodies_of(s, material, [&](BodyState& body) {
+    derive_density(s.config, body);
+    follow_regions(s, body);
+    follow_alpha(s, body);
+  });
+  s.prepared = false;
 }
 
 const Material& Simulation::material_settings(MaterialId id) const {
@@ -87,12 +105,17 @@ const Material& Simulation::material_settings(MaterialId id) const {
 
 void Simulation::set_alpha(MaterialId id, const AlphaSchedule& alpha) {
   state_->refuse_in_callback();
+  State& s = *state_;
+  MaterialState& material = s.material(id);
   Checks checks;
   check(alpha, checks);
   checks.finish();
-  Material settings = material_settings(id);
-  settings.alpha = alpha;
-  set_material(id, settings);
+  Material changed = material.settings;
+  changed.alpha = alpha;
+  check_stiffness(s.config, changed, checks);
+  checks.finish();
+  material.settings.alpha = alpha;
+  for_bodies_of(s, material, [&](BodyState& body) { follow_alpha(s, body); });
 }
 
 void Simulation::set_velocity(BodyId id, const Vec3& velocity, const Vec3& angular_velocity) {
@@ -137,7 +160,6 @@ void Simulation::set_position(BodyId id, const Vec3& center) {
   measure_rigid(s, body);
   s.held = false;
   s.rows_moved();
-  s.disturbed = true;
 }
 
 void Simulation::add_impulse(BodyId id, const Vec3& impulse) {
@@ -200,7 +222,6 @@ void Simulation::enable(BodyId id, bool enabled) {
   body.enabled = enabled;
   s.held = false;
   s.sph.kept.forget();
-  s.disturbed = true;
 }
 bool Simulation::is_enabled(BodyId id) const {
   return state_->body(id).enabled;
@@ -236,7 +257,6 @@ void Simulation::set_twist(ColliderId id, const Vec3& velocity, const Vec3& angu
   changed.velocity = velocity;
   changed.angular_velocity = angular_velocity;
   changed.keyframes.clear();
-  s.disturbed = true;
 }
 
 void Simulation::set_pose(ColliderId id, const Pose& pose, double seconds) {
@@ -247,6 +267,7 @@ void Simulation::set_pose(ColliderId id, const Pose& pose, double seconds) {
   check_pose("collider.pose", pose, checks);
   checks.number("seconds", seconds, seconds >= 0, "a number >= 0");
   checks.finish();
+  if (seconds == 0) wake_near(s, changed);
   changed.velocity.setZero();
   changed.angular_velocity.setZero();
   changed.keyframes.clear();
@@ -254,7 +275,7 @@ void Simulation::set_pose(ColliderId id, const Pose& pose, double seconds) {
     changed.keyframes = {{s.time, changed.pose}, {s.time + seconds, pose}};
   else
     changed.pose = pose;
-  s.disturbed = true;
+  if (seconds == 0) wake_near(s, changed);
 }
 
 void Simulation::set_velocity(PinId id, const Vec3& velocity) {
@@ -262,7 +283,7 @@ void Simulation::set_velocity(PinId id, const Vec3& velocity) {
   PinState& pin = state_->pin(id);
   check_finite("pin.velocity", velocity);
   pin = {.id = id, .velocity = velocity};
-  state_->disturbed = true;
+  wake_pinned(*state_, id);
 }
 
 void Simulation::move_pin(PinId id, const Vec3& way, double seconds) {
@@ -273,7 +294,7 @@ void Simulation::move_pin(PinId id, const Vec3& way, double seconds) {
   checks.number("pin.seconds", seconds, seconds > 0, "a finite number above 0");
   checks.finish();
   pin = {.id = id, .velocity = {0, 0, 0}, .left = way, .seconds = seconds};
-  state_->disturbed = true;
+  wake_pinned(*state_, id);
 }
 
 }  // namespace mallow

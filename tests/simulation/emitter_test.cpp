@@ -106,6 +106,21 @@ TEST(emitter, grows_no_longer_than_its_budget_and_sinks_take_what_comes_to_them)
   EXPECT_GT(s.particle_count(), 150u);
 }
 
+TEST(emitter, leaves_what_others_have_pinned_and_gives_its_pin_back) {
+  Simulation s(solver(0));
+  const MaterialId jelly = s.add_material({});
+  const EmitterId id = s.add_emitter(nozzle(0), jelly);
+  const PinId mine = s.pin(std::vector<ParticleId>{0, 1, 2}, {0, 0, -1});
+  for (int k = 0; k < 60; ++k) s.step();
+  for (const ParticleId held : {0, 1, 2}) EXPECT_EQ(s.velocities()[s.row(held)], Vec3(0, 0, -1));
+  s.remove_body(s.body(id));
+  s.add_body(sample(Lattice{.count = {3, 3, 3}, .corner = {50, 0, 0}}), jelly);
+  s.step();
+  EXPECT_THROW(s.body(id), ConfigError);
+  EXPECT_EQ(slot_of(s.pin(std::vector<ParticleId>{s.ids()[0]})), 0u) << "the slot of what held the strand";
+  EXPECT_EQ(slot_of(mine), 1u);
+}
+
 TEST(emitter, has_the_same_bits_on_any_number_of_threads_and_after_a_restore) {
   const auto run = [](int threads, bool restored) {
     SolverConfig config = solver(0.1f);

@@ -76,8 +76,7 @@ TEST(removed_particles, leave_the_rest_of_a_turned_body_at_rest_where_it_rests) 
     config.gravity = {0, 0, 0};
     config.sleep_speed = 0;
     Simulation s(config);
-    const BodyId id =
-        s.add_body(cube(6, {0, 0, 0}), Material{.region_stride = stride});
+    const BodyId id = s.add_body(cube(6, {0, 0, 0}), Material{.region_stride = stride});
     s.set_velocity(id, {0.1f, 0, 0}, {0, 0.2f, 0.1f});
     for (int k = 0; k < 60; ++k) s.step();
     s.set_velocity(id, {0, 0, 0}, {0, 0, 0});
@@ -244,6 +243,20 @@ TEST(verbs, give_what_they_say) {
   const double before = s.motion(b).velocity.z();
   s.step();
   EXPECT_NEAR(s.motion(b).velocity.z(), before - 0.15, 1e-4);
+}
+
+TEST(verbs, give_a_turned_body_other_regions_without_a_blow) {
+  SolverConfig config = solver();
+  config.gravity = {0, 0, 0};
+  config.rotation_iterations = 1;
+  Simulation s(config);
+  const BodyId id = s.add_body(cube(6, {0, 0, 0}), Material{});
+  s.set_velocity(id, {0, 0, 0}, {0, 0.2f, 0.1f});
+  for (int k = 0; k < 80; ++k) s.step();
+  const double before = s.motion(id).kinetic_energy;
+  s.set_material(MaterialId{0}, {.region_radius = 1.6f, .region_stride = 2});
+  for (int k = 0; k < 5; ++k) s.step();
+  EXPECT_NEAR(s.motion(id).kinetic_energy, before, 0.05 * before) << "rotations would start from none";
 }
 
 TEST(verbs, refuse_what_is_wrong) {

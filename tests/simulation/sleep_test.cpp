@@ -92,6 +92,9 @@ TEST(sleep, ends_where_its_ground_goes_or_moves_or_a_setting_changes) {
     return s.is_awake(BodyId{1});
   };
   EXPECT_FALSE(wakes([](Simulation&, ColliderId) {}));
+  EXPECT_FALSE(wakes([](Simulation& s, ColliderId) {
+    s.add_collider({.shape = Sphere{.center = {60, 0, 5}, .radius = 3}});
+  })) << "it is far away";
   EXPECT_TRUE(wakes([](Simulation& s, ColliderId) { s.remove_collider(ColliderId{0}); }));
   EXPECT_TRUE(wakes([](Simulation& s, ColliderId) { s.set_velocity(ColliderId{0}, {0.5f, 0, 0}); }));
   EXPECT_TRUE(wakes([](Simulation& s, ColliderId) { s.set_gravity({0.1f, 0, -0.3f}); }));
@@ -99,12 +102,34 @@ TEST(sleep, ends_where_its_ground_goes_or_moves_or_a_setting_changes) {
   EXPECT_TRUE(wakes([](Simulation& s, ColliderId) { s.set_material(MaterialId{0}, {.damping_time = 0.1f}); }))
       << "of the one below it";
   EXPECT_TRUE(wakes([](Simulation& s, ColliderId) { s.wake(BodyId{0}); }));
+  EXPECT_TRUE(wakes([](Simulation& s, ColliderId) {
+    s.add_collider({.shape = Sphere{.center = {2, 2, 13}, .radius = 3}});
+  }));
   EXPECT_TRUE(wakes([](Simulation& s, ColliderId) { s.add_impulse(BodyId{0}, {0, 0, 1}); }));
   EXPECT_TRUE(wakes([](Simulation& s, ColliderId) { s.pin(std::vector<ParticleId>{0}, {0, 0, 0.1f}); }));
   EXPECT_TRUE(wakes([](Simulation& s, ColliderId) {
     s.set_force([](const ForceInput&, VectorSpan a) { a.x()[3] = 0.1f; });
     s.step();
   }));
+}
+
+TEST(sleep, goes_on_where_others_are_told_to_do_something_far_away) {
+  Simulation s = cubes(1, false);
+  const ColliderId far = s.add_collider({.shape = Sphere{.center = {90, 0, 0}, .radius = 3}});
+  ASSERT_LT(steps_until_all_sleep(s), 4000);
+  const BodyId other = s.add_body(cube(3, {60, 0, 0}), Material{});
+  const PinId pin = s.pin(Aabb{{59, -1, -1}, {64, 4, 0.7f}});
+  for (int k = 0; k < 50; ++k) {
+    s.set_twist(far, {0.01f * static_cast<float>(k), 0, 0}, {0, 0, 1});
+    s.set_pose(far, {.translation = {5.0 + k, 9, 0}});
+    s.set_velocity(pin, {0, 0.1f, 0});
+    s.set_position(other, {60, static_cast<float>(k), 4});
+    s.set_alpha(s.material(other), 0.01f * static_cast<float>(k));
+    s.enable(other, k % 3 != 0);
+    s.step();
+    ASSERT_FALSE(s.is_awake(BodyId{0})) << k;
+  }
+  EXPECT_TRUE(s.is_awake(other));
 }
 
 TEST(sleep, does_not_come_to_what_a_pin_a_collider_or_a_force_moves) {
