@@ -98,7 +98,7 @@ void Skin::Work::size_columns() {
   rotations.resize(ids.size());
   turns.resize(carriers.size());
   motions.resize(carriers.size() * k_skin_row);
-  mesh.material_ids.assign(vertices.size(), static_cast<std::uint32_t>(body));
+  mesh.material_ids.assign(vertices.size(), slot_of(body));
   stretch.assign(vertices.size(), 0.0f);
 }
 
@@ -113,7 +113,7 @@ void Skin::Work::find_rows(const Simulation& simulation) {
     if (row < range.begin || row >= range.end)
       throw ConfigError("simulation", "is not the one that the skin was bound to: particle " +
                                           std::to_string(ids[p]) + " is not of body " +
-                                          std::to_string(static_cast<std::size_t>(body)));
+                                          std::to_string(static_cast<std::uint64_t>(body)));
     rows[p] = static_cast<std::uint32_t>(row);
   }
 }
@@ -199,7 +199,9 @@ Skin::Skin(Simulation& simulation, BodyId body, Mesh mesh, int threads, std::sha
   w.threads = Threads(threads, w.executor);
   w.body = body;
   w.spacing = simulation.spacing(body);
-  w.region_radius = info.bodies[static_cast<std::size_t>(body)].region_radius;
+  const std::vector<BodyId> bodies = simulation.bodies();  // in the order of the info
+  w.region_radius =
+      info.bodies[static_cast<std::size_t>(std::ranges::find(bodies, body) - bodies.begin())].region_radius;
   w.mesh = std::move(mesh);
   if (w.mesh.normals.empty()) w.mesh.normals = vertex_normals(w.mesh);
   for (Vec3& normal : w.mesh.normals) normal.normalize();
@@ -278,7 +280,7 @@ const Mesh& Skin::find_velocities(const Simulation& simulation) {
 
 namespace {
 
-constexpr std::uint32_t k_version = 1;
+constexpr std::uint32_t k_version = 2;
 constexpr const char* k_chunk = "skin";
 
 template <class T>
@@ -343,7 +345,7 @@ std::string Skin::save() const {
   PackingArchive archive;
   const std::vector<VertexBinding> bindings(w.bindings.begin(), w.bindings.end());
   archive(k_version);
-  archive(static_cast<std::uint32_t>(w.body));
+  archive(static_cast<std::uint64_t>(w.body));
   pass_skin(archive, w, bindings);
   return archive.take();
 }
@@ -352,7 +354,8 @@ Skin Skin::restore(const std::string& saved, int threads, std::shared_ptr<Execut
   Skin skin;
   Work& w = *skin.work_;
   UnpackingArchive archive(k_chunk, saved);
-  std::uint32_t version = 0, body = 0;
+  std::uint32_t version = 0;
+  std::uint64_t body = 0;
   std::vector<VertexBinding> bindings;
   archive(version);
   if (version != k_version)

@@ -62,6 +62,33 @@ bool wait_for(const fs::path& file) {
   return false;
 }
 
+TEST_F(cli_checkpoint, run_goes_on_and_is_drawn_after_a_sink_took_a_body) {
+  write("sink.toml", R"([solver]
+support_radius = 2.1
+[[material]]
+name = "jelly"
+alpha = 0.2
+[[body]]
+material = "jelly"
+box = { count = [4, 4, 4], spacing = 1.0, corner = [20, 0, 3] }
+[[body]]
+material = "jelly"
+box = { count = [4, 4, 4], spacing = 1.0, corner = [0, 0, 3] }
+[[collider]]
+plane = { offset = 0.0 }
+[[sink]]
+box = { min = [15, -5, -5], max = [30, 9, 30] }
+)");
+  Running running({"run", at("sink.toml"), "--frames", "100000", "--no-images", "--out", at("sunk")});
+  ASSERT_TRUE(wait_for(folder_ / "sunk/particles/frame_000004.ply"));
+  running.send(SIGINT);
+  running.wait();
+  const int frames = static_cast<int>(names_in(folder_ / "sunk/particles").size());
+  ASSERT_EQ(resume("sunk", {"--frames", std::to_string(frames + 3)}).exit_code, 0);
+  EXPECT_EQ(read_json(folder_ / "sunk/report.json").at("groups").size(), 2u);
+  EXPECT_EQ(run_mallow({"surface", at("sunk")}).exit_code, 0);
+}
+
 TEST_F(cli_checkpoint, interrupted_run_goes_on_to_the_same_bytes) {
   const std::vector<std::string> what = {"run", scene_, "--frames", "150", "--no-images"};
   std::vector<std::string> whole = what, halves = what;

@@ -87,6 +87,28 @@ Vec3 twisted(const Vec3& x) {
   return Eigen::AngleAxisf(0.12f * x.z(), Vec3::UnitZ()) * Vec3(x.x(), x.y(), 1.3f * x.z());
 }
 
+TEST(skin, is_bound_to_the_body_that_it_names_where_others_have_gone) {
+  Simulation simulation({.time_step = 0.1f, .support_radius = 2.1f, .threads = 1});
+  const auto cube = [](float x) {
+    return sample(Lattice{.count = {4, 4, 4}, .spacing = 1, .corner = {x, 0, 0}});
+  };
+  const BodyId gone = simulation.add_body(cube(0), {.alpha = 0.1f});
+  const BodyId other = simulation.add_body(cube(20), {.alpha = 0.2f});
+  simulation.remove_body(gone);
+  const BodyId later = simulation.add_body(cube(40), {.alpha = 0.3f});
+  for (const auto& [body, x] : {std::pair{other, 20.0f}, {later, 40.0f}}) {
+    Mesh mesh;
+    mesh.vertices = {{x, 1, 1}, {x + 3, 1, 1}, {x, 3, 1}};
+    mesh.triangles = {{0, 1, 2}};
+    Skin skin(simulation, body, mesh);
+    Skin again = Skin::restore(skin.save(), 1);
+    EXPECT_EQ(again.body(), body);
+    simulation.step();
+    EXPECT_EQ(again.update(simulation).vertices, skin.update(simulation).vertices);
+    EXPECT_EQ(skin.mesh().material_ids.front(), slot_of(body));
+  }
+}
+
 TEST(skin, is_where_the_mesh_was_at_rest) {
   for (const Vec3& center : {Vec3(0, 0, 0), Vec3(40, -30, 20)}) {
     for (const int stride : {1, 3}) {

@@ -211,6 +211,10 @@ Run resume(const RunOptions& options, int threads) {
   run.plan.threads = threads;
   run.plan.checkpoints = checkpoint_interval(options, run.plan.checkpoints);
   describe(run.scene, threads, *run.simulation, run.report);
+  if (run.report.info.bodies.size() < body_materials(run.scene).size()) {
+    const std::filesystem::path file = run.cache->report_file();
+    program::add_gone_bodies(program::read_report(file), file, run.report.info);
+  }
   run.report.resumed_after.push_back(run.report.steps);
   run.report.stage_seconds[static_cast<std::size_t>(program::Stage::build)] +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

@@ -182,6 +182,26 @@ void write_report(const std::filesystem::path& file, const nlohmann::ordered_jso
   write_whole(file, report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
+void add_gone_bodies(const nlohmann::ordered_json& earlier, const std::filesystem::path& file,
+                     SimulationInfo& info) {
+  std::vector<BodyInfo> all;
+  try {
+    for (const auto& group : earlier.at("groups")) {
+      const auto name = group.at("name").get<std::string>();
+      const auto here = std::ranges::find(info.bodies, name, &BodyInfo::name);
+      if (here != info.bodies.end())
+        all.push_back(*here);
+      else
+        all.push_back({.name = name,
+                       .material = group.at("material").get<std::string>(),
+                       .spacing = group.at("spacing").get<float>()});
+    }
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw IoError({file.string(), 0, 0, "groups", error.what()});
+  }
+  info.bodies = std::move(all);
+}
+
 std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
   std::vector<float> spacings;
   try {

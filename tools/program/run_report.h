@@ -77,6 +77,10 @@ std::string hash_text(std::uint64_t hash);
 nlohmann::ordered_json read_report(const std::filesystem::path& file);
 /// Whole or not at all.
 void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report);
+/// Bodies that the report of an earlier part of a run lists and that are gone since, to sinks, without
+/// particles: reports list all of a scene, in its order. Throws IoError that names `file`.
+void add_gone_bodies(const nlohmann::ordered_json& earlier, const std::filesystem::path& file,
+                     SimulationInfo& info);
 /// What later commands need of a report: h of each body [m]. Throws IoError where the report does not fit
 /// the scene.
 std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file);
