@@ -1,7 +1,6 @@
 #include "contact/body_contact.h"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 
 #include "core/parallel.h"
@@ -14,73 +13,51 @@ namespace {
 constexpr int k_least_rounds = 4, k_most_rounds = 8;
 constexpr float k_tolerance = 0.01f;
 
-/// Calls body(point, its pairs) for all of a block that have any.
-template <class Block, class Body>
-void for_touching(Block& block, const Body& body) {
-  auto* first = block.pairs.data();
-  for (const BlockPairs::Touching& touching : block.points) {
-    body(touching.point, std::span(first, touching.count));
-    first += touching.count;
-  }
-}
-/// The same for all blocks.
+/// Calls body(point, its sides) for all of a block that have any.
 template <class Body>
-void for_touching(ContactPairs& pairs, const Threads& threads, const Body& body) {
-  parallel_for(threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
-    for_touching(pairs.blocks[number], body);
-  });
-}
-
-/// Calls visit(pair, v_i − v_j, its part along n) for the pairs of a point that come nearer than they may, or
-/// stick.
-template <class Pair, class Visit>
-void for_acting_pairs(const ContactPairs& pairs, std::uint32_t i, std::span<Pair> own, const Visit& visit) {
-  const Vec3 v = pairs.velocity[i].velocity;
-  for (Pair& pair : own) {
-    const Vec3 w = v - pairs.velocity[pair.other].velocity;
-    const float along = w.dot(pair.normal);
-    if (along < pair.target || pair.sticks > 0) visit(pair, w, along);
+void for_touching(const BlockSides& block, const Body& body) {
+  std::uint32_t first = 0;
+  for (const auto& [point, end] : block.points) {
+    body(point, std::span(block.sides).subspan(first, end - first));
+    first = end;
   }
 }
 
-/// How many pairs of each point act. Returns the most by which one would be too near, or too far where it
-/// sticks, in its spacing.
-float count_pushes(const Threads& threads, float time_step, ContactPairs& pairs) {
-  pairs.partial_excess.assign(pairs.blocks.size(), 0);
-  parallel_for(threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
-    float most = 0;
-    for_touching(pairs.blocks[number], [&](std::uint32_t i, std::span<ContactPair> own) {
-      float pushes = 0;
-      for_acting_pairs(pairs, i, own, [&](const ContactPair& pair, const Vec3&, float along) {
-        ++pushes;
-        most = std::max(most, std::abs(pair.target - along) / pairs.points[i].half_spacing);
-      });
-      pairs.velocity[i].pushes = pushes;
-    });
-    pairs.partial_excess[number] = most;
+/// Which pairs come nearer than they may, or stick. Returns the most by which one misses its target.
+float find_acting(const Execution& execution, const ContactLanes& lanes, ContactPairs& pairs) {
+  pairs.partial_miss.assign(pairs.blocks.size(), 0);
+  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+    BlockPairs& block = pairs.blocks[number];
+    pairs.partial_miss[number] = lanes.acting(pairs.rows().velocities, block.columns(), block.count,
+                                              pairs.acts.data() + block.first);
   });
-  return 0.5f * time_step * std::ranges::max(pairs.partial_excess);
+  return std::ranges::max(pairs.partial_miss);
 }
 
-/// What its pairs do to the velocity of a point in one round. A particle shares its mass between its pairs,
-/// so that all of them together do not overshoot. What sticks is held back by no more than is left of that.
-Vec3 impulses(const ContactPairs& pairs, std::uint32_t i, std::span<ContactPair> own_pairs) {
-  const ContactPoint& own = pairs.points[i];
-  const float own_share = pairs.velocity[i].pushes * own.inverse_mass;
-  Vec3 sum = Vec3::Zero();
-  for_acting_pairs(pairs, i, own_pairs, [&](ContactPair& pair, const Vec3& w, float along) {
-    const ContactPoint& other = pairs.points[pair.other];
-    const float mass = 1 / (own_share + pairs.velocity[pair.other].pushes * other.inverse_mass);
-    const float friction = own.friction * other.friction;
-    const float push = std::max(mass * (pair.target - along), -pair.sticks);
-    const Vec3 slip = w - along * pair.normal;
-    const float speed = slip.norm();
-    const float rub = std::min(friction * (std::max(push, 0.0f) + pair.sticks), mass * speed);
-    sum += push * pair.normal;
-    if (speed > 0) sum -= rub / speed * slip;
-    if (pair.sticks > 0) pair.sticks = std::max(0.0f, pair.sticks - std::max(-push, 0.0f));
+/// One round of impulses. Each particle shares its mass between its pairs that act, so that all of them together
+/// do not overshoot.
+void push_apart(const Execution& execution, const ContactLanes& lanes, ContactPairs& pairs) {
+  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+    for_touching(pairs.sides[number], [&](std::uint32_t i, std::span<const BlockSides::Side> sides) {
+      float acting = 0;
+      for (const BlockSides::Side& side : sides) acting += pairs.acts[side.pair];
+      pairs.shared_velocity[i] = {pairs.velocity[i].velocity, acting * pairs.points[i].inverse_mass};
+    });
   });
-  return own.inverse_mass * sum;
+  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+    BlockPairs& block = pairs.blocks[number];
+    lanes.impulses(pairs.shared_velocity.front().velocity.data(), block.columns(), block.count,
+                   pairs.acts.data() + block.first, pairs.impulses.data() + 4 * block.first);
+  });
+  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+    for_touching(pairs.sides[number], [&](std::uint32_t i, std::span<const BlockSides::Side> sides) {
+      if (pairs.shared_velocity[i].share == 0) return;
+      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+      for (const auto& [pair, sign] : sides)
+        sum += sign * Eigen::Map<const Eigen::Vector4f>(pairs.impulses.data() + 4 * pair);
+      pairs.velocity[i].velocity += pairs.points[i].inverse_mass * sum.head<3>();
+    });
+  });
 }
 
 }  // namespace
@@ -89,19 +66,17 @@ void resolve_body_contacts(const VectorColumn& positions, const std::uint16_t* p
                            const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
                            const Execution& execution, VectorColumn& velocities, ContactPairs& pairs) {
   if (!find_contact_pairs(positions, velocities, pin, bodies, step, execution, pairs)) return;
-  const Threads& threads = execution.threads;
+  const ContactLanes& lanes = MALLOW_SELECT(execution.level, contact_lanes);
+  const float tolerance = k_tolerance * std::ranges::min(bodies, {}, &TouchingBody::spacing).spacing;
   for (int round = 0; round < k_most_rounds; ++round) {
-    const float excess = count_pushes(threads, step.time_step, pairs);
-    if (excess == 0 || (round >= k_least_rounds && excess < k_tolerance)) break;
-    for_touching(pairs, threads, [&](std::uint32_t i, std::span<ContactPair> own) {
-      const ContactVelocity& now = pairs.velocity[i];
-      pairs.next_velocity[i].velocity = now.velocity;
-      if (now.pushes > 0) pairs.next_velocity[i].velocity += impulses(pairs, i, own);
-    });
-    pairs.velocity.swap(pairs.next_velocity);
+    const float excess = step.time_step * find_acting(execution, lanes, pairs);
+    if (excess == 0 || (round >= k_least_rounds && excess < tolerance)) break;
+    push_apart(execution, lanes, pairs);
   }
-  for_touching(pairs, threads, [&](std::uint32_t i, std::span<ContactPair>) {
-    if (pairs.points[i].inverse_mass > 0) velocities.set(pairs.near.row[i], pairs.velocity[i].velocity);
+  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+    for (const auto& [point, end] : pairs.sides[number].points)
+      if (pairs.points[point].inverse_mass > 0)
+        velocities.set(pairs.near.row[point], pairs.velocity[point].velocity);
   });
 }
 

@@ -1,11 +1,11 @@
 #include "contact/contact_pairs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <utility>
 
-#include "contact/meeting_lanes.h"
 #include "core/bounds.h"
 #include "core/parallel.h"
 #include "shape_matching/run_tables.h"
@@ -14,15 +14,14 @@
 namespace mallow {
 namespace {
 
-/// Share of an overlap that a step takes away, but for what is left in peace, in d0: all of it at once would
-/// throw particles apart, and what rests would tremble [Baumgarte 1972]. Of 200 cubes in a heap the one that
-/// moves most does so at a third of the speed, and head-on nothing comes nearer than without.
-constexpr float k_correction = 0.3f, k_slop = 0.02f;
-/// Gap up to which what sticks is held, in d0.
-constexpr float k_sticking = 0.1f;
 /// Pairs of a point that there is room for from the start: more than rest or flow asks for, so that a motion
 /// that goes on takes no more memory.
-constexpr std::size_t k_room = 8;
+constexpr std::size_t k_room = 4;
+/// The same of a block, whichever of its points have come near.
+std::size_t room(const NearBlocks& near, std::size_t number) {
+  const RangeBlocks::Block& block = near.blocks.blocks[number];
+  return k_room * (block.end - block.begin);
+}
 
 /// From the middle of the regions of a particle to it, in the reference shape.
 Vec3 rest_outward(const ShapeMatching& shape, std::size_t i) {
@@ -52,7 +51,7 @@ void gather(const VectorColumn& positions, const VectorColumn& velocities, const
   pairs.positions.resize_unset(n);
   pairs.points.resize(n);
   pairs.velocity.resize(n);
-  pairs.next_velocity.resize(n);
+  pairs.shared_velocity.resize(n);
   parallel_for(threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     const TouchingBody& body = bodies[block.range];
     for (std::uint32_t p = near.first_point[number]; p < near.first_point[number + 1]; ++p) {
@@ -62,162 +61,163 @@ void gather(const VectorColumn& positions, const VectorColumn& velocities, const
       pairs.positions.set(p, x);
       pairs.velocity[p] = {v, 0};
       pairs.points[p] = {.position = x,
+                         .half_spacing = 0.5f * body.spacing,
                          .outward = depth > 0 ? Vec3(out / depth) : Vec3(0, 0, 0),
                          .depth = depth,
                          .inverse_mass = pin && pin[row] != 0 ? 0.0f : 1.0f / body.mass,
                          .friction = std::sqrt(body.friction),
                          .adhesion = std::sqrt(body.adhesion),
-                         .half_spacing = 0.5f * body.spacing};
+                         .unused = 0};
     }
   });
 }
 
-/// How far a normal turns from the line between two points to the way out of a body. along: cosine between
-/// the two.
-float turn(float along, float depth, float spacing) {
-  const float s = std::clamp((along - 0.6f) / 0.3f, 0.0f, 1.0f);
-  return s * s * (3 - 2 * s) * std::clamp((depth / spacing - 0.1f) / 0.15f, 0.0f, 1.0f);
-}
-
-/// The distance between two points along n beyond that at which they touch, or infinity where they do not
-/// meet this way. r: from j to i, shorter than anything that would overflow. Swapped points have the opposite
-/// normal and the same gap, to the bit.
-float gap_between(const ContactPoint& i, const ContactPoint& j, const Vec3& r, float spacing, Vec3& normal) {
-  constexpr float k_never = std::numeric_limits<float>::infinity();
-  const float square = r.squaredNorm();
-  if (!(square > 1e-12f * spacing * spacing)) return k_never;  // in one point nothing says which way
-  const float distance = std::sqrt(square);
-  const Vec3 along = r / distance;
-  const float along_i = -i.outward.dot(along), along_j = j.outward.dot(along);
-  normal = along;
-  if (along_i <= 0.6f && along_j <= 0.6f) return distance - spacing;
-  const float turn_i = turn(along_i, i.depth, spacing), turn_j = turn(along_j, j.depth, spacing);
-  const float most = std::max(turn_i, turn_j);
-  if (most == 0) return distance - spacing;
-  // The flatter side wins: its particles have more of their body on one side.
-  const float cube_i = i.depth * i.depth * i.depth, cube_j = j.depth * j.depth * j.depth;
-  const float wi = turn_i * cube_j, wj = turn_j * cube_i;
-  const Vec3 out = (cube_i > 0 && cube_j > 0) ? Vec3((wj * j.outward - wi * i.outward) / (wi + wj))
-                   : cube_i > 0               ? Vec3(-i.outward)
-                                              : j.outward;
-  normal = ((1 - most) * along + most * out).normalized();
-  const float height = r.dot(normal), across = k_across * spacing;
-  if (square - height * height > across * across) return k_never;
-  return height - spacing;
-}
-
-/// Adds the pair of two points, seen from p, if they may touch in this step.
-void add_pair(std::uint32_t p, std::uint32_t q, const BodyContactStep& step, const ContactPairs& pairs,
-              std::vector<ContactPair>& found) {
-  const ContactPoint &own = pairs.points[p], &other = pairs.points[q];
-  const Vec3 r = own.position - other.position;
-  const float closing = (pairs.velocity[p].velocity - pairs.velocity[q].velocity).norm();
-  const float spacing = own.half_spacing + other.half_spacing, across = k_across * spacing;
-  const float most = step.time_step * closing + pushed_together(step), along = spacing + most;
-  if (!(r.squaredNorm() <= across * across + along * along)) return;
-  if (own.inverse_mass == 0 && other.inverse_mass == 0) return;
-  Vec3 normal = Vec3::Zero();
-  const float gap = gap_between(own, other, r, spacing, normal);
-  if (!(gap <= most)) return;
-  float target = -gap / step.time_step;
-  if (gap < 0)
-    target = std::clamp(k_correction * (target - k_slop * spacing / step.time_step), 0.0f, step.max_push);
-  const float stress = gap < k_sticking * spacing ? own.adhesion * other.adhesion : 0;
-  found.push_back({normal, target, stress * spacing * spacing * step.time_step, q});
-}
-
-/// So much wider than they would be where nothing rounds are the tests by which points are left out.
-constexpr float k_wider = 1.001f;
-
-/// How far a point may move in this step, seen from a frame that moves with `velocity`.
-float way(const ContactPairs& pairs, std::uint32_t point, const Vec3& velocity, const BodyContactStep& step) {
-  return k_wider * step.time_step * (pairs.velocity[point].velocity - velocity).norm();
-}
-
-/// Points of other blocks in the box of one, those of each behind the other's.
+/// Points that are tried with others, with room for what lanes write behind them.
 struct Candidates {
   std::vector<std::uint32_t> name;
-  std::vector<float> x, y, z, along;
-  std::vector<std::uint32_t> end;  ///< of those of each block
-  std::vector<std::uint32_t> meeting;
+  std::vector<float> x, y, z, along, across;
+  std::size_t count = 0;
 
-  void gather(std::size_t number, const BodyContactStep& step, const MeetingLanes& lanes,
-              const ContactPairs& pairs) {
-    const NearBlocks& near = pairs.near;
-    const Moving& own = near.block_motion[number];
-    const float half_spacing = pairs.points[near.first_point[number]].half_spacing;
-    end.clear();
-    std::size_t count = 0;
-    for (const auto& [other, reach] : near.others[number]) {
-      const std::uint32_t first = near.first_point[other], last = near.first_point[other + 1];
-      const std::size_t before = count;
-      resize(count + (last - first) + k_cluster);
-      const Vec3 low = own.box.min.array() - reach, high = own.box.max.array() + reach;
-      count += lanes.in_box(raw(pairs.positions), first, last, low.data(), high.data(), name.data() + count);
-      for (std::size_t k = before; k < count; ++k) {
-        const std::uint32_t q = name[k];
-        x[k] = pairs.positions.x()[q];
-        y[k] = pairs.positions.y()[q];
-        z[k] = pairs.positions.z()[q];
-        along[k] = k_wider * (half_spacing + pairs.points[q].half_spacing + pushed_together(step)) +
-                   way(pairs, q, own.velocity, step);
-      }
-      end.push_back(static_cast<std::uint32_t>(count));
-    }
+  void reserve(std::size_t points) {
+    const std::size_t room = points + k_cluster;
+    if (name.size() >= room) return;
+    name.resize(room);
+    for (std::vector<float>* column : {&x, &y, &z, &along, &across}) column->resize(room);
   }
-  MeetingPoints from(std::size_t k) const {
-    return {name.data() + k, {x.data() + k, y.data() + k, z.data() + k}, along.data() + k};
-  }
-
- private:
-  void resize(std::size_t size) {
-    if (name.size() >= size) return;
-    for (std::vector<std::uint32_t>* names : {&name, &meeting}) names->resize(size);
-    for (std::vector<float>* axis : {&x, &y, &z, &along}) axis->resize(size);
+  MeetingPoints columns() {
+    return {name.data(), {x.data(), y.data(), z.data()}, along.data(), across.data()};
   }
 };
 
-/// The pairs of the points of a block.
-void find_pairs(std::size_t number, const BodyContactStep& step, const MeetingLanes& lanes,
-                ContactPairs& pairs) {
+/// What finding the pairs of a block needs on the way.
+struct PairSearch {
+  Candidates own, others;
+  std::vector<std::uint32_t> first, second;  ///< points that may touch
+};
+
+/// Points of later blocks of other bodies near the box of some of a block.
+void find_candidates(const ContactPairs& pairs, std::size_t number, const Aabb& box,
+                     const ContactLanes& lanes, Candidates& found) {
+  const NearBlocks& near = pairs.near;
+  found.count = 0;
+  for (const auto& [other, reach] : near.others[number]) {
+    if (other < number || !are_near(box, near.block_motion[other].box, reach)) continue;
+    const std::uint32_t first = near.first_point[other], last = near.first_point[other + 1];
+    found.reserve(found.count + (last - first));
+    const LaneBox wide = lane_box(box, reach);
+    found.count +=
+        lanes.in_boxes(raw(pairs.positions), first, last, &wide, 1, found.name.data() + found.count);
+  }
+}
+
+/// The pairs of the points of a block with those of later ones: those of a few points at a time, which lie side by side, are tried with
+/// what is near all of these.
+void find_pairs(std::size_t number, const PairStep& step, const ContactLanes& lanes, ContactPairs& pairs) {
   const NearBlocks& near = pairs.near;
   const std::uint32_t begin = near.first_point[number], end = near.first_point[number + 1];
   BlockPairs& block = pairs.blocks[number];
-  block.points.clear();
-  block.pairs.clear();
+  block.count = 0;
+  pairs.sides[number].points.clear();
   if (begin == end) return;
-  block.points.reserve(k_block);
-  block.pairs.reserve(k_room * (end - begin));
-  thread_local Candidates candidates;
-  candidates.gather(number, step, lanes, pairs);
-  for (std::uint32_t p = begin; p < end; ++p) {
-    const ContactPoint& own = pairs.points[p];
-    const float own_way = way(pairs, p, near.block_motion[number].velocity, step);
-    const std::size_t before = block.pairs.size();
-    std::uint32_t next = 0;
-    for (std::size_t o = 0; o < near.others[number].size(); ++o) {
-      const auto& [other, reach] = near.others[number][o];
-      const std::uint32_t first = std::exchange(next, candidates.end[o]);
-      if (first == next || !is_near(own.position, near.block_motion[other].box, reach)) continue;
-      const float across =
-          k_wider * k_across * (own.half_spacing + pairs.points[candidates.name[first]].half_spacing);
-      const std::size_t count = lanes.meeting(candidates.from(first), next - first, own.position.data(),
-                                              own_way, across, candidates.meeting.data());
-      for (std::size_t k = 0; k < count; ++k) add_pair(p, candidates.meeting[k], step, pairs, block.pairs);
+  block.reserve(room(near, number));
+  thread_local PairSearch search;
+  auto& [own, others, first, second] = search;
+  own.reserve(k_cluster);
+  others.reserve(4 * k_block);
+  const float* const velocity = near.block_motion[number].velocity.data();
+  for (std::uint32_t from = begin; from < end; from += k_cluster) {
+    own.count = std::min<std::size_t>(k_cluster, end - from);
+    find_candidates(pairs, number, box_around(pairs.positions, from, from + own.count), lanes, others);
+    if (others.count == 0) continue;
+    std::iota(own.name.begin(), own.name.begin() + k_cluster, from);
+    lanes.gather(pairs.rows(), step, velocity, own.count, own.columns());
+    lanes.gather(pairs.rows(), step, velocity, others.count, others.columns());
+    const std::size_t most = k_cluster * others.name.size();
+    if (second.size() < most) {
+      first.resize(most);
+      second.resize(most);
     }
-    if (block.pairs.size() > before)
-      block.points.push_back({p, static_cast<std::uint32_t>(block.pairs.size() - before)});
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < own.count; ++i) {
+      const std::size_t found =
+          lanes.meeting(own.columns(), i, others.columns(), others.count, second.data() + count);
+      std::fill_n(first.begin() + static_cast<std::ptrdiff_t>(count), found, own.name[i]);
+      count += found;
+    }
+    block.reserve(block.count + count);
+    block.count = lanes.add_pairs(pairs.rows(), step, first.data(), second.data(), count, block.columns(),
+                                  block.count);
   }
+}
+
+/// In which pairs the points of a block are.
+void find_sides(std::uint32_t number, ContactPairs& pairs) {
+  struct Found {
+    std::uint32_t point;
+    BlockSides::Side side;
+  };
+  thread_local std::vector<Found> found;
+  found.clear();
+  found.reserve(4 * k_room * k_block);
+  const NearBlocks& near = pairs.near;
+  const std::uint32_t begin = near.first_point[number], end = near.first_point[number + 1];
+  const auto find = [&](const BlockPairs& of, const std::vector<std::uint32_t>& points, float sign) {
+    for (std::size_t k = 0; k < of.count; ++k)
+      if (points[k] - begin < end - begin)  // below begin it wraps around
+        found.push_back({points[k] - begin, {static_cast<std::uint32_t>(of.first + k), sign}});
+  };
+  find(pairs.blocks[number], pairs.blocks[number].own, 1);
+  for (const NearBlocks::Other& other : near.others[number])
+    if (other.block < number) find(pairs.blocks[other.block], pairs.blocks[other.block].other, -1);
+
+  std::array<std::uint32_t, k_block> next{};
+  for (const Found& one : found) ++next[one.point];
+  BlockSides& block = pairs.sides[number];
+  block.points.reserve(k_block);
+  std::uint32_t count = 0;
+  for (std::uint32_t p = begin; p < end; ++p) {
+    const std::uint32_t own = std::exchange(next[p - begin], count);
+    count += own;
+    if (own > 0) block.points.push_back({p, count});
+  }
+  if (block.sides.size() < count) block.sides.resize(std::max<std::size_t>(count, 2 * room(near, number)));
+  for (const Found& one : found) block.sides[next[one.point]++] = one.side;
 }
 
 }  // namespace
 
+PairColumns BlockPairs::columns() {
+  return {own.data(),    other.data(),  {normal_x.data(), normal_y.data(), normal_z.data()},
+          target.data(), sticks.data(), friction.data()};
+}
+
+void BlockPairs::reserve(std::size_t pairs) {
+  const std::size_t room = pairs + k_cluster;
+  if (own.size() >= room) return;
+  own.resize(room);
+  other.resize(room);
+  for (std::vector<float>* column : {&normal_x, &normal_y, &normal_z, &target, &sticks, &friction})
+    column->resize(room);
+}
+
+std::size_t BlockPairs::bytes() const {
+  return own.capacity() * (2 * sizeof(std::uint32_t) + 6 * sizeof(float));
+}
+
+ContactRows ContactPairs::rows() const {
+  static_assert(sizeof(ContactPoint) == 12 * sizeof(float) && sizeof(ContactVelocity) == 4 * sizeof(float));
+  return {points.empty() ? nullptr : points.front().position.data(),
+          velocity.empty() ? nullptr : velocity.front().velocity.data()};
+}
+
 std::size_t ContactPairs::bytes() const {
-  std::size_t sum = near.bytes() + positions.bytes() + points.capacity() * sizeof(ContactPoint) +
-                    (velocity.capacity() + next_velocity.capacity()) * sizeof(ContactVelocity);
-  for (const BlockPairs& block : blocks)
-    sum +=
-        block.points.capacity() * sizeof(BlockPairs::Touching) + block.pairs.capacity() * sizeof(ContactPair);
+  std::size_t sum = near.bytes() + positions.bytes() + acts.bytes() + impulses.bytes() +
+                    points.capacity() * sizeof(ContactPoint) +
+                    (velocity.capacity() + shared_velocity.capacity()) * sizeof(ContactVelocity);
+  for (const BlockPairs& block : blocks) sum += block.bytes();
+  for (const BlockSides& block : sides)
+    sum += block.points.capacity() * sizeof(BlockSides::Touching) +
+           block.sides.capacity() * sizeof(BlockSides::Side);
   return sum;
 }
 
@@ -228,11 +228,24 @@ bool find_contact_pairs(const VectorColumn& positions, const VectorColumn& veloc
   if (pairs.near.row.empty()) return false;
   gather(positions, velocities, pin, bodies, execution.threads, pairs);
   pairs.blocks.resize(pairs.near.blocks.blocks.size());
-  const MeetingLanes& lanes = MALLOW_SELECT(execution.level, meeting_lanes);
+  pairs.sides.resize(pairs.blocks.size());
+  const ContactLanes& lanes = MALLOW_SELECT(execution.level, contact_lanes);
+  const PairStep pair_step{step.time_step, step.max_push, pushed_together(step)};
   parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
-    find_pairs(number, step, lanes, pairs);
+    find_pairs(number, pair_step, lanes, pairs);
   });
-  return std::ranges::any_of(pairs.blocks, [](const BlockPairs& block) { return !block.pairs.empty(); });
+  std::size_t count = 0;
+  for (BlockPairs& block : pairs.blocks) {
+    block.first = count;
+    count += (block.count + k_cluster - 1) / k_cluster * k_cluster;  // lanes write whole clusters
+  }
+  if (count == 0) return false;
+  pairs.acts.resize_unset(count);
+  pairs.impulses.resize_unset(4 * count);
+  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+    find_sides(static_cast<std::uint32_t>(number), pairs);
+  });
+  return true;
 }
 
 }  // namespace mallow

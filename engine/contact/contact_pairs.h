@@ -1,55 +1,76 @@
 #pragma once
 
+#include <span>
+
+#include "contact/contact_lanes.h"
 #include "contact/near_blocks.h"
 
 namespace mallow {
 
-/// A particle near another body. In one piece, as pairs read it whole.
+/// A particle near another body: three rows of four floats, as lanes load them.
 struct ContactPoint {
   Vec3 position;       ///< [m]
+  float half_spacing;  ///< h/2 [m]
   Vec3 outward;        ///< N/|N|, which way out of its body it lies; 0 where nothing says it
   float depth;         ///< |N|, from the middle of its region to it [m]
   float inverse_mass;  ///< 1/m, 0 where it is pinned [1/kg]
   float friction;      ///< √μ_f
   float adhesion;      ///< √a [√Pa]
-  float half_spacing;  ///< h/2 [m]
+  float unused;
 };
 
-/// One point beside one of another body, seen from the first.
-struct ContactPair {
-  Vec3 normal;          ///< n, from the second body to the first
-  float target;         ///< t, what their velocity along n must reach [m/s]
-  float sticks;         ///< impulse by which they may still be held together in this step [N s]
-  std::uint32_t other;  ///< the second
-};
-
-/// A velocity, and how many pairs of its point push.
+/// A velocity, and the inverse mass of its point times how many of its pairs act: a row of four floats.
 struct ContactVelocity {
   Vec3 velocity;  ///< [m/s]
-  float pushes;
+  float share;    ///< [1/kg]
 };
 
-/// Points of one block that have pairs, and these, one point's behind the other's.
+/// Pairs of the points of one block with those of later ones.
 struct BlockPairs {
+  std::size_t count = 0;
+  std::size_t first = 0;  ///< number of the first among the pairs of all blocks
+  std::vector<std::uint32_t> own, other;
+  std::vector<float> normal_x, normal_y, normal_z, target, sticks, friction;
+
+  std::span<const std::uint32_t> others() const { return {other.data(), count}; }
+  PairColumns columns();
+  /// Room for so many pairs, and what lanes write behind them.
+  void reserve(std::size_t pairs);
+  std::size_t bytes() const;
+};
+
+/// The points of one block that have pairs, and for each which, one point's behind the other's: those in which
+/// it is the first, then those in which it is the second.
+struct BlockSides {
   struct Touching {
-    std::uint32_t point, count;
+    std::uint32_t point, end;
+  };
+  struct Side {
+    std::uint32_t pair;  ///< of the pairs of all blocks
+    float sign;          ///< −1 where the point is the second
   };
   std::vector<Touching> points;
-  std::vector<ContactPair> pairs;
+  std::vector<Side> sides;
 };
 
 /// What a step of contact between bodies needs and finds.
 struct ContactPairs {
   NearBlocks near;
-  std::vector<BlockPairs> blocks;  ///< those of `near`
+  // By block.
+  std::vector<BlockPairs> blocks;
+  std::vector<BlockSides> sides;
   // By point.
   std::vector<ContactPoint> points;
-  std::vector<ContactVelocity> velocity, next_velocity;
+  std::vector<ContactVelocity> velocity;
+  std::vector<ContactVelocity> shared_velocity;  ///< the same, with the shares of a round
+  VectorColumn positions;
+  // By pair, of a round.
+  Column<float> acts;      ///< 1 or 0
+  Column<float> impulses;  ///< on the first point, rows of four: three, and nothing [N s]
 
-  // Scratch.
-  VectorColumn positions;  ///< of the points, for lanes
-  std::vector<float> partial_excess;
+  std::vector<float> partial_miss;  ///< scratch
 
+  ContactRows rows() const;
   std::size_t bytes() const;
 };
 

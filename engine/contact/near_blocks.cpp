@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/meeting_lanes.h"
+#include "contact/contact_lanes.h"
 #include "core/bounds.h"
 #include "core/parallel.h"
 
@@ -127,20 +127,24 @@ void find_other_blocks(const std::vector<TouchingBody>& bodies, const BodyContac
 
 /// Rows of a block that are near one of the others. Returns how many.
 std::uint32_t find_points(const VectorColumn& positions, const NearBlocks& near, std::uint32_t number,
-                          std::size_t begin, std::size_t end, std::uint32_t* found) {
-  std::uint32_t count = 0;
-  const std::vector<NearBlocks::Other>& others = near.others[number];
-  for (std::size_t i = begin; i < end && !others.empty(); ++i) {
-    const Vec3 x = positions.get(i);
-    const auto holds = [&](const NearBlocks::Other& other) {
-      return is_near(x, near.block_motion[other.block].box, other.reach);
-    };
-    if (std::ranges::any_of(others, holds)) found[count++] = static_cast<std::uint32_t>(i);
-  }
-  return count;
+                          std::size_t begin, std::size_t end, const ContactLanes& lanes,
+                          std::uint32_t* found) {
+  thread_local std::vector<LaneBox> boxes;
+  boxes.clear();
+  for (const auto& [other, reach] : near.others[number])
+    boxes.push_back(lane_box(near.block_motion[other].box, reach));
+  std::uint32_t rows[k_block + k_cluster];
+  const std::size_t count = lanes.in_boxes(raw(positions), begin, end, boxes.data(), boxes.size(), rows);
+  std::copy_n(rows, count, found);
+  return static_cast<std::uint32_t>(count);
 }
 
 }  // namespace
+
+LaneBox lane_box(const Aabb& box, float reach) {
+  const Vec3 low = box.min.array() - reach, high = box.max.array() + reach;
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
 
 void find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,
                       const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
@@ -151,12 +155,13 @@ void find_near_blocks(const VectorColumn& positions, const VectorColumn& velocit
   near.others.resize(blocks);
   near.first_point.resize_unset(blocks + 1);
   near.found.resize_unset(positions.size());
+  const ContactLanes& lanes = MALLOW_SELECT(execution.level, contact_lanes);
   parallel_for(execution.threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t b) {
     const auto number = static_cast<std::uint32_t>(b);
     const std::size_t first = bodies[block.range].begin;
     find_other_blocks(bodies, step, number, near);
     near.first_point[b + 1] = find_points(positions, near, number, first + block.begin, first + block.end,
-                                          near.found.data() + first + block.begin);
+                                          lanes, near.found.data() + first + block.begin);
   });
   near.first_point[0] = 0;
   for (std::size_t b = 0; b < blocks; ++b) near.first_point[b + 1] += near.first_point[b];

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact/contact_lanes.h"
 #include "core/column.h"
 #include "core/execution.h"
 #include "core/range_blocks.h"
@@ -63,6 +64,9 @@ struct NearBlocks {
 inline float pushed_together(const BodyContactStep& step) {
   return 0.25f * step.time_step * step.max_push;
 }
+
+/// A box, so much wider.
+LaneBox lane_box(const Aabb& box, float reach);
 
 /// velocities: predicted. The same for any number of threads.
 void find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,

@@ -17,6 +17,7 @@ namespace mallow::MALLOW_LEVEL {
 using Floats = float __attribute__((vector_size(k_cluster * sizeof(float))));
 using Ints = int __attribute__((vector_size(k_cluster * sizeof(int))));
 using ClusterVec3 = Vec3Of<Floats>;
+using Quad = float __attribute__((vector_size(16)));
 
 MALLOW_INLINE Floats load(const float* from) {
   Floats value;
@@ -165,6 +166,47 @@ MALLOW_INLINE Floats square_root(const Floats& value) {
 #endif
 }
 
+/// Transposes both 4 x 4 halves: lane 4 g + t of vector c becomes lane 4 g + c of vector t.
+MALLOW_INLINE void transpose_halves(Floats* v) {
+#if defined(__SSE__) && !defined(__AVX__)
+  Halves rows[4];
+  for (int c = 0; c < 4; ++c) rows[c] = halves(v[c]);
+  _MM_TRANSPOSE4_PS(rows[0].low, rows[1].low, rows[2].low, rows[3].low);
+  _MM_TRANSPOSE4_PS(rows[0].high, rows[1].high, rows[2].high, rows[3].high);
+  for (int c = 0; c < 4; ++c) v[c] = joined(rows[c]);
+#else
+  const Floats a = __builtin_shufflevector(v[0], v[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Floats b = __builtin_shufflevector(v[2], v[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Floats c = __builtin_shufflevector(v[0], v[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Floats d = __builtin_shufflevector(v[2], v[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  v[0] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+  v[1] = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+  v[2] = __builtin_shufflevector(c, d, 0, 1, 8, 9, 4, 5, 12, 13);
+  v[3] = __builtin_shufflevector(c, d, 2, 3, 10, 11, 6, 7, 14, 15);
+#endif
+}
+/// numbers[c]: number c of four, of the rows that eight names say, `stride` floats apart.
+MALLOW_INLINE void load_named(const float* rows, std::size_t stride, const std::uint32_t* names,
+                              Floats* numbers) {
+  for (std::size_t t = 0; t < 4; ++t) {
+    Quad low, high;
+    __builtin_memcpy(&low, rows + stride * names[t], sizeof low);
+    __builtin_memcpy(&high, rows + stride * names[t + 4], sizeof high);
+    numbers[t] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  transpose_halves(numbers);
+}
+/// The reverse, into eight rows of four numbers that follow each other; spoils the numbers.
+MALLOW_INLINE void store_rows(Floats* numbers, float* rows) {
+  transpose_halves(numbers);
+  for (std::size_t t = 0; t < 4; ++t) {
+    const Quad low = __builtin_shufflevector(numbers[t], numbers[t], 0, 1, 2, 3);
+    const Quad high = __builtin_shufflevector(numbers[t], numbers[t], 4, 5, 6, 7);
+    __builtin_memcpy(rows + 4 * t, &low, sizeof low);
+    __builtin_memcpy(rows + 4 * (t + 4), &high, sizeof high);
+  }
+}
+
 #ifdef __SSSE3__
 /// Per mask of `lanes` lanes those that are set, in order; each as the places of `bytes` bytes.
 template <unsigned lanes, unsigned bytes>
@@ -213,6 +255,12 @@ MALLOW_INLINE std::size_t compress(unsigned set, const Ints& values, std::uint32
   }
 #endif
   return static_cast<std::size_t>(__builtin_popcount(set));
+}
+MALLOW_INLINE std::size_t compress(unsigned set, const Floats& values, float* out) {
+  std::uint32_t packed[k_cluster];
+  const std::size_t count = compress(set, reinterpret_cast<Ints>(values), packed);
+  __builtin_memcpy(out, packed, sizeof packed);
+  return count;
 }
 
 }  // namespace mallow::MALLOW_LEVEL

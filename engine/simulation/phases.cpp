@@ -418,13 +418,13 @@ void wake_pushed(Simulation::State& state, float time_step) {
   const NearBlocks& near = state.contact_pairs.near;
   if (near.row.empty()) return;
   std::vector<std::uint32_t> pushed;
-  for (std::size_t k = 0; k < state.contact_pairs.blocks.size(); ++k) {
+  for (std::size_t k = 0; k < state.contact_pairs.sides.size(); ++k) {
     const std::uint32_t body = near.blocks.blocks[k].range;
     if (state.bodies[body].island == 0 || (!pushed.empty() && pushed.back() == body)) continue;
-    const auto moves = [&](const BlockPairs::Touching& point) {
+    const auto moves = [&](const BlockSides::Touching& point) {
       return !state.contact_pairs.velocity[point.point].velocity.isZero(0);
     };
-    if (std::ranges::any_of(state.contact_pairs.blocks[k].points, moves)) pushed.push_back(body);
+    if (std::ranges::any_of(state.contact_pairs.sides[k].points, moves)) pushed.push_back(body);
   }
   for (const std::uint32_t body : pushed) {
     wake_island(state, state.bodies[body]);

@@ -79,8 +79,8 @@ void find_islands(Simulation::State& state) {
   if (!state.bodies_touch() || near.row.empty()) return;
   for (std::size_t k = 0; k < pairs.blocks.size(); ++k) {
     const BodyState* other = nullptr;  // pairs with one body follow each other
-    for (const ContactPair& pair : pairs.blocks[k].pairs) {
-      const std::uint32_t row = near.row[pair.other];
+    for (const std::uint32_t point : pairs.blocks[k].others()) {
+      const std::uint32_t row = near.row[point];
       if (other && row >= other->begin && row < other->end) continue;
       other = &std::as_const(state).body_of(row);
       islands.join(near.blocks.blocks[k].range, static_cast<std::uint32_t>(other - state.bodies.data()));
