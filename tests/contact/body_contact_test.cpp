@@ -163,6 +163,35 @@ TEST(body_contact,
       }
 }
 
+// E = ρ0 m2/(Δt0 Δt_SM) is 35: the weight presses the cube together by 0.67, twice that while it swings, and
+// is less than half of what would buckle it.
+TEST(body_contact, a_cube_carries_another_of_a_hundred_times_its_density_as_the_spring_that_it_is) {
+  for (const float alpha : {0.0f, 0.3f}) {
+    SCOPED_TRACE(alpha);
+    Simulation s(solver(0.01f));
+    s.add_body(box({8, 8, 8}, {-4, -4, 0}), material(alpha));
+    Material heavy = material(alpha);
+    heavy.particle_mass = 100.0f;
+    s.add_body(box({6, 6, 6}, {-3, -3, 8.2f}), heavy);
+    s.add_collider({.shape = Plane{}, .friction = 0.5f});
+    double lowest = 1e9, sum = 0;
+    int count = 0;
+    while (s.time() < 200) {
+      run(s, 1);
+      const Vec at = centers(s)[1];
+      lowest = std::min(lowest, at.z());
+      if (s.time() > 100) {
+        sum += at.z();
+        ++count;
+      }
+      ASSERT_LT(at.head<2>().norm(), 0.5);
+      ASSERT_GT(nearest(s, 512), 0.7);
+    }
+    EXPECT_NEAR(sum / count, 10.95 - 0.67, 0.07);
+    EXPECT_GT(lowest, 10.95 - 2.6 * 0.67);
+  }
+}
+
 TEST(body_contact, a_fluid_does_not_leak_through_an_elastic_block) {
   Simulation s(solver(0.3f));
   s.add_body(box({14, 14, 6}, {-7, -7, 0}), material(0));
