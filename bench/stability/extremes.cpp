@@ -11,15 +11,23 @@ namespace {
 
 /// What most extremes start from, and change one thing of: a small body in the default units.
 struct Setup {
-  SolverConfig config{.time_step = 0.15f, .support_radius = 2.1f, .update_interval = 60, .sleep_speed = 0.0f, .threads = 1};
+  SolverConfig config{
+      .time_step = 0.15f, .support_radius = 2.1f, .update_interval = 60, .sleep_speed = 0.0f, .threads = 1};
   Material material{.update_threshold = 12.0f, .pressure_coefficient = 16.0f, .viscosity = 0.5f};
   Body body = sample(Lattice{.count = {5, 5, 5}, .corner = {0, 0, 1}, .jitter = 0});
   std::vector<Collider> colliders = {};
+  /// A second body, of `material` but for its mass.
+  Body other = {};
+  float other_mass = 1;
 
   Simulation build() const {
     Simulation simulation(config);
     for (const Collider& collider : colliders) simulation.add_collider(collider);
     simulation.add_body(body, material);
+    if (other.positions.empty()) return simulation;
+    Material matter = material;
+    matter.particle_mass = other_mass;
+    simulation.add_body(other, matter);
     return simulation;
   }
 };
@@ -32,6 +40,15 @@ Setup free_body() {
 Setup falling_body() {
   Setup setup;
   setup.colliders = {{.shape = Plane{}, .friction = 0.3f}};
+  return setup;
+}
+
+/// Two that come together, without an outside.
+Setup two_bodies(float speed) {
+  Setup setup = free_body();
+  setup.body.velocity = {0, 0, speed / 2};
+  setup.other = sample(Lattice{.count = {5, 5, 5}, .corner = {0.4f, 0.3f, 6.3f}, .jitter = 0});
+  setup.other.velocity = {0, 0, -speed / 2};
   return setup;
 }
 
@@ -56,6 +73,10 @@ class Catalogue {
     contacts();
     elastic_limit();
     schedules();
+    bodies_that_touch();
+    damping();
+    bodies_that_come_and_go();
+    colliders_that_move();
     return std::move(list_);
   }
 
@@ -242,6 +263,146 @@ class Catalogue {
           s.body = sample(Lattice{.count = {3, 3, 3}, .jitter = 0});
         },
         rests);
+  }
+
+  /// Contact takes energy and adds none: model 2, section 4 C.
+  void bodies_that_touch() {
+    Trial trial;
+    trial.by_conserved_energy = true;
+    trial.energy_room = 0.02;
+    const auto add_two = [&](const std::string& name, float speed, const Change& change) {
+      add(
+          "two bodies " + name, two_bodies(speed),
+          [&](Setup& s) {
+            s.material.update_threshold = 1e30f;
+            change(s);
+          },
+          trial);
+    };
+    for (const float speed : {1.0f, 14.0f, 140.0f})
+      add_two("head-on at " + std::to_string(static_cast<int>(speed)) + " a second", speed, [](Setup&) {});
+    for (const float mass : {1e-3f, 1e2f, 1e4f}) {
+      std::ostringstream name;
+      name << "of 1 to " << mass << " in mass";
+      add_two(name.str(), 2, [=](Setup& s) { s.other_mass = mass; });
+    }
+    for (const float friction : {0.0f, 2.0f, 1e3f}) {
+      std::ostringstream name;
+      name << "that graze with friction " << friction;
+      add_two(name.str(), 2, [=](Setup& s) {
+        s.material.friction = friction;
+        s.body.velocity.x() = 4;
+      });
+    }
+    for (const float adhesion : {1.0f, 1e6f}) {
+      std::ostringstream name;
+      name << "that stick up to " << adhesion;
+      add_two(name.str(), 2, [=](Setup& s) {
+        s.material.adhesion = adhesion;
+        s.body.velocity.x() = 1;
+      });
+    }
+    add_two("of spacings 1 to 3", 4, [](Setup& s) {
+      s.other = sample(Lattice{.count = {3, 3, 3}, .spacing = 3, .corner = {-1, -1, 6.6f}, .jitter = 0});
+      s.other.velocity = {0, 0, -2};
+      s.config.support_radius = 6.3f;
+      s.other_mass = 27;
+    });
+    add_two("in steps of five times the paper's", 2, [](Setup& s) {
+      s.config.time_step = 0.75f;
+      s.material.elastic_time_step = 0.75f;
+    });
+    trial.energy_room = 1e9;  // what overlaps is pushed apart
+    add_two("half in each other", 0, [](Setup& s) {
+      for (Vec3& x : s.other.positions) x.z() -= 2.8f;
+    });
+    Trial pressed;
+    pressed.energy_room = 1e9;  // the plates do work without end
+    pressed.steps = 700;
+    add(
+        "two bodies between plates that close", two_bodies(0),
+        [](Setup& s) {
+          s.colliders = {{.shape = Plane{}},
+                         {.shape = Plane{.normal = {0, 0, -1}, .offset = -13}, .velocity = {0, 0, -0.12f}}};
+        },
+        pressed);
+  }
+
+  /// Damping at its limit takes energy and adds none.
+  void damping() {
+    Trial trial;
+    trial.by_conserved_energy = true;
+    trial.energy_room = 0.02;
+    trial.steps = 2000;
+    for (const bool both : {false, true})
+      add(
+          both ? "all damping as much as is allowed" : "a damping time as long as is allowed", falling_body(),
+          [&](Setup& s) {
+            // a (1 + 2 τ/Δt) = 2.5 with a = (1 − alpha)
+            const float a = std::max(0.01f, 1 - s.material.alpha.lowest());
+            s.material.damping_time = 0.999f * 0.15f * (2.5f / a - 1) / 2;
+            if (both) s.material.deformation_damping = 6.3f;  // the most is 6.31 at alpha 0
+            s.material.update_threshold = 1e30f;
+            stir(s, 0.5f);
+          },
+          trial);
+  }
+
+  /// Energy comes with matter: what is asked is that all stays finite and slow.
+  void bodies_that_come_and_go() {
+    Trial trial;
+    trial.energy_room = 1e3;
+    for (const int every : {1, 10}) {
+      trial.before_step = [every](Simulation& simulation, int step) {
+        if (step % every != 0) return;
+        const float x = 7.0f * static_cast<float>(step / every % 4 - 1);
+        Body body = sample(Lattice{.count = {2, 2, 2}, .corner = {x, 7, 9}, .jitter = 0});
+        body.velocity = {0, 0, -1.5f / 0.15f / static_cast<float>(every)};
+        for (const BodyId old : simulation.bodies())
+          if (simulation.bodies().size() > 24 && old != simulation.bodies().front()) {
+            simulation.remove_body(old);
+            break;
+          }
+        try {
+          simulation.add_body(body, MaterialId{0});
+        } catch (const ConfigError&) {  // something is still there
+        }
+      };
+      add(
+          "a body added and one removed every " + std::to_string(every) + " steps", falling_body(),
+          [](Setup&) {}, trial);
+    }
+    trial.before_step = [](Simulation& simulation, int step) {
+      if (step > 0) return;
+      const Pose down{.translation = {2.5f, 2.5f, 40}, .rotation = {1, 0, 0, 0}};
+      simulation.add_emitter({.radius = 2.0f, .pose = down, .speed = 6, .most_particles = 800},
+                             MaterialId{0});
+    };
+    add(
+        "an emitter of a layer a step onto a body", falling_body(), [](Setup&) {}, trial);
+  }
+
+  /// What pushes does work; particles stay finite, and outside of it.
+  void colliders_that_move() {
+    Trial trial;
+    trial.energy_room = 1e9;
+    for (const float speed : {1.0f, 10.0f, 100.0f})
+      add(
+          "hit by a ball of " + std::to_string(static_cast<int>(speed)) + " spacings a step", falling_body(),
+          [speed](Setup& s) {
+            const float v = speed / 0.15f;
+            s.colliders.push_back({.shape = Sphere{.center = {-10 - 20 * v * 0.15f, 2.5f, 3.5f}, .radius = 3},
+                                   .velocity = {v, 0, 0}});
+          },
+          trial);
+    for (const float turns : {1.0f, 30.0f})
+      add(
+          "stirred by a bar of " + std::to_string(static_cast<int>(turns)) + " rad a second", falling_body(),
+          [turns](Setup& s) {
+            s.colliders.push_back({.shape = Box{.min = {-4, -0.5f, 0}, .max = {4, 0.5f, 8}},
+                                   .angular_velocity = {0, 0, turns}});
+          },
+          trial);
   }
 
   int long_steps_;

@@ -34,18 +34,34 @@ constexpr double k_viscous_share = 1.0 / 25;
 /// x = α k Δt²/σ² and a = (1 − α) Δt²/(Δt0 Δt_SM), simulations of 2,500 steps at α 0.3 and 0.7, a 0.3 to 2.5,
 /// kept their energy up to 2 x + a = 3.75 and gained it from 4; at x 1.4 beside any a up to 1, and in fluids
 /// up to 1.4 too. That takes viscosity: with none they gained from x = 0.2 on, and with α μ Δt/(ρ0 σ²) = y
-/// from 0.1 + 880 y. `mallow-bench stability` goes through them.
+/// from 0.1 + 880 y. Damping takes its part of what a step carries: the pull counts 1 + 2 τ/Δt times, and of
+/// the 4 of linear theory 2 (1 − exp(−ζ Δt)) are gone (config/validation.cpp), and as much for the share that
+/// viscosity takes. `mallow-bench stability` goes through them.
 constexpr double k_most_pressure = 1.4, k_most_together = 3.4, k_least_pressure = 0.05,
                  k_pressure_by_viscosity = 800;
 
-double pressure_limit(const TimeStepLimits::Pressure& pressure, double support_radius) {
+/// longest: Δt at most [s].
+double pressure_limit(const TimeStepLimits::Pressure& pressure, double support_radius, double longest) {
   if (!(pressure.coefficient > 0)) return std::numeric_limits<double>::infinity();
   const double square = support_radius * support_radius;
   const double x = static_cast<double>(pressure.coefficient) / square;  // by Δt²
   const double y = k_pressure_by_viscosity * static_cast<double>(pressure.kinematic_viscosity) / square;
   // The root of x Δt² = k_least_pressure + y Δt.
   const double calmed = (y + std::sqrt(y * y + 4 * x * k_least_pressure)) / (2 * x);
-  const double together = std::sqrt(k_most_together / (2 * x + static_cast<double>(pressure.stiffness)));
+  const double pull = static_cast<double>(pressure.stiffness);
+  const double damped = static_cast<double>(pressure.damping_time) * pull;
+  // The root of (2 x + pull) Δt² + 2 τ pull Δt = most.
+  const auto root = [&](double most) {
+    return (std::sqrt(damped * damped + (2 * x + pull) * most) - damped) / (2 * x + pull);
+  };
+  double together = root(k_most_together);
+  const double rate = static_cast<double>(pressure.damping_rate);
+  if (damped > 0 || rate > 0) {
+    const double step = std::min(longest, together);
+    const double drag = static_cast<double>(pressure.kinematic_viscosity) / (k_viscous_share * square);
+    const double taken = 1 - std::exp(-rate * step) + std::min(1.0, drag * step);
+    together = root(k_most_together * (1 - 0.5 * taken));
+  }
   return std::min({calmed, together, std::sqrt(k_most_pressure / x)});
 }
 
@@ -99,7 +115,7 @@ double limited_time_step(const TimeStepLimits& limits, double max_velocity) {
   if (max_velocity > 0) step = std::min(step, 0.999 * static_cast<double>(limits.farthest) / max_velocity);
   if (!limits.acoustic) return step;
   for (const TimeStepLimits::Pressure& pressure : limits.pressures)
-    step = std::min(step, pressure_limit(pressure, radius));
+    step = std::min(step, pressure_limit(pressure, radius, static_cast<double>(limits.time_step)));
   step = std::min(step, k_viscous_share * static_cast<double>(limits.viscous_time));
   return step;
 }

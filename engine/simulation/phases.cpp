@@ -33,7 +33,9 @@ TimeStepLimits::Pressure acting_pressure(const Simulation::State& state, const B
   const float drag = presses ? 1.0f : body.material->alpha;
   return {.coefficient = push * pressure_coefficient(state, *body.material),
           .kinematic_viscosity = drag * body.viscosity / body.rest_density,
-          .stiffness = state.stiffness(*body.material)};
+          .stiffness = state.stiffness(*body.material),
+          .damping_time = body.material->settings.damping_time,
+          .damping_rate = body.material->settings.deformation_damping.value_or(0.0f)};
 }
 
 /// How far a particle may move in a step: not beyond what SPH reaches, and where bodies touch not so far that
