@@ -72,6 +72,7 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   archive(body.rigid.deformation_speed);
   archive(body.shape.built);
   archive(body.shape.spacing);
+  archive.array(body.shape.mean.data(), 3);
   archive(body.shape.total_moment);
   archive.array(frame.rotation.coeffs().data(), 4);
   archive.array(frame.translation.data(), 3);

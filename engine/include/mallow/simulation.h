@@ -290,8 +290,8 @@ class MALLOW_EXPORT Simulation {
 
   /// The row of a particle in every view. Throws ConfigError where there is none of this id, or no longer.
   std::size_t row(ParticleId id) const;
-  /// x̄ of a particle [m], relative to the mean of its body's. Throws ConfigError as row() does, and where the
-  /// body keeps no reference shape. [TK eq. 7]
+  /// x̄ of a particle [m], relative to a place in the middle of its body's: their mean, until particles come
+  /// or go. Throws ConfigError as row() does, and where the body keeps no reference shape. [TK eq. 7]
   Vec3 rest_position(ParticleId id) const;
   /// R of the region that a particle owns, as the last step left it; with a region_stride above 1, of the
   /// first region that it is in. Throws as rest_position() does. [TK eq. 7]
