@@ -157,8 +157,9 @@ class MALLOW_EXPORT Simulation {
   BodyId body(EmitterId emitter) const;
   /// As it is now, where it has moved.
   const Emitter& emitter(EmitterId emitter) const;
-  /// How fast the strand leaves it, and how fast the nozzle itself moves, from now on [m/s].
-  void set_flow(EmitterId emitter, float speed, const Vec3& velocity = {0, 0, 0});
+  /// How fast the strand leaves it, and how fast the nozzle itself moves, from now on [m/s]. It has no
+  /// keyframes then.
+  void set_flow(EmitterId emitter, const Schedule& speed, const Vec3& velocity = {0, 0, 0});
   /// The nozzle is gone and what it held is free.
   void remove_emitter(EmitterId emitter);
   /// Particles that come into a box, or out of it, and are not pinned, are removed at the start of every
