@@ -195,11 +195,11 @@ const Case k_cases[] = {
      "before"},
     {{.rest = "[[collider]]\nplane = {}\nvelocity = [0, 0, 1]\nkeyframes = [{ time = 1 }]"},
      "scene.toml:10:12: collider[0].velocity: is not allowed beside keyframes"},
-    {{.rest = "[[emitter]]\nmaterial = \"m\"\nradius = 1\nspacing = 1\nvelocity = [0, 0, 1]\nkeyframes = [{ "
+    {{.rest = "[[emitter]]\nmaterial = \"jelly\"\nradius = 1\nspacing = 1\nvelocity = [0, 0, 1]\nkeyframes = [{ "
               "time = 1 }]"},
-     "scene.toml:13:12: emitter[0].velocity: is not allowed beside keyframes"},
-    {{.rest = "[[emitter]]\nmaterial = \"m\"\nradius = 1\nspacing = 1\nspeed = [[0, 1], [1, -1]]"},
-     "scene.toml:13:22: emitter[0].speed[1][1]: -1 is not allowed: a finite number >= 0"},
+     "scene.toml:12:12: emitter[0].velocity: is not allowed beside keyframes"},
+    {{.rest = "[[emitter]]\nmaterial = \"jelly\"\nradius = 1\nspacing = 1\nspeed = [[0, 1], [1, -1]]"},
+     "scene.toml:12:22: emitter[0].speed[1][1]: -1 is not allowed: a number >= 0"},
     {{.rest = "[[collider]]\nunion = []"},
      "scene.toml:9:9: collider[0].union: an array of 0 is not allowed: a list of 1 to 10000 tables, each "
      "with one of "
