@@ -14,15 +14,15 @@ namespace {
 
 /// As AlphaSchedule::at(), which rounds to single precision.
 double alpha_at(const AlphaSchedule& schedule, double time) {
-  const std::vector<AlphaKey>& keys = schedule.keys();
-  if (time <= keys.front().time) return keys.front().alpha;
+  const std::vector<ScheduleKey>& keys = schedule.keys();
+  if (time <= keys.front().time) return keys.front().value;
   for (std::size_t k = 1; k < keys.size(); ++k) {
-    const AlphaKey &a = keys[k - 1], &b = keys[k];
+    const ScheduleKey &a = keys[k - 1], &b = keys[k];
     if (time >= b.time) continue;
     const double passed = (time - a.time) / (double{b.time} - a.time);
-    return a.alpha + (double{b.alpha} - a.alpha) * passed;
+    return a.value + (double{b.value} - a.value) * passed;
   }
-  return keys.back().alpha;
+  return keys.back().value;
 }
 
 /// What the material leaves out follows from ρ0 = m Σ W over the lattice.

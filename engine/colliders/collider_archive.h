@@ -32,16 +32,20 @@ void pass_pose(Archive& archive, Pose& pose) {
   archive.array(pose.rotation.data(), 4);
 }
 
+template <class Archive, class Keyframes>
+void pass_keyframes(Archive& archive, Keyframes& keyframes) {
+  pass_list(archive, keyframes, 8 + 56, [&](auto& key) {
+    archive(key.time);
+    pass_pose(archive, key.pose);
+  });
+}
+
 template <class Archive, class Collider>
 void pass_collider(Archive& archive, Collider& collider) {
   pass_shape(archive, collider.shape);
   pass_pose(archive, collider.pose);
   pass_fields(archive, collider);
-  pass_list(archive, collider.keyframes, 8 + 56, [&](auto& key) {
-    archive(key.time);
-    archive.array(key.pose.translation.data(), 3);
-    archive.array(key.pose.rotation.data(), 4);
-  });
+  pass_keyframes(archive, collider.keyframes);
 }
 
 }  // namespace mallow

@@ -36,20 +36,24 @@ void check_pose(const std::string& path, const Pose& pose, Checks& checks) {
   checks.number(path + ".rotation", length, length > 0, "a quaternion of a finite length above 0");
 }
 
+void check_poses(const std::string& path, const Pose& pose, std::span<const PoseKeyframe> keyframes,
+                 Checks& checks) {
+  check_pose(path + ".pose", pose, checks);
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    const std::string key = path + ".keyframes[" + std::to_string(k) + ']';
+    checks.number(key + ".time", keyframes[k].time, k == 0 || keyframes[k].time > keyframes[k - 1].time,
+                  "a time after that of the keyframe before");
+    check_pose(key + ".pose", keyframes[k].pose, checks);
+  }
+}
+
 void check(const Collider& collider, Checks& checks) {
   const Union* shapes = std::get_if<Union>(&collider.shape);
   if (shapes && shapes->parts.empty())
     checks.problem("collider.union", "has no parts: at least one is needed");
   visit_parts(collider, [&](const auto& shape) { check_shape(shape, checks); });
-  check_pose("collider.pose", collider.pose, checks);
   check_fields("collider.", collider, checks);
-  for (std::size_t k = 0; k < collider.keyframes.size(); ++k) {
-    const std::string path = "collider.keyframes[" + std::to_string(k) + ']';
-    const double time = collider.keyframes[k].time;
-    checks.number(path + ".time", time, k == 0 || time > collider.keyframes[k - 1].time,
-                  "a time after that of the keyframe before");
-    check_pose(path + ".pose", collider.keyframes[k].pose, checks);
-  }
+  check_poses("collider", collider.pose, collider.keyframes, checks);
 }
 
 }  // namespace mallow

@@ -97,12 +97,17 @@ Pose pose_at(std::span<const PoseKeyframe> keyframes, double time) {
   return pose;
 }
 
+Twist twist_between(const Pose& from, const Pose& to, double seconds) {
+  return {((to.translation - from.translation) / seconds).cast<float>(),
+          (turn_between(from, to) / seconds).cast<float>()};
+}
+
 void drive_colliders(double end, double time_step, std::span<Collider> colliders) {
   for (Collider& collider : colliders) {
     if (collider.keyframes.empty()) continue;
-    const Pose there = pose_at(collider.keyframes, end);
-    collider.velocity = ((there.translation - collider.pose.translation) / time_step).cast<float>();
-    collider.angular_velocity = (turn_between(collider.pose, there) / time_step).cast<float>();
+    const Twist twist = twist_between(collider.pose, pose_at(collider.keyframes, end), time_step);
+    collider.velocity = twist.velocity;
+    collider.angular_velocity = twist.angular_velocity;
   }
 }
 

@@ -17,6 +17,13 @@ bool turns(const Collider& collider);
 /// where the turned collider has it. [1/s]
 Eigen::Matrix3d mean_spin(const Vec3& angular_velocity, double time_step);
 
+/// Velocities that take one pose to another in some seconds, turning the shorter way round.
+struct Twist {
+  Vec3 velocity{0, 0, 0};          ///< of the translation [m/s]
+  Vec3 angular_velocity{0, 0, 0};  ///< [rad/s]
+};
+Twist twist_between(const Pose& from, const Pose& to, double seconds);
+
 /// Gives those that have keyframes the velocities with which a step that ends at `end` [s] takes them there.
 void drive_colliders(double end, double time_step, std::span<Collider> colliders);
 /// Poses at the end of a step, `end` [s].

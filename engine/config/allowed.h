@@ -44,8 +44,8 @@ std::string allowed(const Range& range) {
     return within.empty() ? "3 finite numbers [x, y, z]" : "3 numbers" + within;
   else if constexpr (std::is_same_v<T, Count3>)
     return "3 whole numbers" + within;
-  else if constexpr (std::is_same_v<T, AlphaSchedule>)
-    return "a number" + within + ", or [[time, alpha], ...] with times that increase and alphas" + within;
+  else if constexpr (std::is_same_v<T, Schedule>)
+    return "a number" + within + ", or [[time, number], ...] with times that increase and numbers" + within;
   else
     return choice_text(choices(T{}));
 }

@@ -4,7 +4,7 @@
 
 #include "config/allowed.h"
 #include "core/archive.h"
-#include "mallow/material.h"
+#include "mallow/schedule.h"
 
 /// Settings in archives of both ways, which are called alike (core/archive.h).
 namespace mallow {
@@ -22,13 +22,13 @@ void pass_list(Archive& archive, List& values, std::size_t bytes_each, const Pas
 template <class Archive, class T>
 void pass_value(Archive& archive, T& value) {
   using Value = std::remove_const_t<T>;
-  if constexpr (std::is_same_v<Value, AlphaSchedule>) {
-    std::vector<AlphaKey> keys = value.keys();
-    pass_list(archive, keys, sizeof(AlphaKey), [&](AlphaKey& key) {
+  if constexpr (std::is_same_v<Value, Schedule>) {
+    std::vector<ScheduleKey> keys = value.keys();
+    pass_list(archive, keys, sizeof(ScheduleKey), [&](ScheduleKey& key) {
       archive(key.time);
-      archive(key.alpha);
+      archive(key.value);
     });
-    if constexpr (!Archive::k_packs) value = AlphaSchedule(std::move(keys));
+    if constexpr (!Archive::k_packs) value = Schedule(std::move(keys));
   } else if constexpr (Choice<Value>) {
     auto number = static_cast<std::uint8_t>(value);
     archive(number);

@@ -27,11 +27,11 @@ void check_value(const std::string& path, const T& value, const Range& range, Ch
     if (value.allFinite()) check_each(path, value, range, checks);
   } else if constexpr (std::is_same_v<T, Count3>) {
     check_each(path, value, range, checks);
-  } else if constexpr (std::is_same_v<T, AlphaSchedule>) {
+  } else if constexpr (std::is_same_v<T, Schedule>) {
     if (value.keys().empty()) checks.problem(path, "has no keys: at least one is needed");
     for (std::size_t k = 0; k < value.keys().size(); ++k) {
-      const AlphaKey& key = value.keys()[k];
-      check_value(path, key.alpha, range, checks);
+      const ScheduleKey& key = value.keys()[k];
+      check_value(path, key.value, range, checks);
       checks.number(path + " time", key.time, k == 0 || key.time > value.keys()[k - 1].time,
                     "finite times, each above the one before");
     }

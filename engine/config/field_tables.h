@@ -150,7 +150,7 @@ struct FieldTable<Collider> {
   };
 };
 
-/// Without its points and its pose.
+/// Without its points, its pose and its keyframes.
 template <>
 struct FieldTable<Emitter> {
   static constexpr std::tuple k_fields{
@@ -163,7 +163,8 @@ struct FieldTable<Emitter> {
       Field{"spacing", &Emitter::spacing, k_positive, "m", "distance of neighbouring particles, h",
             k_required},
       Field{"velocity", &Emitter::velocity, k_finite, "m/s", "the nozzle moves with it"},
-      Field{"speed", &Emitter::speed, k_not_negative, "m/s", "of what leaves the nozzle, seen from it"},
+      Field{"speed", &Emitter::speed, k_not_negative, "m/s",
+            "of what leaves the nozzle, seen from it; 0: it does not flow"},
       Field{"start", &Emitter::start, k_not_negative, "s", "it flows from this time on", "at once"},
       Field{"stop", &Emitter::stop, k_not_negative, "s", "and until this", "it goes on"},
       Field{"jitter", &Emitter::jitter, k_jitter, "h",

@@ -77,7 +77,8 @@ class MovingBlock {
     const BlockBounds bounds = lanes_.blend(forces_, begin_, end_, raw(store_.next_velocity));
     if (!forces_.pin) return bounds;
     for (std::size_t i = begin_; i < end_; ++i)
-      if (is_pinned(forces_, i)) store_.next_velocity.set(i, in_.pin_velocities[forces_.pin[i] - 1u]);
+      if (is_pinned(forces_, i))
+        store_.next_velocity.set(i, in_.pins[forces_.pin[i] - 1u].at(store_.position.get(i)));
     return bounds;
   }
   BlockBounds bounds() const {

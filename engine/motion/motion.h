@@ -13,6 +13,15 @@
 
 namespace mallow {
 
+/// How what a pin holds moves in one step: all alike, or as one with a frame that turns.
+struct PinMotion {
+  Vec3 velocity{0, 0, 0};                          ///< at the center [m/s]
+  Eigen::Matrix3f spin = Eigen::Matrix3f::Zero();  ///< mean_spin() [1/s]
+  Vec3 center{0, 0, 0};                            ///< relative to the origin [m]
+
+  Vec3 at(const Vec3& x) const { return spin.isZero(0) ? velocity : Vec3(velocity + spin * (x - center)); }
+};
+
 /// What moves the particles of one body in one step. Null columns are terms that the scene does not have.
 struct MotionInput {
   std::size_t begin, end;                ///< rows of the body
@@ -26,7 +35,7 @@ struct MotionInput {
   const VectorColumn* pull;              ///< g − x, by row of the body [m]
   std::span<const PlacedCollider> colliders;
   ContactStep contact;
-  std::span<const Vec3> pin_velocities;
+  std::span<const PinMotion> pins;
   bool measure_external;       ///< sum |a_ext|
   bool measure_rigid = false;  ///< sum the rigid motion that the body has afterwards
   bool measure_speed = false;  ///< sum |v|

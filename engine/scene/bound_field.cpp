@@ -39,12 +39,12 @@ struct ValueText {
     for (const Vec3& point : *points) text += (text.empty() ? "[" : ", ") + (*this)(&point);
     return text.empty() ? text : text + ']';
   }
-  std::string operator()(const AlphaSchedule* alpha) const {
-    const std::vector<AlphaKey>& keys = alpha->keys();
-    if (keys.size() == 1 && keys[0].time == 0) return number_text(keys[0].alpha);
+  std::string operator()(const Schedule* schedule) const {
+    const std::vector<ScheduleKey>& keys = schedule->keys();
+    if (keys.size() == 1 && keys[0].time == 0) return number_text(keys[0].value);
     std::string text = "[";
-    for (const AlphaKey& key : keys)
-      text += (text.size() > 1 ? ", " : "") + list_text(std::array{key.time, key.alpha});
+    for (const ScheduleKey& key : keys)
+      text += (text.size() > 1 ? ", " : "") + list_text(std::array{key.time, key.value});
     return text + ']';
   }
   template <class T>

@@ -110,18 +110,18 @@ class ValueReader {
     *choice = static_cast<T>(name - names.begin());
   }
 
-  void operator()(AlphaSchedule* alpha) const {
+  void operator()(Schedule* schedule) const {
     const Array* keyframes = node_.get_if<Array>();
     const std::size_t problems_before = problems_.count();
     if (!keyframes) {
       float constant = 0;
       if (!node_.get_if<double>() && !node_.get_if<std::int64_t>()) return complain();
       read_number(node_, path_, field_.range, &constant);
-      if (problems_.count() == problems_before) *alpha = AlphaSchedule(constant);
+      if (problems_.count() == problems_before) *schedule = Schedule(constant);
       return;
     }
     if (keyframes->empty()) return complain();
-    std::vector<AlphaKey> keys;
+    std::vector<ScheduleKey> keys;
     for (std::size_t i = 0; i < keyframes->size(); ++i) keys.push_back(read_keyframe((*keyframes)[i], i));
     if (problems_.count() != problems_before) return;
     for (std::size_t i = 1; i < keys.size(); ++i)
@@ -130,7 +130,7 @@ class ValueReader {
             (*keyframes)[i].place, element_path(path_, i),
             not_allowed("time " + number_text(keys[i].time),
                         "a time after " + number_text(keys[i - 1].time) + ", that of the key before"));
-    if (problems_.count() == problems_before) *alpha = AlphaSchedule(std::move(keys));
+    if (problems_.count() == problems_before) *schedule = Schedule(std::move(keys));
   }
 
   template <class T>
@@ -167,16 +167,16 @@ class ValueReader {
     return problems_.count() == problems_before ? std::optional(numbers) : std::nullopt;
   }
 
-  AlphaKey read_keyframe(const Node& node, std::size_t index) const {
-    AlphaKey key{};
+  ScheduleKey read_keyframe(const Node& node, std::size_t index) const {
+    ScheduleKey key{};
     const std::string path = element_path(path_, index);
     const Array* pair = node.get_if<Array>();
     if (!pair || pair->size() != 2) {
-      problems_.add(node.place, path, not_allowed(describe(node), "two numbers [time, alpha]"));
+      problems_.add(node.place, path, not_allowed(describe(node), "two numbers [time, number]"));
       return key;
     }
     read_number((*pair)[0], element_path(path, 0), k_finite, &key.time);
-    read_number((*pair)[1], element_path(path, 1), field_.range, &key.alpha);
+    read_number((*pair)[1], element_path(path, 1), field_.range, &key.value);
     return key;
   }
 

@@ -96,9 +96,9 @@ BoundFields fields(MeshColliderSource& source) {
 BoundFields fields(SceneKeyframe& keyframe) {
   return {
       {"time", &keyframe.time, k_finite, "s", "when it is there, after the keyframe before", k_required},
-      {"translate", &keyframe.translate, k_finite, "m", "where the origin of its shape is then"},
+      {"translate", &keyframe.translate, k_finite, "m", "where its origin is then"},
       {"rotate", &keyframe.rotate, k_finite, "degrees",
-       "turn of its shape about x, then y, then z; from one to the next the shorter way round"},
+       "its turn about x, then y, then z; from one to the next the shorter way round"},
   };
 }
 

@@ -61,16 +61,17 @@ std::string shape_line(const SceneCollider& collider) {
   return (is_union ? std::string(k_union_key) + " = [" + text + " ]" : text) + '\n';
 }
 
-/// Of a collider that has keyframes they stand in place of what they set.
-std::string motion_lines(SceneCollider& collider) {
-  BoundFields lines = fields(collider);
-  if (collider.scene_keyframes.empty()) return lines_of(lines);
+/// Of a collider or an emitter; keyframes that it has stand in place of what they set.
+template <class Posed>
+std::string posed_lines(Posed& posed) {
+  BoundFields lines = fields(posed);
+  if (posed.scene_keyframes.empty()) return lines_of(lines);
   std::erase_if(lines, [](const BoundField& field) {
     const std::string_view name = field.name;
     return name == "translate" || name == "rotate" || name == "velocity" || name == "angular_velocity";
   });
   std::string text;
-  for (SceneKeyframe& key : collider.scene_keyframes)
+  for (SceneKeyframe& key : posed.scene_keyframes)
     text += (text.empty() ? " " : ", ") + inline_table(fields(key));
   return std::string(k_keyframes_key) + " = [" + text + " ]\n" + lines_of(lines);
 }
@@ -107,10 +108,10 @@ std::string print_scene(const Scene& scene) {
     text += "\n[[body]]\n" + lines_of(fields(body)) + key_of(body.source) + " = " +
             inline_table(fields(body.source)) + '\n';
   for (SceneCollider& collider : copy.colliders)
-    text += "\n[[collider]]\n" + shape_line(collider) + motion_lines(collider);
+    text += "\n[[collider]]\n" + shape_line(collider) + posed_lines(collider);
   for (ScenePin& pin : copy.pins)
     text += "\n[[pin]]\nbox = " + inline_table(fields(pin.box)) + '\n' + lines_of(fields(pin));
-  for (SceneEmitter& emitter : copy.emitters) text += "\n[[emitter]]\n" + lines_of(fields(emitter));
+  for (SceneEmitter& emitter : copy.emitters) text += "\n[[emitter]]\n" + posed_lines(emitter);
   for (SceneSink& sink : copy.sinks)
     text += "\n[[sink]]\nbox = " + inline_table(fields(sink.box)) + '\n' + lines_of(fields(sink));
   text += "\n[surface]\n" + lines_of(fields(copy.surface));
@@ -142,8 +143,9 @@ std::string describe_scene_keys() {
   text += key_lines("pin[]", fields(pin)) + key_lines("pin[].box", fields(pin.box));
   SceneEmitter emitter;
   SceneSink sink;
-  text += key_lines("emitter[]", fields(emitter)) + key_lines("sink[]", fields(sink)) +
-          key_lines("sink[].box", fields(sink.box));
+  text += key_lines("emitter[]", fields(emitter)) +
+          key_lines(std::string("emitter[].") + k_keyframes_key + "[]", fields(keyframe)) +
+          key_lines("sink[]", fields(sink)) + key_lines("sink[].box", fields(sink.box));
   return text + key_lines("surface", fields(scene.surface)) + key_lines("run", fields(scene.run)) +
          key_lines("render", fields(scene.render));
 }

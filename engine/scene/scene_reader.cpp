@@ -4,7 +4,6 @@
 #include <map>
 #include <system_error>
 
-#include "colliders/pose.h"
 #include "config/validation.h"
 #include "scene/document.h"
 #include "scene/field_reader.h"
@@ -109,9 +108,7 @@ class SceneReader {
     others.emplace_back(k_keyframes_key);
     read_fields(node, path, fields(collider), others, problems_);
     read_shape(node, path, files_, collider, problems_);
-    collider.pose = pose_of(collider.translate, collider.rotate);
-    read_keyframes(node, path, collider, problems_);
-    if (!collider.keyframes.empty()) collider.pose = pose_at(collider.keyframes, 0);
+    read_pose(node, path, collider, problems_);
   }
 
   void read_pin(const Node& node, const std::string& path) {
@@ -132,8 +129,8 @@ class SceneReader {
   void read_emitter(const Node& node, const std::string& path) {
     SceneEmitter& emitter = scene_.emitters.emplace_back();
     emitter.line = node.place.line;
-    if (!read_whole(node, path, fields(emitter), {}, problems_)) return;
-    emitter.pose = pose_of(emitter.translate, emitter.rotate);
+    if (!read_whole(node, path, fields(emitter), {k_keyframes_key}, problems_)) return;
+    read_pose(node, path, emitter, problems_);
     Checks checks;
     check(emitter, checks);
     try {

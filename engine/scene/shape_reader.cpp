@@ -5,7 +5,6 @@
 #include <sstream>
 #include <system_error>
 
-#include "colliders/pose.h"
 #include "mallow/files.h"
 #include "mallow/level_set.h"
 #include "scene/field_reader.h"
@@ -318,29 +317,31 @@ void read_shape(const Node& table, const std::string& collider_path, const Scene
     std::visit([&](const auto& primitive) { collider.shape = primitive; }, shapes.parts[0]);
 }
 
-void read_keyframes(const Node& table, const std::string& collider_path, SceneCollider& collider,
-                    Problems& problems) {
+std::vector<SceneKeyframe> read_keyframes(const Node& table, const std::string& table_path,
+                                          Problems& problems) {
+  std::vector<SceneKeyframe> keys;
   const Node* node = find(table, k_keyframes_key);
-  if (!node) return;
-  const std::string path = join_path(collider_path, k_keyframes_key);
+  if (!node) return keys;
+  const std::string path = join_path(table_path, k_keyframes_key);
   const Array* list = node->get_if<Array>();
-  if (!list || list->empty() || list->size() > k_most_entries)
-    return problems.add(
+  if (!list || list->empty() || list->size() > k_most_entries) {
+    problems.add(
         node->place, path,
         not_allowed(describe(*node), "a list of 1 to " + std::to_string(k_most_entries) + " tables"));
+    return keys;
+  }
   for (const char* other : {"translate", "rotate", "velocity", "angular_velocity"})
     if (const Node* beside = find(table, other))
-      problems.add(beside->place, join_path(collider_path, other), "is not allowed beside keyframes");
+      problems.add(beside->place, join_path(table_path, other), "is not allowed beside keyframes");
   for (std::size_t i = 0; i < list->size(); ++i) {
-    SceneKeyframe& key = collider.scene_keyframes.emplace_back();
+    SceneKeyframe& key = keys.emplace_back();
     const std::string key_path = element_path(path, i);
     if (!read_whole((*list)[i], key_path, fields(key), {}, problems)) continue;
-    if (i > 0 && !(key.time > collider.scene_keyframes[i - 1].time))
+    if (i > 0 && !(key.time > keys[i - 1].time))
       problems.add((*list)[i].place, key_path,
                    not_allowed("time " + number_text(key.time), "a time after that of the keyframe before"));
   }
-  for (const SceneKeyframe& key : collider.scene_keyframes)
-    collider.keyframes.push_back({static_cast<double>(key.time), pose_of(key.translate, key.rotate)});
+  return keys;
 }
 
 bool read_whole(const Node& table, const std::string& path, const BoundFields& fields,

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "colliders/pose.h"
 #include "scene/document.h"
 #include "scene/scene_fields.h"
 #include "scene/scene_files.h"
@@ -23,8 +24,17 @@ void check_file(const Node& table, const std::string& path, const char* key, con
 /// table: that of a [[collider]]; files: those that it may name, of which its shape is made.
 void read_shape(const Node& table, const std::string& path, const SceneFiles& files, SceneCollider& collider,
                 Problems& problems);
-/// The keyframes of a collider, where it has any.
-void read_keyframes(const Node& table, const std::string& path, SceneCollider& collider, Problems& problems);
+/// Those of a collider or an emitter, none where the table has none.
+std::vector<SceneKeyframe> read_keyframes(const Node& table, const std::string& path, Problems& problems);
+/// The pose of a collider or an emitter as the scene begins, and its keyframes where it has any.
+template <class Posed>
+void read_pose(const Node& table, const std::string& path, Posed& posed, Problems& problems) {
+  posed.pose = pose_of(posed.translate, posed.rotate);
+  posed.scene_keyframes = read_keyframes(table, path, problems);
+  for (const SceneKeyframe& key : posed.scene_keyframes)
+    posed.keyframes.push_back({static_cast<double>(key.time), pose_of(key.translate, key.rotate)});
+  if (!posed.keyframes.empty()) posed.pose = pose_at(posed.keyframes, 0);
+}
 
 /// Reads fields and says whether nothing was wrong with them, so that checks of one against another make
 /// sense.

@@ -206,6 +206,7 @@ void update_reference(const VectorColumn& positions, std::size_t begin, std::siz
       },
       add);
   shape.total_moment = (squares[0] + squares[1] + squares[2]) / static_cast<double>(n);
+  shape.mean.setZero();
   shape.frame = {};
   shape.built = false;
 }
@@ -215,11 +216,13 @@ void sort_reference(const Execution& execution, PillarOrder& pillars, ShapeMatch
   shape.reference.swap(pillars.sorted);
 }
 
-void list_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape) {
+void list_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape,
+                  const FormerLists* former) {
   const std::size_t n = shape.reference.size();
   const bool every = shape.region_stride == 1;
   order_by_pillars(shape.reference, 0, n, pillar_width(shape), execution, scratch.pillars);
-  find_runs(scratch.pillars, shape.region_radius, execution, scratch.near);
+  // With a larger stride owners are drawn by row, and only their lists are there.
+  find_runs(scratch.pillars, shape.region_radius, execution, scratch.near, every ? former : nullptr);
   scratch.owners.resize(0);
   if (!every) choose_owners(static_cast<std::uint32_t>(shape.region_stride), execution.threads, scratch);
   const std::size_t regions = every ? n : scratch.owners.size();
@@ -246,8 +249,9 @@ void measure_regions(const Execution& execution, const RegionScratch& scratch, S
   });
 }
 
-void build_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape) {
-  list_regions(execution, scratch, shape);
+void build_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape,
+                   const FormerLists* former) {
+  list_regions(execution, scratch, shape, former);
   measure_regions(execution, scratch, shape);
   const std::size_t regions = shape.region_weight.size();
   if (shape.region_stride > 1) {

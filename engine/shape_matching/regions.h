@@ -37,12 +37,15 @@ void update_reference(const VectorColumn& positions, std::size_t begin, std::siz
 void sort_reference(const Execution& execution, PillarOrder& pillars, ShapeMatching& shape);
 /// Which particles are in which region: owners, lists, w_i. One of every region_stride particles owns a
 /// region, and so does every particle that is in none of theirs. Right for any order of the particles, fast
-/// after sort_reference, and owners are spread evenly then. The scratch keeps the lists as runs.
-void list_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape);
+/// after sort_reference, and owners are spread evenly then. The scratch keeps the lists as runs. former: the
+/// lists are those before some particles came or went; only with a stride of 1 do they save anything.
+void list_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape,
+                  const FormerLists* former = nullptr);
 /// What follows from x̄, of the regions that were listed last: W_j, c̄_j, B_j.
 void measure_regions(const Execution& execution, const RegionScratch& scratch, ShapeMatching& shape);
 /// Both, with rotations that start from none and room for the sums.
-void build_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape);
+void build_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape,
+                   const FormerLists* former = nullptr);
 /// Whether a row is drawn to own a region: of every `stride` in a row one is, at a scattered place. Every
 /// third row of a lattice of 12 is whole lines of it, and bent ten times as wrongly as every second or
 /// fourth.

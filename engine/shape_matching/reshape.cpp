@@ -1,27 +1,38 @@
 #include "shape_matching/reshape.h"
 
 #include <limits>
+#include <numeric>
 #include <optional>
 
+#include "core/bounds.h"
 #include "neighbors/neighbor_lists.h"
 
 namespace mallow {
 namespace {
 
-/// Sums of the reference shape are taken about its mean, which what came or went has moved.
-void center_reference(ShapeMatching& shape) {
+/// Sums of the reference shape are taken near its mean, which what came or went has moved. Only where it is
+/// farther off than the body is large are all moved back: rounded anew, no list of theirs is known.
+void center_reference(CarriedRegions& carried, ShapeMatching& shape) {
   VectorColumn& reference = shape.reference;
   const auto n = static_cast<double>(reference.size());
-  shape.total_moment = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    float* const x = reference.axis(a);
-    double sum = 0;
-    for (std::size_t i = 0; i < reference.size(); ++i) sum += static_cast<double>(x[i]);
-    for (std::size_t i = 0; i < reference.size(); ++i) {
-      const double centered = static_cast<double>(x[i]) - sum / n;
-      x[i] = static_cast<float>(centered);
-      shape.total_moment += centered * centered / n;
+  const auto measure = [&](bool moves) {
+    shape.total_moment = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      float* const x = reference.axis(a);
+      double sum = 0;
+      for (std::size_t i = 0; i < reference.size(); ++i) sum += static_cast<double>(x[i]);
+      for (std::size_t i = 0; i < reference.size(); ++i) {
+        const double centered = static_cast<double>(x[i]) - sum / n;
+        if (moves) x[i] = static_cast<float>(centered);
+        shape.total_moment += centered * centered / n;
+      }
+      shape.mean[static_cast<Eigen::Index>(a)] = moves ? 0 : sum / n;
     }
+  };
+  measure(false);
+  if (shape.mean.squaredNorm() > shape.total_moment) {
+    measure(true);
+    forget_lists(carried);
   }
   shape.built = false;
 }
@@ -35,9 +46,14 @@ std::vector<std::optional<std::size_t>> nearest_of_body(const VectorColumn& posi
                                                         std::span<const Vec3> added,
                                                         const Execution& execution,
                                                         const ShapeMatching& shape) {
-  const std::size_t n = shape.reference.size();
+  Aabb box = empty_box();
+  for (const Vec3& x : added) box = box_around(box, {x, x});
+  std::vector<std::size_t> beside;
+  for (std::size_t i = 0; i < shape.reference.size(); ++i)
+    if (is_near(positions.get(begin + i), box, shape.region_radius)) beside.push_back(i);
+  const std::size_t n = beside.size();
   VectorColumn points(n + added.size());
-  for (std::size_t i = 0; i < n; ++i) points.set(i, positions.get(begin + i));
+  for (std::size_t k = 0; k < n; ++k) points.set(k, positions.get(begin + beside[k]));
   for (std::size_t k = 0; k < added.size(); ++k) points.set(n + k, added[k]);
   CellGrid grid;
   NeighborLists lists;
@@ -47,14 +63,16 @@ std::vector<std::optional<std::size_t>> nearest_of_body(const VectorColumn& posi
   for (std::size_t s = 0; s < points.size(); ++s) {
     const std::size_t own = grid.order[s];
     if (own < n) continue;
+    std::optional<std::size_t>& best = nearest[own - n];
     float least = std::numeric_limits<float>::infinity();
     for (const std::uint32_t t : lists.of(s)) {
       const std::size_t other = grid.order[t];
+      if (other >= n) continue;
       const float distance = (points.get(own) - points.get(other)).squaredNorm();
       // Of several as near the first, so that the order of a list does not matter.
-      if (other >= n || distance > least || (distance == least && other > *nearest[own - n])) continue;
+      if (distance > least || (distance == least && beside[other] > *best)) continue;
       least = distance;
-      nearest[own - n] = other;
+      best = beside[other];
     }
   }
   return nearest;
@@ -62,32 +80,66 @@ std::vector<std::optional<std::size_t>> nearest_of_body(const VectorColumn& posi
 
 }  // namespace
 
-std::vector<Eigen::Vector4f> particle_rotations(const ShapeMatching& shape) {
-  std::vector<Eigen::Vector4f> rotations(shape.reference.size());
-  for (std::size_t i = 0; i < rotations.size(); ++i) {
+CarriedRegions carry_regions(const ShapeMatching& shape) {
+  const std::size_t n = shape.reference.size();
+  CarriedRegions carried{.rotations = std::vector<Eigen::Vector4f>(n),
+                         .former = std::vector<std::uint32_t>(n),
+                         .former_rows = n,
+                         .news = empty_box()};
+  for (std::size_t i = 0; i < n; ++i) {
     const std::size_t region = shape.first_region(i);
     for (std::size_t k = 0; k < 4; ++k)
-      rotations[i][static_cast<Eigen::Index>(k)] = shape.rotation[k][region];
+      carried.rotations[i][static_cast<Eigen::Index>(k)] = shape.rotation[k][region];
   }
-  return rotations;
+  std::iota(carried.former.begin(), carried.former.end(), 0u);
+  return carried;
 }
 
-void build_regions_from(std::span<const Eigen::Vector4f> rotations, const Execution& execution,
-                        RegionScratch& scratch, ShapeMatching& shape) {
-  build_regions(execution, scratch, shape);
+void forget_lists(CarriedRegions& carried) {
+  const Vec3 all = Vec3::Constant(std::numeric_limits<float>::infinity());
+  carried.news = {-all, all};
+}
+
+void sort_carried(std::span<const std::uint32_t> order, CarriedRegions& carried) {
+  const auto sort = [&](auto& values) {
+    auto sorted = values;
+    for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
+    values.swap(sorted);
+  };
+  sort(carried.rotations);
+  sort(carried.former);
+}
+
+void build_carried(const CarriedRegions& carried, const Execution& execution, RegionScratch& scratch,
+                   ShapeMatching& shape) {
+  std::vector<Run> now(carried.former_rows, {FormerLists::k_none, 0});
+  for (std::size_t i = 0; i < carried.former.size(); ++i)
+    if (carried.former[i] != FormerLists::k_none) now[carried.former[i]] = {static_cast<std::uint32_t>(i), 1};
+  for (std::size_t r = now.size(); r-- > 1;)
+    if (now[r - 1].count > 0 && now[r - 1].first + 1 == now[r].first) now[r - 1].count += now[r].count;
+  const FormerLists former{shape.regions, carried.former, now, carried.news};
+  build_regions(execution, scratch, shape, &former);
   for (std::size_t j = 0; j < shape.region_weight.size(); ++j)
     for (std::size_t k = 0; k < 4; ++k)
-      shape.rotation[k][j] = rotations[shape.first_row(j)][static_cast<Eigen::Index>(k)];
+      shape.rotation[k][j] = carried.rotations[shape.first_row(j)][static_cast<Eigen::Index>(k)];
 }
 
-void erase_from_reference(std::span<const std::uint32_t> places, ShapeMatching& shape) {
+void erase_from_reference(std::span<const std::uint32_t> places, CarriedRegions& carried,
+                          ShapeMatching& shape) {
   shape.reference.erase(places);
-  center_reference(shape);
+  const auto erase = [&](auto& values) {
+    close_gaps(values.data(), values.size(), places);
+    values.resize(values.size() - places.size());
+  };
+  if (shape.built) {
+    erase(carried.rotations);
+    erase(carried.former);
+  }
+  center_reference(carried, shape);
 }
 
 void append_to_reference(const VectorColumn& positions, std::size_t begin, std::span<const Vec3> added,
-                         const Execution& execution, std::vector<Eigen::Vector4f>& rotations,
-                         ShapeMatching& shape) {
+                         const Execution& execution, CarriedRegions& carried, ShapeMatching& shape) {
   const std::size_t n = shape.reference.size();
   const auto nearest = nearest_of_body(positions, begin, added, execution, shape);
   Eigen::Vector3d middle(0, 0, 0);
@@ -97,13 +149,15 @@ void append_to_reference(const VectorColumn& positions, std::size_t begin, std::
   shape.reference.resize(n + added.size());
   for (std::size_t k = 0; k < added.size(); ++k) {
     const std::optional<std::size_t> beside = nearest[k];
-    const Eigen::Vector4f rotation = beside ? rotations[*beside] : whole;
+    const Eigen::Vector4f rotation = beside ? carried.rotations[*beside] : whole;
     const Vec3 from = beside ? positions.get(begin + *beside) : Vec3(middle.cast<float>());
-    const Vec3 rest = beside ? shape.reference.get(*beside) : Vec3(0, 0, 0);
+    const Vec3 rest = beside ? shape.reference.get(*beside) : Vec3(shape.mean.cast<float>());
     shape.reference.set(n + k, rest + turn(rotation).conjugate() * (added[k] - from));
-    rotations.push_back(rotation);
+    carried.rotations.push_back(rotation);
+    carried.former.push_back(FormerLists::k_none);
   }
-  center_reference(shape);
+  carried.news = box_around(carried.news, box_around(shape.reference, n, n + added.size()));
+  center_reference(carried, shape);
 }
 
 }  // namespace mallow

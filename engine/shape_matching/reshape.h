@@ -3,25 +3,40 @@
 #include <span>
 #include <vector>
 
+#include "mallow/vec3.h"
 #include "shape_matching/regions.h"
 #include "shape_matching/shape_matching.h"
 
 /// Particles that come to a reference shape or go from it, while all others keep where they rest.
 namespace mallow {
 
-/// R of the region that each particle owns, or is in first, as x y z w.
-std::vector<Eigen::Vector4f> particle_rotations(const ShapeMatching& shape);
-/// build_regions(), but regions start from the rotations of their particles.
-void build_regions_from(std::span<const Eigen::Vector4f> rotations, const Execution& execution,
-                        RegionScratch& scratch, ShapeMatching& shape);
+/// What particles take along while others come, go and are sorted: of each, in the order of rows.
+struct CarriedRegions {
+  std::vector<Eigen::Vector4f> rotations;  ///< R of the region that it owns, or is in first, as x y z w
+  std::vector<std::uint32_t> former;       ///< its row when regions were built; of what came k_none
+  std::size_t former_rows = 0;             ///< that there were then
+  Aabb news;                               ///< in the reference shape, around what came
+};
 
-/// places: of particles, ascending, not all of them. Regions are due to be built.
-void erase_from_reference(std::span<const std::uint32_t> places, ShapeMatching& shape);
+/// Those of a shape that is built.
+CarriedRegions carry_regions(const ShapeMatching& shape);
+/// No list is as it was.
+void forget_lists(CarriedRegions& carried);
+/// Row k becomes what row order[k] was.
+void sort_carried(std::span<const std::uint32_t> order, CarriedRegions& carried);
+/// build_regions(), but regions start from the rotations of their particles, and lists that are known are
+/// not looked for.
+void build_carried(const CarriedRegions& carried, const Execution& execution, RegionScratch& scratch,
+                   ShapeMatching& shape);
+
+/// places: of particles, ascending, not all of them. carried: of a shape that is built, else left as it is.
+/// Regions are due to be built.
+void erase_from_reference(std::span<const std::uint32_t> places, CarriedRegions& carried,
+                          ShapeMatching& shape);
 /// Adds particles at `added` where they would rest: beside the particle that is nearest, as its region is
-/// turned; what has none within the region radius goes with the body as a whole. Adds their rotations.
+/// turned; what has none within the region radius goes with the body as a whole.
 /// positions: of the body, from row `begin` on. Regions are due to be built.
 void append_to_reference(const VectorColumn& positions, std::size_t begin, std::span<const Vec3> added,
-                         const Execution& execution, std::vector<Eigen::Vector4f>& rotations,
-                         ShapeMatching& shape);
+                         const Execution& execution, CarriedRegions& carried, ShapeMatching& shape);
 
 }  // namespace mallow

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/bounds.h"
 #include "core/parallel.h"
 #include "mallow/errors.h"
 #include "shape_matching/reach_lanes.h"
+#include "shape_matching/run_tables.h"
 
 namespace mallow {
 namespace {
@@ -37,19 +39,36 @@ struct Scratch {
   }
 };
 
+/// Of runs that nothing is in twice; returns how many are left.
+std::size_t put_in_order(std::span<Run> runs) {
+  std::ranges::sort(runs, {}, &Run::first);
+  std::size_t last = 0;
+  for (std::size_t r = 1; r < runs.size(); ++r) {
+    if (runs[last].first + runs[last].count == runs[r].first)
+      runs[last].count += runs[r].count;
+    else
+      runs[++last] = runs[r];
+  }
+  return last + 1;
+}
+
 struct Search {
   const PillarOrder& pillars;
   const ReachLanes& lanes;
   ReachInput input;
-  float slack;  ///< of squared distances, for what is only narrowed down [m²]
+  const FormerLists* former;
+  float slack;       ///< of squared distances, for what is only narrowed down [m²]
+  float news_reach;  ///< of what came, rounding included [m]
   int reach[2];
   std::vector<PillarBounds> bounds;
 
-  Search(const PillarOrder& order, float radius, const Execution& execution)
+  Search(const PillarOrder& order, float radius, const Execution& execution, const FormerLists* known)
       : pillars(order),
         lanes(MALLOW_SELECT(execution.level, reach_lanes)),
         input{order.sorted.axis(static_cast<std::size_t>(order.along)), {}, radius * radius},
+        former(known),
         slack(k_slack * input.squared_radius),
+        news_reach(radius * (1 + k_slack)),
         bounds(order.pillars()) {
     for (std::size_t k = 0; k < 2; ++k) {
       input.across[k] = order.sorted.axis(static_cast<std::size_t>(order.across[k]));
@@ -128,6 +147,34 @@ struct Search {
     scratch.runs += count;
   }
 
+  /// Appends the former list of a row: those of it that are still there, by their rows. Returns how many.
+  std::uint32_t take_former(std::uint32_t row, Scratch& scratch) const {
+    const TableLists& lists = former->lists;
+    const std::uint32_t list = former->former[row], rows = static_cast<std::uint32_t>(lists.rows);
+    const RunLengths& lengths = lists.lengths;
+    const std::uint32_t* const entries = lists.entries.data() + lists.begin[list];
+    Run* const runs = scratch.room(lists.count[list] * lengths.length[lengths.count - 1]);
+    std::uint32_t count = 0, members = 0;
+    bool ascending = true;
+    for (std::uint32_t k = 0; k < lists.count[list];) {
+      std::uint32_t r = entries[k] % rows, end = r;
+      for (; k < lists.count[list] && entries[k] % rows == end; ++k) end += lengths.length[entries[k] / rows];
+      while (r < end) {
+        const Run now{former->now[r].first, std::min(former->now[r].count, end - r)};
+        r += std::max(now.count, 1u);
+        members += now.count;
+        if (count > 0 && runs[count - 1].first + runs[count - 1].count == now.first) {
+          runs[count - 1].count += now.count;
+        } else if (now.count > 0) {
+          ascending = ascending && (count == 0 || runs[count - 1].first < now.first);
+          runs[count++] = now;
+        }
+      }
+    }
+    scratch.runs += ascending ? count : put_in_order({runs, count});
+    return members;
+  }
+
   /// Lists of the sorted points [begin, end), their places counted from 0.
   void search_block(std::size_t begin, std::size_t end, Scratch& scratch, RunLists& lists) const {
     scratch.runs = 0;
@@ -136,15 +183,19 @@ struct Search {
         static_cast<std::size_t>(std::upper_bound(starts, starts + pillars.start.size(), begin) - starts) - 1;
     for (std::size_t s = begin; s < end; ++pillar) {
       const std::size_t pillar_end = std::min<std::size_t>(end, starts[pillar + 1]);
-      const std::size_t points = s < pillar_end ? find_near(pillar, s, scratch.near) : 0;
-      // Of a pillar every other point at the most begins a run.
-      const std::size_t most_runs = (points + scratch.near.size()) / 2 + 1;
+      std::size_t most_runs = 0;
       for (; s < pillar_end; ++s) {
         const std::size_t from = scratch.runs;
         const std::uint32_t row = pillars.order[s];
-        scratch.runs += lanes.runs_in_reach(input, s, scratch.near.data(), scratch.near.size(),
-                                            scratch.room(most_runs), lists.members[row]);
-        if (!pillars.already) to_rows(from, scratch);
+        if (former && !is_near(pillars.sorted.get(s), former->news, news_reach)) {
+          lists.members[row] = take_former(row, scratch);
+        } else {
+          // Of a pillar every other point at the most begins a run.
+          if (most_runs == 0) most_runs = (find_near(pillar, s, scratch.near) + scratch.near.size()) / 2 + 1;
+          scratch.runs += lanes.runs_in_reach(input, s, scratch.near.data(), scratch.near.size(),
+                                              scratch.room(most_runs), lists.members[row]);
+          if (!pillars.already) to_rows(from, scratch);
+        }
         lists.begin[row] = static_cast<std::uint32_t>(from);
         lists.count[row] = static_cast<std::uint32_t>(scratch.runs - from);
       }
@@ -173,12 +224,13 @@ std::size_t estimate_runs(const Search& search, const Threads& threads, RunLists
 
 }  // namespace
 
-void find_runs(const PillarOrder& pillars, float radius, const Execution& execution, RunLists& lists) {
+void find_runs(const PillarOrder& pillars, float radius, const Execution& execution, RunLists& lists,
+               const FormerLists* former) {
   const std::size_t n = pillars.order.size();
   lists.begin.resize_unset(n);
   lists.count.resize_unset(n);
   lists.members.resize_unset(n);
-  const Search search(pillars, radius, execution);
+  const Search search(pillars, radius, execution, former);
   if (lists.runs.size() < n) lists.runs.resize_unset(estimate_runs(search, execution.threads, lists));
   for (;;) {
     std::atomic<std::size_t> used = 0;

@@ -8,10 +8,13 @@
 #include "core/column.h"
 #include "core/execution.h"
 #include "core/isa.h"
+#include "mallow/vec3.h"
 #include "particles/pillar_order.h"
 #include "shape_matching/shape_lanes.h"
 
 namespace mallow {
+
+struct TableLists;
 
 /// Per row a list of rows as runs, ascending and apart from each other.
 struct RunLists {
@@ -24,10 +27,24 @@ struct RunLists {
   std::size_t bytes() const { return begin.bytes() + count.bytes() + members.bytes() + runs.bytes(); }
 };
 
+/// Lists of points before some came, went or moved to other rows.
+struct FormerLists {
+  static constexpr std::uint32_t k_none = ~0u;
+
+  const TableLists& lists;                ///< by former row
+  std::span<const std::uint32_t> former;  ///< per row: what it was; of what came k_none
+  /// Per former row: the rows that it and those behind it are, as far as they still follow each other; none
+  /// if it went.
+  std::span<const Run> now;
+  Aabb news;  ///< around all that came
+};
+
 /// Per point the points within a radius of it, itself included, by their rows: a row is what a point was
 /// before the order sorted it. Where the lists of a block of points lie in `runs` may differ from call to
 /// call, what they hold does not. Of two points each is in the other's list, or none. Throws ConfigError
-/// where there would be 2^32 runs.
-void find_runs(const PillarOrder& pillars, float radius, const Execution& execution, RunLists& lists);
+/// where there would be 2^32 runs. former: with the same radius, of the same points but for those that came
+/// and went. What is out of reach of all that came is then not searched for, the lists are the same.
+void find_runs(const PillarOrder& pillars, float radius, const Execution& execution, RunLists& lists,
+               const FormerLists* former = nullptr);
 
 }  // namespace mallow

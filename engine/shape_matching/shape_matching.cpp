@@ -39,13 +39,13 @@ void update_frame(const VectorColumn& positions, std::size_t begin, std::span<co
   for (const FrameSums& block : partial)
     for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += block[k];
   const double count = static_cast<double>(shape.reference.size());
+  const Eigen::Vector3d mean = Eigen::Vector3d(sums[9], sums[10], sums[11]) / count;
   Eigen::Matrix3d a;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) a(i, j) = sums[static_cast<std::size_t>(3 * i + j)] / count;
+    for (int j = 0; j < 3; ++j)
+      a(i, j) = sums[static_cast<std::size_t>(3 * i + j)] / count - mean[i] * shape.mean[j];
   shape.frame.rotation = polar_rotation(a, shape.frame.rotation, shape.total_moment);
-  // The reference is centred, so its mean needs no turning.
-  shape.frame.translation =
-      positions.get(begin).cast<double>() + Eigen::Vector3d(sums[9], sums[10], sums[11]) / count;
+  shape.frame.translation = positions.get(begin).cast<double>() + mean - shape.frame.rotation * shape.mean;
 }
 
 /// The few regions that Newton's method leaves: singular, mirrored, or turned too far.

@@ -29,7 +29,7 @@ struct ShapeMatching {
   float region_radius = 0;  ///< [m]
   int region_stride = 1;    ///< every so many particles one owns a region; >= 1
   float spacing = 0;        ///< of the particles [m]; 0: not known
-  VectorColumn reference;   ///< x̄ relative to the body's centre [m]
+  VectorColumn reference;   ///< x̄ relative to a place in the body's middle [m]
   bool built = false;       ///< the regions belong to the reference shape
 
   TableLists regions;      ///< per region: its particles
@@ -48,7 +48,8 @@ struct ShapeMatching {
   /// Sums of consecutive rows: of particles for the first sums, then of regions for the second.
   Column<float> table;
 
-  double total_moment = 0;  ///< trace of Σ x̄ x̄ᵀ / n [m²]
+  Eigen::Vector3d mean{0, 0, 0};  ///< of x̄ [m]; 0 until particles come or go
+  double total_moment = 0;        ///< trace of Σ (x̄ − mean) (x̄ − mean)ᵀ / n [m²]
   RigidFrame frame;
 
   /// A particle of region j: the owner, or with a stride above 1 the first that the region's list names.

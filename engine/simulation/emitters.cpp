@@ -18,7 +18,7 @@ using Vec = Eigen::Vector3d;
 
 /// By which layers of a disc are turned, one against the next [rad]: never the same way twice.
 constexpr double k_turn = 2.4;
-/// Layers that are put behind the nozzle at once: the regions of the whole strand are built anew for them.
+/// Layers that are put behind the nozzle at once: the rows of the whole strand move for them.
 constexpr std::size_t k_batch = 8;
 
 /// So many layers must still be held for what rests beside new ones to rest beside free ones too.
@@ -70,7 +70,13 @@ void add_layer(const Emitter& emitter, std::span<const Vec> points, std::uint64_
 
 bool flows(const Simulation::State& s, const EmitterState& emitter) {
   return s.time >= emitter.settings.start.value_or(0) &&
-         !(s.time >= emitter.settings.stop.value_or(s.time + 1)) && emitter.settings.speed > 0;
+         !(s.time >= emitter.settings.stop.value_or(s.time + 1));
+}
+
+/// Of what it holds, where the strand has a speed [m/s].
+Vec3 velocity_of(const Emitter& emitter, const Pose& pose, double speed) {
+  if (speed == 0) return emitter.velocity;
+  return emitter.velocity + static_cast<float>(speed) * rotation_of(pose).col(2).cast<float>();
 }
 
 /// `count` layers behind the last, as points of a body.
@@ -110,14 +116,14 @@ void free_layers(Simulation::State& s, EmitterState& emitter) {
 
 void flow_out(Simulation::State& s, EmitterState& emitter) {
   BodyState& body = s.body(emitter.body);
-  const Vec along = rotation_of(emitter.settings.pose).col(2);
-  Vec3 velocity = emitter.settings.velocity;
-  if (flows(s, emitter)) velocity += emitter.settings.speed * along.cast<float>();
-  s.pin(emitter.pin).velocity = velocity;
-  if (!velocity.isZero(0)) wake_island(s, body);
+  const Emitter& settings = emitter.settings;
+  const double speed = flows(s, emitter) ? static_cast<double>(settings.speed.at(s.time)) : 0;
+  const Vec3 velocity = velocity_of(settings, settings.pose, speed);
+  if (!velocity.isZero(0) || (!settings.keyframes.empty() && are_due(s, settings.keyframes)))
+    wake_island(s, body);
   free_layers(s, emitter);
-  if (emitter.held.size() > held_layers(emitter.settings, body.shape.region_radius) ||
-      body.size() >= static_cast<std::size_t>(emitter.settings.most_particles))
+  if (emitter.held.size() > held_layers(settings, body.shape.region_radius) ||
+      body.size() >= static_cast<std::size_t>(settings.most_particles))
     return;
   Body points = next_layers(emitter, k_batch);
   points.velocity = velocity;
@@ -145,7 +151,7 @@ std::size_t place_of(const Simulation::State& s, EmitterId id) {
 void check_emitter(const Emitter& emitter) {
   Checks checks;
   check(emitter, checks);
-  check_pose("emitter.pose", emitter.pose, checks);
+  check_poses("emitter", emitter.pose, emitter.keyframes, checks);
   checks.finish();
 }
 
@@ -163,10 +169,36 @@ void flow(Simulation::State& s) {
   for (const SinkState& sink : s.sinks) drain(s, sink);
 }
 
-void move_emitters(Simulation::State& s, double time_step) {
+void drive_emitters(Simulation::State& s, double end, double time_step) {
   for (EmitterState& emitter : s.emitters) {
-    if (flows(s, emitter)) emitter.offset += time_step * static_cast<double>(emitter.settings.speed);
-    emitter.settings.pose.translation += time_step * emitter.settings.velocity.cast<double>();
+    Emitter& settings = emitter.settings;
+    Pose there = settings.pose;
+    Vec3 spin{0, 0, 0};
+    if (!settings.keyframes.empty()) {
+      there = pose_at(settings.keyframes, end);
+      const Twist twist = twist_between(settings.pose, there, time_step);
+      settings.velocity = twist.velocity;
+      spin = twist.angular_velocity;
+    }
+    // In the middle of the step: exact, but for the steps that keys of the speed are in.
+    emitter.speed = flows(s, emitter) ? static_cast<double>(settings.speed.at(end - 0.5 * time_step)) : 0;
+    PinState& pin = s.pin(emitter.pin);
+    pin.velocity = velocity_of(settings, there, emitter.speed);
+    s.pin_motions[slot_of(emitter.pin)] = {
+        .velocity = pin.velocity,
+        .spin = mean_spin(spin, time_step).cast<float>(),
+        .center = (settings.pose.translation - s.origin.cast<double>()).cast<float>()};
+  }
+}
+
+void move_emitters(Simulation::State& s, double end, double time_step) {
+  for (EmitterState& emitter : s.emitters) {
+    Emitter& settings = emitter.settings;
+    emitter.offset += time_step * emitter.speed;
+    if (settings.keyframes.empty())
+      settings.pose.translation += time_step * settings.velocity.cast<double>();
+    else
+      settings.pose = pose_at(settings.keyframes, end);
   }
 }
 
@@ -175,6 +207,10 @@ EmitterId Simulation::add_emitter(const Emitter& settings, MaterialId material, 
   State& s = *state_;
   check_emitter(settings);
   EmitterState emitter{.id = EmitterId{s.emitter_count}, .settings = settings};
+  if (!settings.keyframes.empty()) {
+    emitter.settings.pose = pose_at(settings.keyframes, s.time);
+    emitter.settings.velocity.setZero();
+  }
   const float region_radius = s.material(material).settings.region_radius.value_or(s.config.support_radius);
   const std::size_t count = held_layers(settings, region_radius) + k_batch;
   const Body points = next_layers(emitter, count);
@@ -182,7 +218,7 @@ EmitterId Simulation::add_emitter(const Emitter& settings, MaterialId material, 
   emitter.body = add_body(points, material, std::move(name));
   const Rows rows = this->rows(emitter.body);
   const std::vector<ParticleId> ids(s.store.id.begin() + rows.begin, s.store.id.begin() + rows.end);
-  emitter.pin = pin(ids, settings.velocity);
+  emitter.pin = pin(ids, emitter.settings.velocity);
   hold_layers(ids, count, s, emitter);
   s.emitters.push_back(std::move(emitter));
   return EmitterId{s.emitter_count++};
@@ -196,12 +232,13 @@ const Emitter& Simulation::emitter(EmitterId id) const {
   return state_->emitters[place_of(*state_, id)].settings;
 }
 
-void Simulation::set_flow(EmitterId id, float speed, const Vec3& velocity) {
+void Simulation::set_flow(EmitterId id, const Schedule& speed, const Vec3& velocity) {
   state_->refuse_in_callback();
   EmitterState& emitter = state_->emitters[place_of(*state_, id)];
   Emitter settings = emitter.settings;
   settings.speed = speed;
   settings.velocity = velocity;
+  settings.keyframes.clear();
   check_emitter(settings);
   emitter.settings = settings;
 }

@@ -60,15 +60,14 @@ void insert_points(Simulation::State& s, const Points& points, BodyState& body) 
   s.rows_changed();
 }
 
-/// The reference shape of a body has changed: its rows are sorted for it, and its regions built anew on
-/// rotations that their particles had.
-void rebuild_shape(Simulation::State& s, BodyState& body, std::span<const Eigen::Vector4f> rotations) {
+/// The reference shape of a body has changed: its rows are sorted for it, and its regions built of what their
+/// particles carried along.
+void rebuild_shape(Simulation::State& s, BodyState& body, CarriedRegions& carried) {
   PillarOrder& pillars = s.region_scratch.pillars;
   sort_reference(s.execution, pillars, body.shape);
   s.store.permute(body.begin, pillars.order.span(), s.execution.threads);
-  std::vector<Eigen::Vector4f> sorted(rotations.size());
-  for (std::size_t k = 0; k < sorted.size(); ++k) sorted[k] = rotations[pillars.order[k]];
-  build_regions_from(sorted, s.execution, s.region_scratch, body.shape);
+  sort_carried(pillars.order.span(), carried);
+  build_carried(carried, s.execution, s.region_scratch, body.shape);
   measure_rigid(s, body);
   s.held = false;
 }
@@ -112,8 +111,8 @@ void remove_rows(Simulation::State& s, BodyState& body, std::span<const std::uin
   std::vector<std::uint32_t> places;
   for (const std::uint32_t row : rows) places.push_back(row - static_cast<std::uint32_t>(body.begin));
   const bool built = shape.built, kept = shape.reference.size() == body.size();
-  std::vector<Eigen::Vector4f> rotations;
-  if (built) rotations = particle_rotations(shape);
+  CarriedRegions carried;
+  if (built) carried = carry_regions(shape);
   s.store.erase(rows);
   const std::size_t old_end = body.end;
   body.end -= rows.size();
@@ -124,11 +123,8 @@ void remove_rows(Simulation::State& s, BodyState& body, std::span<const std::uin
     shape.built = false;
     return;
   }
-  erase_from_reference(places, shape);
-  if (!built) return;
-  close_gaps(rotations.data(), rotations.size(), places);
-  rotations.resize(rotations.size() - places.size());
-  rebuild_shape(s, body, rotations);
+  erase_from_reference(places, carried, shape);
+  if (built) rebuild_shape(s, body, carried);
 }
 
 }  // namespace
@@ -201,21 +197,21 @@ std::vector<ParticleId> extend(Simulation::State& s, BodyState& body, const Body
   const Points added = points_of(s, points);
   wake_island(s, body);
   const bool remembers = body.shape.built && !body.grew;
-  std::vector<Eigen::Vector4f> rotations;
+  CarriedRegions carried;
   if (remembers) {
     // As they are now, not as they were when the last step began.
     MatchedBodies matched;
     matched.add(body.shape, body.begin);
     match_shapes(s.store.position, s.config.rotation_iterations, s.execution, matched);
-    rotations = particle_rotations(body.shape);
-    append_to_reference(s.store.position, body.begin, added.positions, s.execution, rotations, body.shape);
+    carried = carry_regions(body.shape);
+    append_to_reference(s.store.position, body.begin, added.positions, s.execution, carried, body.shape);
   }
   const std::size_t old_end = body.end;
   insert_points(s, added, body);
   shift_rows(s, body, old_end);
   std::vector<ParticleId> ids(s.store.id.begin() + old_end, s.store.id.begin() + body.end);
   if (remembers)
-    rebuild_shape(s, body, rotations);
+    rebuild_shape(s, body, carried);
   else
     body.grew = true;
   return ids;

@@ -346,7 +346,7 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
                   .contact_offset = config.contact_offset.value_or(0.5f * body.spacing),
                   .gravity = {config.gravity[0], config.gravity[1], config.gravity[2]},
                   .least_bounce = 2.0f * config.gravity.norm() * time_step},
-      .pin_velocities = state.pin_velocities,
+      .pins = state.pin_motions,
       .measure_external = body.step_weight > 0,
       .measure_rigid = body.keeps_reference() && state.deformation_damping(body) > 0,
       .measure_speed = state.bodies_sleep(),
@@ -366,7 +366,7 @@ void move_pins(Simulation::State& state, double time_step) {
   for (std::size_t p = 0; p < state.pins.size(); ++p) {
     PinState& pin = state.pins[p];
     if (pin.seconds == 0) continue;
-    pin.left -= static_cast<float>(time_step) * state.pin_velocities[p];
+    pin.left -= static_cast<float>(time_step) * state.pin_motions[p].velocity;
     pin.seconds = std::max(0.0, pin.seconds - time_step);
     if (pin.seconds == 0) pin.velocity = Vec3(0, 0, 0);
   }
@@ -382,8 +382,10 @@ void plan_motion(Simulation::State& state, float time_step) {
                   state.colliders);
   place_colliders(state.colliders, state.origin, time_step, state.execution.level, state.placed_colliders);
   state.moving.loads.assign(any_measures_load(state.placed_colliders) ? state.colliders.size() : 0, {});
-  state.pin_velocities.clear();
-  for (const PinState& pin : state.pins) state.pin_velocities.push_back(velocity_of(pin, time_step));
+  state.pin_motions.clear();
+  for (const PinState& pin : state.pins)
+    state.pin_motions.push_back({.velocity = velocity_of(pin, time_step)});
+  drive_emitters(state, state.time + static_cast<double>(time_step), static_cast<double>(time_step));
   state.moving.inputs.clear();
   for (BodyState* body : state.awake) {
     body->step_weight = body->keeps_reference() ? weight : 0.0;
@@ -465,7 +467,7 @@ void finish_step(Simulation::State& state, const ChosenStep& step) {
   state.store.velocity.swap(state.store.next_velocity);
   move_colliders(step.end, static_cast<double>(step.time_step), state.colliders);
   move_pins(state, static_cast<double>(step.time_step));
-  move_emitters(state, static_cast<double>(step.time_step));
+  move_emitters(state, step.end, static_cast<double>(step.time_step));
   add_external(state);
   state.time = step.end;
   state.last_time_step = static_cast<double>(step.time_step);

@@ -72,6 +72,7 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   archive(body.rigid.deformation_speed);
   archive(body.shape.built);
   archive(body.shape.spacing);
+  archive.array(body.shape.mean.data(), 3);
   archive(body.shape.total_moment);
   archive.array(frame.rotation.coeffs().data(), 4);
   archive.array(frame.translation.data(), 3);
@@ -274,6 +275,7 @@ void pass_emitters(Archive& archive, State& state) {
     pass_fields(archive, emitter.settings);
     pass_list(archive, emitter.settings.points, sizeof(Vec3), [&](auto& x) { archive(x); });
     pass_pose(archive, emitter.settings.pose);
+    pass_keyframes(archive, emitter.settings.keyframes);
     archive(emitter.layers);
     archive(emitter.offset);
     pass_list(archive, emitter.held, 8, [&](auto& layer) {
@@ -294,7 +296,7 @@ void unpack_emitters(const SavedState& saved, Simulation::State& state) {
     Checks checks;
     for (const EmitterState& emitter : state.emitters) {
       check(emitter.settings, checks);
-      check_pose("emitter.pose", emitter.settings.pose, checks);
+      check_poses("emitter", emitter.settings.pose, emitter.settings.keyframes, checks);
       if (!state.pin_slots.find(static_cast<std::uint64_t>(emitter.pin)))
         archive.fail("an emitter holds no pin that there is");
       if (!std::isfinite(emitter.offset) || emitter.held.size() > emitter.layers)

@@ -26,8 +26,7 @@ double sleep_time(const Simulation::State& state) {
 bool is_moving(const Simulation::State& state, const Collider& collider) {
   if (!collider.surface_velocity.isZero(0)) return true;
   if (collider.keyframes.empty()) return !collider.velocity.isZero(0) || !collider.angular_velocity.isZero(0);
-  return collider.keyframes.back().time > state.time &&
-         collider.keyframes.front().time < state.time + static_cast<double>(state.longest_step());
+  return are_due(state, collider.keyframes);
 }
 
 /// Whether a collider may touch what is in a box.
@@ -102,6 +101,11 @@ void fall_asleep(Simulation::State& state, std::uint32_t island, BodyState& body
 }
 
 }  // namespace
+
+bool are_due(const Simulation::State& state, std::span<const PoseKeyframe> keyframes) {
+  return keyframes.back().time > state.time &&
+         keyframes.front().time < state.time + static_cast<double>(state.longest_step());
+}
 
 void wake_island(Simulation::State& state, BodyState& body) {
   body.slow_time = 0;

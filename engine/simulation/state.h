@@ -88,6 +88,7 @@ struct EmitterState {
   PinId pin{};
   std::uint64_t layers = 0;                       ///< that there have been
   double offset = 0;                              ///< how far the first of them has come [m]
+  double speed = 0;                               ///< of the strand in the step under way [m/s]
   std::deque<std::vector<ParticleId>> held = {};  ///< the last of them, the next to leave first
 };
 
@@ -161,7 +162,7 @@ struct Simulation::State {
   Column<std::uint32_t> fluid_order;
   std::vector<TimeStepLimits::Pressure> pressures;
   std::vector<PlacedCollider> placed_colliders;
-  std::vector<Vec3> pin_velocities;
+  std::vector<PinMotion> pin_motions;
   Islands islands;
   RangeBlocks led_blocks;
   VectorColumn led_position;  ///< see lead_positions(); empty without damping
@@ -262,8 +263,12 @@ void finish_step(Simulation::State& state, const ChosenStep& step);
 
 /// time -> layers that leave their emitters, or are put behind them; particles that sinks take.
 void flow(Simulation::State& state);
-/// Emitters and what they hold as a step has moved them. Before time moves on.
-void move_emitters(Simulation::State& state, double time_step);
+/// keyframes, speeds -> what emitters and the pins of what they hold do in a step that ends at `end` [s].
+void drive_emitters(Simulation::State& state, double end, double time_step);
+/// Emitters as that step has moved them.
+void move_emitters(Simulation::State& state, double end, double time_step);
+/// Whether keyframes move what goes through them in the step that begins now.
+bool are_due(const Simulation::State& state, std::span<const PoseKeyframe> keyframes);
 
 /// A body and those that fell asleep with it are awake.
 void wake_island(Simulation::State& state, BodyState& body);

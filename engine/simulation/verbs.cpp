@@ -59,11 +59,13 @@ void follow_regions(Simulation::State& s, BodyState& body) {
   ShapeMatching& shape = body.shape;
   const float radius = settings.region_radius.value_or(s.config.support_radius);
   if (shape.region_radius == radius && shape.region_stride == settings.region_stride) return;
-  std::vector<Eigen::Vector4f> rotations;
-  if (shape.built) rotations = particle_rotations(shape);
+  CarriedRegions carried;
+  if (shape.built) carried = carry_regions(shape);
   shape.region_radius = radius;
   shape.region_stride = settings.region_stride;
-  if (shape.built) build_regions_from(rotations, s.execution, s.region_scratch, shape);
+  if (!shape.built) return;
+  forget_lists(carried);
+  build_carried(carried, s.execution, s.region_scratch, shape);
 }
 
 }  // namespace

@@ -51,8 +51,8 @@ class Warnings {
     if (!body.material->settings.update_threshold) return;
     const float gravity = state_.config.gravity.norm();
     float alpha = -1;  // the largest below 1 that the schedule names: there the threshold is lowest
-    for (const AlphaKey& key : body.material->settings.alpha.keys())
-      if (key.alpha < 1) alpha = std::max(alpha, key.alpha);
+    for (const ScheduleKey& key : body.material->settings.alpha.keys())
+      if (key.value < 1) alpha = std::max(alpha, key.value);
     const float threshold = body.material->update_threshold * (1 - alpha);
     if (alpha < 0 || threshold >= k_resting * gravity) return;
     add(body, "update_threshold ", body.material->update_threshold, " times 1 - alpha (", alpha, ") is ",

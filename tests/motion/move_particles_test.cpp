@@ -56,7 +56,7 @@ struct World {
   ParticleStore store;
   VectorColumn sph{k_rows}, cross{k_rows}, user{k_rows}, pull{k_end - k_begin};
   std::vector<Collider> colliders;
-  std::vector<Vec3> pin_velocities{{1, 2, 3}, {-4, 0, 0}};
+  std::vector<PinMotion> pins{{.velocity = {1, 2, 3}}, {.velocity = {-4, 0, 0}}};
   MotionInput input;
 
   World() {
@@ -88,7 +88,7 @@ struct World {
                          .contact_offset = 0.3f,
                          .gravity = {0.1f, 0, -0.6f},
                          .least_bounce = 0.16f},
-             .pin_velocities = pin_velocities,
+             .pins = pins,
              .measure_external = true,
              .mass = 1};
   }
@@ -120,7 +120,7 @@ struct World {
     const Vec3 x = store.position.get(i);
     Vec3 v = store.velocity.get(i);
     if (!store.pin.empty() && store.pin[i] != 0) {
-      v = pin_velocities[store.pin[i] - 1u];
+      v = pins[store.pin[i] - 1u].velocity;
       return {x + input.time_step * v, v, 0};
     }
     Vec3 external = input.gravity;

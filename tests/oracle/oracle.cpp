@@ -48,7 +48,7 @@ double viscosity_laplacian(double r, double sigma) {
 
 bool is_always_fluid(const Group& group) {
   const auto& keys = group.material.alpha.keys();
-  return std::all_of(keys.begin(), keys.end(), [](const AlphaKey& key) { return key.alpha == 1; });
+  return std::all_of(keys.begin(), keys.end(), [](const ScheduleKey& key) { return key.value == 1; });
 }
 
 void set_mass_and_rest_density(Group& group, double sigma) {
@@ -64,13 +64,13 @@ void set_mass_and_rest_density(Group& group, double sigma) {
 
 double alpha_at(const AlphaSchedule& schedule, double time) {
   const auto& keys = schedule.keys();
-  if (time <= keys.front().time) return keys.front().alpha;
+  if (time <= keys.front().time) return keys.front().value;
   for (std::size_t k = 1; k < keys.size(); ++k) {
-    const double t0 = keys[k - 1].time, a0 = keys[k - 1].alpha;
-    const double t1 = keys[k].time, a1 = keys[k].alpha;
+    const double t0 = keys[k - 1].time, a0 = keys[k - 1].value;
+    const double t1 = keys[k].time, a1 = keys[k].value;
     if (time < t1) return a0 + (a1 - a0) * (time - t0) / (t1 - t0);
   }
-  return keys.back().alpha;
+  return keys.back().value;
 }
 
 double lattice_sum(double spacing, double support_radius) {

@@ -70,7 +70,7 @@ const Case k_cases[] = {
     {{.material = "name = \"jelly\"\nalpha = 2024-01-01"},
      "scene.toml:5:9: material[0].alpha: a date or time is not allowed: a number in [0, 1], or [[time, "
      "alpha], ...] "
-     "with times that increase and alphas in [0, 1]"},
+     "with times that increase and numbers in [0, 1]"},
     {{.source = "box = 3"}, "scene.toml:7:7: body[0].box: 3 is not allowed: a table"},
     {{.rest = "[collider]\nplane = {}"},
      "scene.toml:8:1: collider: a table is not allowed: a list of tables, each under [[collider]]"},
@@ -99,11 +99,11 @@ const Case k_cases[] = {
      "scene.toml:5:22: material[0].alpha[1]: time 1.0 is not allowed: a time after 1.0, that of the key "
      "before"},
     {{.material = "name = \"jelly\"\nalpha = [[1.0, 0.5], 0.5]"},
-     "scene.toml:5:22: material[0].alpha[1]: 0.5 is not allowed: two numbers [time, alpha]"},
+     "scene.toml:5:22: material[0].alpha[1]: 0.5 is not allowed: two numbers [time, number]"},
     {{.material = "name = \"jelly\"\nalpha = []"},
      "scene.toml:5:9: material[0].alpha: an array of 0 is not allowed: a number in [0, 1], or [[time, "
      "alpha], ...] "
-     "with times that increase and alphas in [0, 1]"},
+     "with times that increase and numbers in [0, 1]"},
     {{.solver = "support_radius = 2.0\nrotation_iterations = 9"},
      "scene.toml:3:23: solver.rotation_iterations: 9 is not allowed: a whole number in [0, 8]"},
     {{.solver = "support_radius = 2.0\nneighbor_slack = 1.5"},
@@ -195,6 +195,11 @@ const Case k_cases[] = {
      "before"},
     {{.rest = "[[collider]]\nplane = {}\nvelocity = [0, 0, 1]\nkeyframes = [{ time = 1 }]"},
      "scene.toml:10:12: collider[0].velocity: is not allowed beside keyframes"},
+    {{.rest = "[[emitter]]\nmaterial = \"jelly\"\nradius = 1\nspacing = 1\nvelocity = [0, 0, 1]\nkeyframes = [{ "
+              "time = 1 }]"},
+     "scene.toml:12:12: emitter[0].velocity: is not allowed beside keyframes"},
+    {{.rest = "[[emitter]]\nmaterial = \"jelly\"\nradius = 1\nspacing = 1\nspeed = [[0, 1], [1, -1]]"},
+     "scene.toml:12:22: emitter[0].speed[1][1]: -1 is not allowed: a number >= 0"},
     {{.rest = "[[collider]]\nunion = []"},
      "scene.toml:9:9: collider[0].union: an array of 0 is not allowed: a list of 1 to 10000 tables, each "
      "with one of "

@@ -132,6 +132,8 @@ material = "jelly \"red\""
 width = 2
 height = 3
 spacing = 0.5
+speed = [[0, 1.5], [2, 0]]
+keyframes = [{ time = 0.5, translate = [1, 2, 3] }, { time = 2.5, translate = [4, 5, 6], rotate = [90, 0, 0] }]
 [[sink]]
 box = { min = [0, 0, -9], max = [1, 1, -5] }
 outside = false
@@ -198,7 +200,7 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_EQ(material.name, "jelly \"red\"");
   ASSERT_EQ(material.material.alpha.keys().size(), 2u);
   EXPECT_EQ(material.material.alpha.keys()[1].time, 1.5f);
-  EXPECT_EQ(material.material.alpha.keys()[1].alpha, 1.0f);
+  EXPECT_EQ(material.material.alpha.keys()[1].value, 1.0f);
   EXPECT_EQ(material.material.update_threshold, 1.5f);
   EXPECT_EQ(material.material.pressure_coefficient, 2.5f);
   EXPECT_EQ(material.material.viscosity, 0.75f);
@@ -266,6 +268,11 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_EQ(std::get<Cone>(read.colliders[6].shape).end_radius, 0.25f);
   EXPECT_EQ(std::get<Cone>(parts[5]).start, Vec3(1, 2, 3));
 
+  EXPECT_EQ(read.emitters.at(1).keyframes.size(), 2u);
+  EXPECT_EQ(read.emitters.at(1).keyframes[1].pose.translation, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(read.emitters.at(1).pose.translation, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(read.emitters.at(1).speed.at(1), 0.75f);
+
   EXPECT_EQ(read.pins.at(0).box.max, Vec3(1, 1, 0));
   EXPECT_EQ(read.pins.at(0).velocity, Vec3(0, 0, 2));
   EXPECT_EQ(read.surface.voxels_per_spacing, 3.5f);
@@ -312,7 +319,7 @@ TEST_F(every_key, that_is_described_is_known_to_the_reader) {
     if (key.starts_with("collider[].union")) element = 3;
     if (const auto at = key.find("keyframes[]"); at != std::string::npos) {
       key.insert(at + 10, "0");
-      element = 9;
+      element = key.starts_with("emitter") ? 1 : 9;
     }
     if (key == "collider[].hull.points") element = 9;
     if (const auto at = key.find("[]"); at != std::string::npos) key.insert(at + 1, std::to_string(element));

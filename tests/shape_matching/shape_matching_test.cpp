@@ -6,6 +6,7 @@
 #include <random>
 
 #include "levels.h"
+#include "shape_matching/reshape.h"
 #include "shape_matching/shape_matching.h"
 
 namespace mallow {
@@ -212,6 +213,94 @@ TEST(regions, of_every_particle_need_no_second_list) {
   EXPECT_LT(fourth.shape.regions.members, every.shape.regions.members / 3);
   EXPECT_EQ(fourth.shape.memberships.members, fourth.shape.regions.members);
   EXPECT_EQ(fourth.shape.average_neighbors, every.shape.average_neighbors);
+}
+
+/// Rows of a world in the order that regions are fast in, and what they carry along.
+void sort_rows(World& world, CarriedRegions& carried) {
+  sort_reference({2, best_instruction_level()}, world.scratch.pillars, world.shape);
+  const auto order = world.scratch.pillars.order.span();
+  VectorColumn sorted(world.x.size());
+  for (std::size_t k = 0; k < order.size(); ++k) sorted.set(k, world.x.get(order[k]));
+  world.x.swap(sorted);
+  sort_carried(order, carried);
+  build_carried(carried, {2, best_instruction_level()}, world.scratch, world.shape);
+}
+
+void append(World& world, const std::vector<Vec3>& points, CarriedRegions& carried) {
+  append_to_reference(world.x, 0, points, {2, best_instruction_level()}, carried, world.shape);
+  const std::size_t n = world.x.size();
+  world.x.resize(n + points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) world.x.set(n + k, points[k]);
+}
+
+template <class T>
+void expect_same(const Column<T>& a, const Column<T>& b) {
+  EXPECT_TRUE(std::ranges::equal(a, b));
+}
+
+TEST(regions, of_what_came_and_went_are_those_of_a_build_of_the_whole) {
+  for (const int stride : {1, 3}) {
+    SCOPED_TRACE(stride);
+    World world(600, 8, 2.0f, stride);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> coordinate(0, 8);
+    const auto some_points = [&](const Vec3& corner, std::size_t n) {
+      std::vector<Vec3> points(n);
+      for (Vec3& x : points)
+        x = corner + 0.3f * Vec3(coordinate(random), coordinate(random), coordinate(random));
+      return points;
+    };
+    for (int round = 0; round < 8; ++round) {
+      SCOPED_TRACE(round);
+      CarriedRegions carried = carry_regions(world.shape);
+      if (round % 2 == 1) {
+        std::vector<std::uint32_t> places;
+        for (std::uint32_t i = 0; i < world.x.size(); ++i)
+          if (i == 0 || random() % 9 == 0) places.push_back(i);
+        erase_from_reference(places, carried, world.shape);
+        world.x.erase(places);
+      }
+      // Inside, beside it, and so many beside it that the middle moves away.
+      if (round != 3)
+        append(world, some_points({2.0f * static_cast<float>(round), 3, 1}, round < 7 ? 20 : 3000), carried);
+      EXPECT_EQ(carried.news.max.x() == HUGE_VALF, round == 7) << "lists that are known are taken";
+      sort_rows(world, carried);
+      ShapeMatching whole;
+      whole.region_radius = world.shape.region_radius;
+      whole.region_stride = stride;
+      whole.reference.resize(world.x.size());
+      for (std::size_t i = 0; i < world.x.size(); ++i) whole.reference.set(i, world.shape.reference.get(i));
+      RegionScratch scratch;
+      build_regions({2, best_instruction_level()}, scratch, whole);
+      for (const auto lists : {&ShapeMatching::regions, &ShapeMatching::memberships}) {
+        expect_same((whole.*lists).begin, (world.shape.*lists).begin);
+        expect_same((whole.*lists).count, (world.shape.*lists).count);
+        expect_same((whole.*lists).entries, (world.shape.*lists).entries);
+      }
+      expect_same(whole.weight, world.shape.weight);
+      expect_same(whole.region_weight, world.shape.region_weight);
+      for (std::size_t k = 0; k < 6; ++k) expect_same(whole.moment[k], world.shape.moment[k]);
+      for (std::size_t j = 0; j < whole.region_weight.size(); ++j)
+        ASSERT_EQ(whole.center.get(j), world.shape.center.get(j));
+      world.match();
+    }
+  }
+}
+
+TEST(regions, of_a_body_that_grew_to_one_side_leave_it_alone_when_it_moves_as_a_rigid_whole) {
+  World world(600, 8, 2.0f);
+  CarriedRegions carried = carry_regions(world.shape);
+  std::vector<Vec3> points;
+  for (int k = 0; k < 300; ++k)
+    points.push_back(Vec3(8.5f, 0, 0) + 0.9f * Eigen::Vector3i(k % 10, k / 10 % 6, k / 60).cast<float>());
+  append(world, points, carried);
+  sort_rows(world, carried);
+  EXPECT_GT(world.shape.mean.norm(), 1);
+  const Eigen::AngleAxisd turn(2.0, Eigen::Vector3d(1, 2, 3).normalized());
+  world.transform(
+      [&](const Eigen::Vector3d& x) { return Eigen::Vector3d(turn * x + Eigen::Vector3d(5, -3, 2)); });
+  world.match();
+  for (std::size_t i = 0; i < world.x.size(); ++i) ASSERT_LT(world.shape.pull.get(i).norm(), 5e-6f);
 }
 
 TEST(shape_matching, equals_the_literal_sums_on_a_deformed_body) {

@@ -141,6 +141,68 @@ TEST(emitter, has_the_same_bits_on_any_number_of_threads_and_after_a_restore) {
   EXPECT_EQ(run(2, true), expected);
 }
 
+TEST(emitter, takes_what_it_holds_along_through_its_keyframes_and_turns_it) {
+  Simulation s(solver(0));
+  Emitter emitter{.radius = 2.0f, .spacing = 1, .speed = 0};
+  emitter.keyframes = {{1, {{0, 0, 0}, {0, 0, 0, 1}}},
+                       {4, {{3, 0, 1}, {0, std::sqrt(0.5), 0, std::sqrt(0.5)}}},
+                       {6, {{3, 5, 1}, {0, std::sqrt(0.5), 0, std::sqrt(0.5)}}}};
+  const EmitterId id = s.add_emitter(emitter, s.add_material({}));
+  std::vector<Vec3> local;
+  for (std::size_t row = 0; row < s.particle_count(); ++row) local.push_back(s.positions()[row]);
+  const std::vector<ParticleId> ids(s.ids().begin(), s.ids().end());
+  while (s.time() < 7) {
+    s.step();
+    const Pose pose = pose_at(emitter.keyframes, s.time());
+    ASSERT_EQ(s.emitter(id).pose.translation, pose.translation);
+    const Eigen::Quaterniond turn(Eigen::Vector4d(pose.rotation));
+    for (std::size_t k = 0; k < ids.size(); ++k) {
+      const Eigen::Vector3d expected = pose.translation + turn * local[k].cast<double>();
+      ASSERT_LT((s.positions()[s.row(ids[k])].cast<double>() - expected).norm(), 3e-5) << s.time();
+    }
+  }
+  s.set_flow(id, 1);
+  EXPECT_TRUE(s.emitter(id).keyframes.empty());
+  const Vec3 before = s.positions()[s.row(ids[0])];
+  s.step();
+  EXPECT_NEAR((s.positions()[s.row(ids[0])] - before).x(), 0.15, 1e-5) << "the strand leaves it along x now";
+}
+
+TEST(emitter, flows_at_the_speed_of_its_keys) {
+  Simulation s(solver(0));
+  Emitter emitter = nozzle(0);
+  emitter.speed = {{1, 0}, {3, 1}, {4, 1}, {4.6f, 0}};
+  const EmitterId id = s.add_emitter(emitter, s.add_material({}));
+  const ParticleId held = s.ids()[s.rows(s.body(id)).end - 1];
+  const float z = s.positions()[s.row(held)].z();
+  const auto advance_to = [&](double time, double way) {
+    s.advance(time - s.time());
+    EXPECT_NEAR(s.positions()[s.row(held)].z(), z - way, 2e-5) << time;
+  };
+  advance_to(1, 0);
+  advance_to(2, 0.25);
+  advance_to(3, 1);
+  advance_to(4, 2);
+  advance_to(4.6, 2.3);
+  advance_to(6, 2.3);
+}
+
+TEST(emitter, with_key_points_goes_on_with_the_same_bits_after_a_restore) {
+  const auto run = [](bool restored) {
+    Simulation s(solver(0.1f));
+    s.add_collider({.shape = Plane{}, .friction = 0.5f});
+    Emitter emitter = nozzle(6);
+    emitter.speed = {{0, 0.5f}, {10, 1.5f}, {12, 0}, {20, 1}};
+    emitter.keyframes = {{2, {{0, 0, 6}, {1, 0, 0, 0}}}, {25, {{9, 3, 7}, {0.9, 0.3, 0, 0.1}}}};
+    s.add_emitter(emitter, s.add_material({.alpha = 0.3f}));
+    for (int k = 0; k < 90; ++k) s.step();
+    if (restored) s = Simulation::restore(s.save(), 1);
+    for (int k = 0; k < 120; ++k) s.step();
+    return s.state_hash();
+  };
+  EXPECT_EQ(run(true), run(false));
+}
+
 TEST(emitter, is_refused_where_it_is_wrong) {
   Simulation s(solver(0));
   const MaterialId jelly = s.add_material({});
@@ -159,6 +221,18 @@ TEST(emitter, is_refused_where_it_is_wrong) {
       {[](Emitter& e) { e.width = 3.0f; }, "emitter.radius: give the radius"},
       {[](Emitter& e) { e.radius = -1.0f; }, "emitter.radius: -1 is not allowed"},
       {[](Emitter& e) { e.speed = -1; }, "emitter.speed"},
+      {[](Emitter& e) {
+         e.speed = {{1, 1}, {1, 0}};
+       },
+       "emitter.speed time"},
+      {[](Emitter& e) {
+         e.keyframes = {{1, {}}, {0, {}}};
+       },
+       "emitter.keyframes[1].time"},
+      {[](Emitter& e) {
+         e.keyframes = {{1, {{0, 0, 0}, {0, 0, 0, 0}}}};
+       },
+       "emitter.keyframes[0].pose.rotation"},
       {[](Emitter& e) { e.spacing = 0; }, "emitter.spacing"},
       {[](Emitter& e) { e.radius = 1e6f; }, "emitter.spacing: makes layers of over a million"},
       {[](Emitter& e) { e.pose.rotation.setZero(); }, "emitter.pose.rotation"},

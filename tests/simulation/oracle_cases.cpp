@@ -209,7 +209,7 @@ std::vector<Case> ablations(const Case& whole) {
     without("updates", [](Case& less) {
       for (Blob& b : less.blobs) b.material.update_threshold = 1e6f;
     });
-  const bool sph_acts = whole.blobs.front().material.alpha.keys().back().alpha > 0 ||
+  const bool sph_acts = whole.blobs.front().material.alpha.keys().back().value > 0 ||
                         std::any_of(whole.blobs.begin() + 1, whole.blobs.end(),
                                     [](const Blob& b) { return !b.joins_the_one_before; });
   if (sph_acts)

@@ -545,7 +545,7 @@ TEST(errors, of_configs_name_field_value_and_what_is_allowed) {
   Simulation s(config());
   contains(message_of([&] { s.prepare(); }), {"no particles"});
   contains(message_of([&] {
-             s.add_material(Material{.alpha = std::vector<AlphaKey>{}, .elastic_time_step = 0.1f});
+             s.add_material(Material{.alpha = std::vector<ScheduleKey>{}, .elastic_time_step = 0.1f});
            }),
            {"material.alpha", "no keys"});
   contains(message_of([&] { s.add_material(Material{.alpha = 1.5f, .cohesion = 2}); }),

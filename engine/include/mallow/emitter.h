@@ -6,6 +6,7 @@
 
 #include "mallow/body.h"
 #include "mallow/collider.h"
+#include "mallow/schedule.h"
 #include "mallow/vec3.h"
 
 namespace mallow {
@@ -25,8 +26,11 @@ struct Emitter {
   /// Where the nozzle is: the strand leaves it along its z axis. It is in the way of nothing; a collider may
   /// be put around it, which layers pass until they are free.
   Pose pose = {};
-  Vec3 velocity{0, 0, 0};            ///< of the nozzle [m/s]
-  float speed = 1.0f;                ///< of the strand, from the nozzle on [m/s], >= 0
+  Vec3 velocity{0, 0, 0};  ///< of the nozzle [m/s]
+  /// Where given, it moves and turns through these poses, and what it holds with it, as a Collider does. Its
+  /// pose and velocity are those that follow.
+  std::vector<PoseKeyframe> keyframes = {};
+  Schedule speed = 1.0f;             ///< of the strand, from the nozzle on [m/s], >= 0; 0: it does not flow
   std::optional<double> start = {};  ///< it flows from this time on [s], >= 0; left out: at once
   std::optional<double> stop = {};   ///< and until this [s], >= 0; left out: it goes on
   /// Random displacement of every point across the flow, at most jitter h per axis, in [0, 0.45]. Layers of a

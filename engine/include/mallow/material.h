@@ -1,45 +1,14 @@
 #pragma once
 
-#include <initializer_list>
 #include <optional>
-#include <utility>
-#include <vector>
 
 #include "mallow/export.h"
+#include "mallow/schedule.h"
 
 namespace mallow {
 
-/// One key of an alpha schedule: alpha is `alpha` at `time` [s].
-struct AlphaKey {
-  float time;
-  float alpha;
-};
-
-/// The blend parameter alpha over time: piecewise linear between keys, constant before the first and after
-/// the last. One number is a schedule of one key. Valid: every alpha in [0, 1], times finite and strictly
-/// increasing.
-class MALLOW_EXPORT AlphaSchedule {
- public:
-  /// The same alpha at all times.
-  AlphaSchedule(float alpha = 0.0f)
-      : keys_{{0.0f, alpha}} {}                                          // NOLINT: a number is a schedule
-                                                                         /// Keys in order of time.
-  AlphaSchedule(std::vector<AlphaKey> keys) : keys_(std::move(keys)) {}  // NOLINT
-  /// @copydoc AlphaSchedule(std::vector<AlphaKey>)
-  AlphaSchedule(std::initializer_list<AlphaKey> keys) : keys_(keys) {}
-
-  /// Alpha at a time [s].
-  float at(double time) const;
-  /// The smallest and the largest alpha it ever takes.
-  float lowest() const;
-  /// @copydoc lowest()
-  float highest() const;
-  /// As given.
-  const std::vector<AlphaKey>& keys() const { return keys_; }
-
- private:
-  std::vector<AlphaKey> keys_ = {};
-};
+/// The blend parameter alpha over time, in [0, 1].
+using AlphaSchedule = Schedule;
 
 /// What bodies are made of. Symbols are those of Takamatsu & Kanai [TK].
 struct Material {

@@ -110,6 +110,7 @@ struct SceneEmitter : Emitter {
   /// What scene files make of the pose: read_scene() sets both, print_scene() prints these.
   Vec3 translate{0, 0, 0};  ///< [m]
   Vec3 rotate{0, 0, 0};     ///< about x, then y, then z [degrees]
+  std::vector<SceneKeyframe> scene_keyframes = {};  ///< what scene files make of `keyframes`, as of the pose
   int line = 0;             ///< of the scene file; 0 where it did not come from one
 };
 

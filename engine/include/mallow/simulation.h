@@ -157,8 +157,9 @@ class MALLOW_EXPORT Simulation {
   BodyId body(EmitterId emitter) const;
   /// As it is now, where it has moved.
   const Emitter& emitter(EmitterId emitter) const;
-  /// How fast the strand leaves it, and how fast the nozzle itself moves, from now on [m/s].
-  void set_flow(EmitterId emitter, float speed, const Vec3& velocity = {0, 0, 0});
+  /// How fast the strand leaves it, and how fast the nozzle itself moves, from now on [m/s]. It has no
+  /// keyframes then.
+  void set_flow(EmitterId emitter, const Schedule& speed, const Vec3& velocity = {0, 0, 0});
   /// The nozzle is gone and what it held is free.
   void remove_emitter(EmitterId emitter);
   /// Particles that come into a box, or out of it, and are not pinned, are removed at the start of every
@@ -290,8 +291,8 @@ class MALLOW_EXPORT Simulation {
 
   /// The row of a particle in every view. Throws ConfigError where there is none of this id, or no longer.
   std::size_t row(ParticleId id) const;
-  /// x̄ of a particle [m], relative to the mean of its body's. Throws ConfigError as row() does, and where the
-  /// body keeps no reference shape. [TK eq. 7]
+  /// x̄ of a particle [m], relative to a place in the middle of its body's: their mean, until particles come
+  /// or go. Throws ConfigError as row() does, and where the body keeps no reference shape. [TK eq. 7]
   Vec3 rest_position(ParticleId id) const;
   /// R of the region that a particle owns, as the last step left it; with a region_stride above 1, of the
   /// first region that it is in. Throws as rest_position() does. [TK eq. 7]
