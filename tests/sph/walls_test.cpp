@@ -215,10 +215,10 @@ TEST(wall_pressure, is_in_the_loads_of_colliders_with_its_moment) {
 }
 
 TEST(wall_pressure, lets_a_block_float_as_deep_as_archimedes_says) {
-  constexpr int k_side = 18, k_layers = 9;
+  constexpr int k_side = 20, k_layers = 12;
   Pool pond = pool(config(), k_side, k_layers, 1, 0);
   Simulation& s = pond.simulation;
-  const Vec half(5, 5, 3);
+  const Vec half(5, 5, 5);
   const double mass = 0.5 * 8 * half.prod();
   Collider block{
       .shape = Box{(-half).cast<float>(), half.cast<float>()}, .friction = 0.3f, .measure_load = true};
@@ -226,7 +226,7 @@ TEST(wall_pressure, lets_a_block_float_as_deep_as_archimedes_says) {
   const ColliderId id = s.add_collider(block);
   Vec velocity(0, 0, 0), spin(0, 0, 0);
   double bottom = 0;
-  constexpr int k_steps = 700, k_mean = 200;
+  constexpr int k_steps = 500, k_mean = 150;
   for (int k = 0; k < k_steps; ++k) {
     s.set_twist(id, velocity.cast<float>(), spin.cast<float>());
     const StepReport report = s.step();

@@ -55,8 +55,8 @@ double collision() {
 
 /// How deep a block of half the water's density floats, as a share of what Archimedes says: half its height.
 double draft() {
-  constexpr int k_side = 18, k_depth = 9;
-  const Vec gravity(0, 0, -0.3), half(5, 5, 3);
+  constexpr int k_side = 20, k_depth = 12;
+  const Vec gravity(0, 0, -0.3), half(5, 5, 5);
   mallow::Simulation simulation(
       {.time_step = 0.15f, .support_radius = 2.1f, .gravity = gravity.cast<float>()});
   const float wall = k_side / 2.0f;
@@ -68,7 +68,7 @@ double draft() {
   // The wood displaces its mass, which raises the level.
   const double level = k_depth + wood.mass / (k_side * k_side);
   double bottom = 0;
-  constexpr int k_steps = 700, k_last = 200;
+  constexpr int k_steps = 500, k_last = 150;
   for (int k = 0; k < k_steps; ++k) {
     wood.step(simulation, gravity);
     if (k >= k_steps - k_last)
