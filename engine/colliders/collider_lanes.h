@@ -60,6 +60,9 @@ struct ColliderLanes {
   void (*resolve)(const ShapeNumbers&, const ContactSurface&, const ContactStep&, ConstVectors position,
                   ConstVectors before, const std::uint32_t* rows, std::size_t count, Vectors velocity,
                   float& fastest) noexcept;
+  /// Signed distances of the listed rows and their gradients in the world, in the order of the list.
+  void (*separate)(const ShapeNumbers&, const ContactSurface&, ConstVectors position,
+                   const std::uint32_t* rows, std::size_t count, float* distance, Vectors normal) noexcept;
 };
 
 }  // namespace mallow

@@ -8,6 +8,7 @@
 
 #include "colliders/pose.h"
 #include "colliders/shapes.h"
+#include "core/bounds.h"
 #include "core/parallel.h"
 
 namespace mallow {
@@ -66,6 +67,24 @@ float most_speed(const BlockBounds& block, const ContactSurface& surface) {
   return speed + Eigen::Map<const RowMajor>(surface.spin).norm() * (max - c).cwiseMax(c - min).norm();
 }
 
+using BlockRows = std::array<std::uint32_t, k_block>;
+
+/// Of the rows [begin, end), those that are not pinned and not out of reach of a part. Returns how many.
+std::size_t find_near_rows(const PlacedCollider::Part& part, const ContactSurface& surface,
+                           const ContactStep& step, ConstVectors position, ConstVectors velocity, float slack,
+                           std::size_t begin, std::size_t end, const std::uint16_t* pin, BlockRows& rows) {
+  std::array<std::uint8_t, k_block> flags;
+  std::fill_n(flags.begin(), end - begin, std::uint8_t{0});
+  part.lanes->mark(part.numbers, surface, step, position, velocity, slack, begin, end, flags.data());
+  std::size_t count = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    // Always written, kept only if near: no branch to predict.
+    rows[count] = static_cast<std::uint32_t>(i);
+    count += flags[i - begin] != 0 && !(pin && pin[i] != 0);
+  }
+  return count;
+}
+
 /// A block that meets the parts of a collider one after the other. A part may throw it at the next one, so
 /// that the rows in reach are found for each.
 class BlockMeeting {
@@ -91,7 +110,9 @@ class BlockMeeting {
     const float slack = k_rounding * (largest + reach);
     // What is not a number is not far, either.
     if (part.lanes->least_distance(part.numbers, seen_.min.data(), seen_.max.data()) > reach + slack) return;
-    const std::size_t count = find_near_rows(part, slack);
+    const std::size_t count =
+        find_near_rows(part, surface_, step_, raw(block_.position), raw(std::as_const(velocity_)), slack,
+                       block_.begin, block_.end, block_.pin, rows_);
     if (load_) remember(count);
     part.lanes->resolve(part.numbers, surface_, step_, raw(block_.position), raw(block_.before), rows_.data(),
                         count, raw(velocity_), block_.bounds.squared_speed);
@@ -99,21 +120,6 @@ class BlockMeeting {
   }
 
  private:
-  /// Into rows_; returns how many.
-  std::size_t find_near_rows(const PlacedCollider::Part& part, float slack) {
-    std::array<std::uint8_t, k_block> flags;
-    std::fill_n(flags.begin(), block_.end - block_.begin, std::uint8_t{0});
-    part.lanes->mark(part.numbers, surface_, step_, raw(block_.position), raw(std::as_const(velocity_)),
-                     slack, block_.begin, block_.end, flags.data());
-    std::size_t count = 0;
-    for (std::size_t i = block_.begin; i < block_.end; ++i) {
-      // Always written, kept only if near: no branch to predict.
-      rows_[count] = static_cast<std::uint32_t>(i);
-      count += flags[i - block_.begin] != 0 && !(block_.pin && block_.pin[i] != 0);
-    }
-    return count;
-  }
-
   void remember(std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) free_[k] = velocity_.get(rows_[k]);
   }
@@ -134,7 +140,7 @@ class BlockMeeting {
   const Bounds seen_;
   const float speed_;
   float largest_;
-  std::array<std::uint32_t, k_block> rows_;
+  BlockRows rows_;
   std::array<Vec3, k_block> free_;
 };
 
@@ -157,6 +163,35 @@ void resolve_contacts(const ContactBlock& rows, std::span<const PlacedCollider> 
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     BlockMeeting meeting(block, colliders[k], step, velocity, loads.empty() ? nullptr : &loads[k]);
     for (const PlacedCollider::Part& part : colliders[k].parts) meeting.meet(part);
+  }
+}
+
+void find_near_walls(const VectorColumn& position, const VectorColumn& velocity, std::size_t begin,
+                     std::size_t end, std::span<const PlacedCollider> colliders, float reach,
+                     std::vector<NearWall>& near) {
+  const Aabb box = box_around(position, begin, end);
+  BlockBounds bounds{};
+  std::copy_n(box.min.data(), 3, bounds.min);
+  std::copy_n(box.max.data(), 3, bounds.max);
+  // Without time there is no way but this.
+  ContactStep still{};
+  still.contact_offset = reach;
+  BlockRows rows;
+  std::array<float, k_block> distance;
+  std::array<std::array<float, k_block>, 3> normal;
+  for (std::size_t c = 0; c < colliders.size(); ++c) {
+    const ContactSurface& surface = colliders[c].surface;
+    const Bounds seen = seen_bounds(bounds, surface);
+    for (const PlacedCollider::Part& part : colliders[c].parts) {
+      if (part.lanes->least_distance(part.numbers, seen.min.data(), seen.max.data()) > reach) continue;
+      const std::size_t count =
+          find_near_rows(part, surface, still, raw(position), raw(velocity), 0, begin, end, nullptr, rows);
+      part.lanes->separate(part.numbers, surface, raw(position), rows.data(), count, distance.data(),
+                           {normal[0].data(), normal[1].data(), normal[2].data()});
+      for (std::size_t k = 0; k < count; ++k)
+        near.push_back({rows[k], static_cast<std::uint32_t>(c), distance[k],
+                        Vec3(normal[0][k], normal[1][k], normal[2][k])});
+    }
   }
 }
 

@@ -46,4 +46,16 @@ struct ContactBlock {
 void resolve_contacts(const ContactBlock& block, std::span<const PlacedCollider> colliders,
                       const ContactStep& step, VectorColumn& velocity, std::span<ColliderLoad> loads);
 
+/// A part of a collider that a particle is near.
+struct NearWall {
+  std::uint32_t row, collider;
+  float distance;  ///< [m]
+  Vec3 normal;     ///< away from it
+};
+/// The parts within `reach` [m] of the rows [begin, end) of the store, at most k_block of them: by collider,
+/// part and row.
+void find_near_walls(const VectorColumn& position, const VectorColumn& velocity, std::size_t begin,
+                     std::size_t end, std::span<const PlacedCollider> colliders, float reach,
+                     std::vector<NearWall>& near);
+
 }  // namespace mallow

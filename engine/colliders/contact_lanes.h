@@ -260,6 +260,31 @@ void resolve(const ShapeNumbers& numbers, const ContactSurface& surface, const C
     resolve_in(shape, Upright{surface}, step, position, before, rows, count, velocity, fastest);
 }
 
+template <class Shape, class Frame>
+void separate_in(const Shape& shape, const Frame& frame, ConstVectors position, const std::uint32_t* rows,
+                 std::size_t count, float* distance, Vectors normal) noexcept {
+  for (std::size_t k = 0; k < count; k += k_width) {
+    const ListedRows listed{rows + k, count - k < k_width ? count - k : k_width};
+    const Surface s = frame.seen(shape.nearest(frame.to_shape(get(listed, position))));
+    for (std::size_t l = 0; l < listed.count; ++l) {
+      distance[k + l] = s.distance[l];
+      normal.x[k + l] = s.normal.x[l];
+      normal.y[k + l] = s.normal.y[l];
+      normal.z[k + l] = s.normal.z[l];
+    }
+  }
+}
+
+template <class Shape>
+void separate(const ShapeNumbers& numbers, const ContactSurface& surface, ConstVectors position,
+              const std::uint32_t* rows, std::size_t count, float* distance, Vectors normal) noexcept {
+  const Shape shape(numbers);
+  if (surface.turns)
+    separate_in(shape, Turning{surface}, position, rows, count, distance, normal);
+  else
+    separate_in(shape, Upright{surface}, position, rows, count, distance, normal);
+}
+
 /// For shapes that are convex: their least_distance(), or, where `inside`, that of their hollow.
 template <class Shape>
 float least_distance_of_convex(const ShapeNumbers& numbers, bool inside, const float* min, const float* max) {
@@ -296,7 +321,7 @@ float least_distance(const ShapeNumbers& numbers, const float* min, const float*
 
 template <class Shape>
 constexpr ColliderLanes lanes_of() {
-  return {nearest<Shape>, least_distance<Shape>, mark<Shape>, resolve<Shape>};
+  return {nearest<Shape>, least_distance<Shape>, mark<Shape>, resolve<Shape>, separate<Shape>};
 }
 
 }  // namespace

@@ -41,6 +41,8 @@ struct FieldTable<SolverConfig> {
             "how bodies keep out of each other: touch and rub, or by SPH pressure as in the paper"},
       Field{"contact_offset", &Config::contact_offset, k_not_negative, "m",
             "distance from a collider at which a particle touches it", "half the spacing"},
+      Field{"wall_pressure", &Config::wall_pressure, k_any, "",
+            "colliders count in the density of fluids and press back; false in the paper's scenes"},
       Field{
           "sleep_speed", &Config::sleep_speed, k_not_negative, "m/s",
           "what is slower for sleep_time, with all that it touches, sleeps until something wakes it; 0: none",

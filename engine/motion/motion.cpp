@@ -21,6 +21,7 @@ ForcesInput forces(const MotionInput& in, const ParticleStore& store) {
       .velocity = raw(store.velocity),
       .sph_acceleration = raw_or_null(in.sph_acceleration),
       .cross_group = raw_or_null(in.cross_group),
+      .walls = raw_or_null(in.walls),
       .user = raw_or_null(in.user),
       .pull = raw_or_null(in.pull),
       .group_begin = in.begin,

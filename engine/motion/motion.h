@@ -31,6 +31,7 @@ struct MotionInput {
   Vec3 gravity;                          ///< [m/s²]
   const VectorColumn* sph_acceleration;  ///< by row of the store [m/s²]
   const VectorColumn* cross_group;       ///< by row of the store [m/s²]
+  const VectorColumn* walls = nullptr;   ///< by row of the store [m/s²]
   const VectorColumn* user;              ///< by row of the store [m/s²]
   const VectorColumn* pull;              ///< g − x, by row of the body [m]
   std::span<const PlacedCollider> colliders;

@@ -20,6 +20,7 @@ float largest(const Lanes& lanes) {
 template <class Rows>
 LaneVec3 external_acceleration(const ForcesInput& in, const Rows& rows, LaneVec3 sum) {
   if (in.cross_group.x) sum += get(rows, in.cross_group);
+  if (in.walls.x) sum += get(rows, in.walls);
   if (in.user.x) sum += get(rows, in.user);
   return sum;
 }

@@ -12,13 +12,14 @@ namespace mallow {
 /// symbol   | column           | unit | eq.
 /// x, v     | position, velocity | m, m/s | at the start of the step
 /// a^SPH    | sph_acceleration | m/s² | model 1
-/// a_ext    | gravity + cross_group + user | m/s² | model 4, contact not in it
+/// a_ext    | gravity + cross_group + walls + user | m/s² | model 4, contact not in it
 /// g − x    | pull             | m    | model 2, by row of the group
 struct ForcesInput {
   ConstVectors position;
   ConstVectors velocity;
   ConstVectors sph_acceleration;
   ConstVectors cross_group;
+  ConstVectors walls;
   ConstVectors user;
   ConstVectors pull;
   std::size_t group_begin;   ///< row of pull's first

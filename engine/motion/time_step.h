@@ -30,6 +30,7 @@ struct FastestInput {
   Vec3 gravity;                          ///< [m/s²]
   const VectorColumn* sph_acceleration;  ///< [m/s²]
   const VectorColumn* cross_group;       ///< [m/s²]
+  const VectorColumn* walls = nullptr;   ///< [m/s²]
   const VectorColumn* user;              ///< [m/s²]
 
   // Scratch.

@@ -74,6 +74,8 @@ void search_sph(const Simulation::State& state, Search& search) {
   search.column(Phase::density, "volume", sph.volume, sorted);
   if (sph.viscous) search.column(Phase::accelerations, "sorted velocity", sph.velocity, sorted);
   search.column(Phase::accelerations, "acceleration by SPH", sph.acceleration, same_row);
+  if (state.walls())
+    search.column(Phase::accelerations, "acceleration by walls", sph.walls.acceleration, same_row);
   if (state.cross_group())
     search.column(Phase::accelerations, "acceleration by other bodies", sph.cross_group, same_row);
 }

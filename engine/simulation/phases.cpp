@@ -216,6 +216,43 @@ void sort_fluids(Simulation::State& state) {
   }
 }
 
+void find_walls(Simulation::State& state) {
+  Walls& walls = state.sph.walls;
+  walls.bodies.clear();
+  if (state.config.wall_pressure && state.config.formulation == Formulation::conservative &&
+      !state.colliders.empty()) {
+    for (const BodyState* moving : state.awake) {
+      const BodyState& body = *moving;
+      if (!(body.material->alpha > 0)) continue;
+      walls.bodies.push_back(
+          {.begin = body.begin,
+           .end = body.end,
+           .reach = state.config.support_radius + state.contact_offset(body) - 0.5f * body.spacing,
+           .alpha = body.material->alpha,
+           .mass = body.mass,
+           .group = &state.sph.groups[body.sph_group]});
+    }
+  }
+  if (walls.bodies.empty()) {
+    walls.release();
+    return;
+  }
+  // Where they stand is all that is read of them: the velocities of this step are not known yet.
+  place_colliders(state.colliders, state.origin, state.base_step(), state.execution.level,
+                  state.placed_colliders);
+  find_walls(state.store.position, state.store.velocity, state.placed_colliders, state.config.support_radius,
+             state.execution, walls);
+}
+
+void press_walls(Simulation::State& state) {
+  Sph& sph = state.sph;
+  if (sph.walls.bodies.empty()) return;
+  const ParticleStore& store = state.store;
+  press_walls(
+      {store.position, sph.density_by_row, sph.acceleration, store.pin.empty() ? nullptr : store.pin.data()},
+      state.placed_colliders, state.execution, sph.walls);
+}
+
 void call_force(Simulation::State& state) {
   if (!state.force) return;
   VectorColumn& a = state.user_acceleration;
@@ -275,6 +312,7 @@ Fastest find_fastest(Simulation::State& state) {
   input.gravity = state.config.gravity;
   input.sph_acceleration = state.sph_ran ? &state.sph.acceleration : nullptr;
   input.cross_group = state.cross_group();
+  input.walls = state.walls();
   input.user = state.user();
   input.bodies.clear();
   for (const BodyState* moving : state.awake) {
@@ -338,12 +376,13 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
       .gravity = config.gravity,
       .sph_acceleration = state.sph_ran && body.material->alpha > 0 ? &state.sph.acceleration : nullptr,
       .cross_group = state.cross_group(),
+      .walls = state.walls(),
       .user = state.user(),
       .pull = body.matches_shape() ? &body.shape.pull : nullptr,
       .colliders = state.placed_colliders,
       .contact = {.time_step = time_step,
                   .max_push = config.support_radius / (10.0f * state.base_step()),
-                  .contact_offset = config.contact_offset.value_or(0.5f * body.spacing),
+                  .contact_offset = state.contact_offset(body),
                   .gravity = {config.gravity[0], config.gravity[1], config.gravity[2]},
                   .least_bounce = 2.0f * config.gravity.norm() * time_step},
       .pins = state.pin_motions,
@@ -382,6 +421,13 @@ void plan_motion(Simulation::State& state, float time_step) {
                   state.colliders);
   place_colliders(state.colliders, state.origin, time_step, state.execution.level, state.placed_colliders);
   state.moving.loads.assign(any_measures_load(state.placed_colliders) ? state.colliders.size() : 0, {});
+  if (state.walls()) {
+    for (std::size_t c = 0; c < state.moving.loads.size(); ++c) {
+      const ColliderLoad& load = state.sph.walls.loads[c];
+      state.moving.loads[c].impulse = static_cast<double>(time_step) * load.impulse;
+      state.moving.loads[c].torque = static_cast<double>(time_step) * load.torque;
+    }
+  }
   state.pin_motions.clear();
   for (const PinState& pin : state.pins)
     state.pin_motions.push_back({.velocity = velocity_of(pin, time_step)});

@@ -22,9 +22,11 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
   if (s.sph_ran) {
     report.neighbors_found = find_neighbors(x, s.execution, sph);  // x -> lists within σ
     timer.lap(Phase::neighbors);
-    compute_density(s.execution, sph);  // lists, x -> ρ, p             [TK eq. 3]
+    find_walls(s);                      // x, colliders -> share of walls
+    compute_density(s.execution, sph);  // lists, x, share -> ρ, p      [TK eq. 3]
     timer.lap(Phase::density);
     compute_accelerations(s.store.velocity, s.execution, sph);  // ρ, p, x, v -> a^SPH   [TK eq. 1, 2, 4]
+    press_walls(s);                                             // ρ, a^SPH -> a^wall
     timer.lap(Phase::accelerations);
   }
 

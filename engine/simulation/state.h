@@ -220,6 +220,11 @@ struct Simulation::State {
   const VectorColumn* cross_group() const {
     return sph_ran && sph.groups.size() > 1 && !sph.apart ? &sph.cross_group : nullptr;
   }
+  const VectorColumn* walls() const { return sph_ran && sph.walls.any ? &sph.walls.acceleration : nullptr; }
+  /// Distance at which a particle of a body touches a collider [m].
+  float contact_offset(const BodyState& body) const {
+    return config.contact_offset.value_or(0.5f * body.spacing);
+  }
   const VectorColumn* user() const { return force ? &user_acceleration : nullptr; }
 };
 
@@ -240,6 +245,10 @@ void sort_fluids(Simulation::State& state);
 void wake_bodies(Simulation::State& state);
 /// speeds -> bodies that have been slow for long, with all that they touch, sleep: their velocities are 0.
 void rest_bodies(Simulation::State& state, float time_step);
+/// positions, colliders -> what walls hold of the volume around the particles of fluids. [model 2, section 2]
+void find_walls(Simulation::State& state);
+/// densities -> accelerations by the pressure of walls, and what these get of it.
+void press_walls(Simulation::State& state);
 /// positions, velocities -> user accelerations.
 void call_force(Simulation::State& state);
 /// positions, velocities -> those at which shapes are matched, x + τ v: the positions themselves where

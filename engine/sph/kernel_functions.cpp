@@ -23,6 +23,17 @@ KernelFactors kernel_factors(double support_radius) {
   };
 }
 
+float half_space_share(float q) {
+  // W over a plane at z is 315/(256 σ) (1 − z²)⁴, z in σ; its integral from q to 1.
+  const float q2 = q * q;
+  return 0.5f - 315.0f / 256 * q * (1 - q2 * (4.0f / 3 - q2 * (6.0f / 5 - q2 * (4.0f / 7 - q2 / 9))));
+}
+
+float half_space_gradient(float q) {
+  const float t = 1 - q;
+  return t * t * t * t * (7.5f - 6 * t);
+}
+
 double lattice_density(double support_radius, double spacing) {
   const double s = support_radius;
   // Farther, the sum is the integral of W, 1, to single precision, and would take minutes for thousands of

@@ -13,6 +13,11 @@ struct KernelFactors {
 };
 KernelFactors kernel_factors(double support_radius);
 
+/// What a half space behind a plane at distance q σ, q in [0, 1], holds of a kernel: the share of poly6, and
+/// σ |∇| of the spiky kernel's, which is σ times the integral of W over the plane. [Koschier & Bender 2017]
+float half_space_share(float q);
+float half_space_gradient(float q);
+
 /// Σ W over an infinite cubic lattice of the given spacing, a point at the origin included [1/m³]: a full
 /// interior of unit masses has this density, which is what rest density follows from.
 double lattice_density(double support_radius, double spacing);

@@ -20,6 +20,7 @@ SphInput input(const Sph& sph) {
       .group = sph.group.empty() ? nullptr : sph.group.data(),
       .groups = sph.groups.data(),
       .apart = sph.apart,
+      .wall_share = sph.walls.any ? sph.walls.share.data() : nullptr,
       .position = raw(sph.grid.sorted),
       .velocity = sph.viscous ? raw(sph.velocity) : ConstVectors{},
       .radius = sph.support_radius,
@@ -35,7 +36,7 @@ SphInput input(const Sph& sph) {
 std::size_t Sph::bytes() const {
   return grid.bytes() + lists.bytes() + kept.bytes() + rows.bytes() + positions.bytes() + group.bytes() +
          velocity.bytes() + density.bytes() + pressure.bytes() + volume.bytes() + density_by_row.bytes() +
-         acceleration.bytes() + cross_group.bytes();
+         acceleration.bytes() + cross_group.bytes() + walls.bytes();
 }
 
 bool find_neighbors(const VectorColumn& positions, const Execution& execution, Sph& sph) {

@@ -12,6 +12,7 @@
 #include "neighbors/neighbor_lists.h"
 #include "sph/kernel_functions.h"
 #include "sph/sph_lanes.h"
+#include "sph/walls.h"
 
 namespace mallow {
 
@@ -38,6 +39,7 @@ struct Sph {
   CellGrid grid;
   NeighborLists lists;  ///< a list per cluster of the grid
   KeptLists kept;       ///< empty without slack
+  Walls walls;
   // Sorted order.
   Column<std::uint32_t> group;  ///< empty where there is one group
   VectorColumn velocity;        ///< empty without viscosity

@@ -69,6 +69,7 @@ void density(const SphInput& in, std::size_t begin, std::size_t end, const NearL
       const SphGroup& own = in.groups[grouped ? in.group[i] : 0];
       const float density = grouped ? sums[i - first] : sums[i - first] * own.rest_volume;
       rho[i] = own.rest_density * (in.density_factor * density);
+      if (in.wall_share) rho[i] += own.rest_density * in.wall_share[in.row_of[i]];
       const float p = own.pressure_coefficient * (rho[i] - own.rest_density);
       pressure[i] = p < 0 ? p * own.cohesion : p;
       volume[i] = own.mass / rho[i];

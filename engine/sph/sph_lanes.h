@@ -35,6 +35,7 @@ struct SphInput {
   const std::uint32_t* group;   ///< null: all in group 0
   const SphGroup* groups;
   bool apart;  ///< pairs of two groups add nothing: contact between bodies is not by pressure
+  const float* wall_share;  ///< of the volume around a particle, by row; null: no wall is near any
   ConstVectors position;
   ConstVectors velocity;  ///< accelerations only; null without viscosity
   float radius;           ///< σ [m]
@@ -53,7 +54,7 @@ struct NearLists {
 
 /// [begin, end): clusters.
 struct SphLanes {
-  /// ρ_i = ρ0_i Σ_j (m_j/ρ0_j) W_ij, p_i = k (ρ_i − ρ0), negative ones times cohesion.
+  /// ρ_i = ρ0_i (Σ_j (m_j/ρ0_j) W_ij + wall_share), p_i = k (ρ_i − ρ0), negative ones times cohesion.
   /// Writes density, pressure and volume, and the density also by row.
   void (*density)(const SphInput&, std::size_t begin, std::size_t end, const NearLists& near, float* density,
                   float* pressure, float* volume, float* density_by_row) noexcept;

@@ -263,11 +263,64 @@ std::vector<std::size_t> Oracle::update_references() {
   return updated;
 }
 
+/// S of poly6 and B of the spiky kernel, of a half space at distance d.
+double half_space_share(double d, double sigma) {
+  const double q = d / sigma;
+  return 0.5 - 315.0 / 256 *
+                   (q - 4 * std::pow(q, 3) / 3 + 6 * std::pow(q, 5) / 5 - 4 * std::pow(q, 7) / 7 +
+                    std::pow(q, 9) / 9);
+}
+double half_space_gradient(double d, double sigma) {
+  const double t = 1 - d / sigma;
+  return (7.5 * std::pow(t, 4) - 6 * std::pow(t, 5)) / sigma;
+}
+
+// Colliders as filled with the matter that meets them: engine/sph/walls.h.
+void Oracle::find_walls(Particle& p) const {
+  p.walls.clear();
+  p.wall_share = 0;
+  const Group& group = groups_[p.group];
+  if (!config_.wall_pressure || config_.formulation == Formulation::printed || group.alpha == 0) return;
+  const double sigma = config_.support_radius;
+  const double offset = config_.contact_offset.value_or(group.spacing / 2);
+  for (const Obstacle& obstacle : obstacles_) {
+    for (const Primitive& part : parts_of(obstacle.collider)) {
+      const auto [phi, n] = distance(part, p.x - obstacle.moved);
+      const double d = std::max(0.0, phi - offset + group.spacing / 2);
+      if (d >= sigma) continue;
+      const double share = half_space_share(d, sigma);
+      Vec pushed = Vec::Zero();
+      for (const Particle::Wall& wall : p.walls) pushed += wall.gradient * wall.normal;
+      const double along = pushed.norm() > 0 ? pushed.normalized().dot(n) : 0, alike = std::max(along, 0.0);
+      const double across = p.walls.empty() ? 0 : 1 - std::abs(along);
+      const bool farther = share <= p.wall_share;
+      for (Particle::Wall& wall : p.walls) {
+        wall.share *= 1 - across * share - (farther ? 0 : alike);
+        wall.gradient *= 1 - across * share - (farther ? 0 : alike);
+      }
+      const double left = 1 - across * p.wall_share - (farther ? alike : 0);
+      p.walls.push_back({left * share, left * half_space_gradient(d, sigma), n});
+      p.wall_share += share - across * share * p.wall_share - alike * std::min(share, p.wall_share);
+    }
+  }
+}
+
+Vec Oracle::wall_acceleration(const Particle& p) const {
+  const Group& group = groups_[p.group];
+  const double pressure = group.pressure_coefficient * std::max(0.0, p.density - group.rest_density);
+  Vec sum = Vec::Zero();
+  for (const Particle::Wall& wall : p.walls)
+    sum += pressure / p.density * wall.gradient * wall.normal +
+           wall.share / std::max(0.5, 1 - p.wall_share) * (p.sph - p.sph.dot(wall.normal) * wall.normal);
+  return group.alpha * sum;
+}
+
 // Section 1: densities and pressures.
 void Oracle::sum_densities() {
   for (Particle& i : particles_) {
     const Group& group = groups_[i.group];
-    double sum = 0;
+    find_walls(i);
+    double sum = i.wall_share;
     for (const Particle& j : particles_) {
       const Group& other = groups_[j.group];
       sum += other.mass / other.rest_density * poly6((i.x - j.x).norm(), config_.support_radius);
@@ -314,7 +367,7 @@ void Oracle::sum_accelerations() {
       if ((i.x - j.x).norm() > config_.support_radius) continue;
       (j.group == i.group ? i.sph : i.crossing) += pair_acceleration(i, j);
     }
-    i.external = config_.gravity.cast<double>() + i.crossing;
+    i.external = config_.gravity.cast<double>() + i.crossing + wall_acceleration(i);
     if (force_) i.external += force_(time_, id, i.x, i.v);
   }
 }

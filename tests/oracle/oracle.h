@@ -30,10 +30,17 @@ struct Particle {
   Matrix rotation = Matrix::Identity();
 
   // What the last step found.
+  /// What a collider that is filled with like matter is to SPH.
+  struct Wall {
+    double share, gradient;  ///< S, and B [1/m], what others cover left out
+    Vec normal;
+  };
+  std::vector<Wall> walls = {};
+  double wall_share = 0;  ///< of the kernel's volume, of all walls
   double density = 0;
   double pressure = 0;
   Vec sph{0, 0, 0};       ///< a^SPH of the same group [m/s²]
-  Vec external{0, 0, 0};  ///< gravity, user force and the other groups [m/s²]
+  Vec external{0, 0, 0};  ///< gravity, user force, walls and the other groups [m/s²]
   Vec crossing{0, 0, 0};  ///< the part of `external` that is from the other groups [m/s²]
   Vec contact{0, 0, 0};   ///< change of velocity by colliders over Δt [m/s²]
   Vec goal{0, 0, 0};      ///< g
@@ -104,6 +111,8 @@ class Oracle {
   double passed_periods(double time) const;
   double stiffness(const Group& group) const;
   std::vector<std::size_t> update_references();
+  void find_walls(Particle& p) const;
+  Vec wall_acceleration(const Particle& p) const;
   void sum_densities();
   Vec pair_acceleration(const Particle& i, const Particle& j) const;
   void sum_accelerations();

@@ -22,6 +22,7 @@ formulation = "printed"
 acoustic_limit = false
 contact = "pressure"
 contact_offset = 0.25
+wall_pressure = false
 sleep_speed = 0.5
 sleep_time = 2
 rotation_iterations = 2
@@ -192,6 +193,7 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_EQ(read.solver.formulation, Formulation::printed);
   EXPECT_FALSE(read.solver.acoustic_limit);
   EXPECT_EQ(read.solver.contact_offset, 0.25f);
+  EXPECT_FALSE(read.solver.wall_pressure);
   EXPECT_EQ(read.solver.rotation_iterations, 2);
   EXPECT_EQ(read.solver.neighbor_slack, 0.125f);
   EXPECT_EQ(read.solver.instruction_level, InstructionLevel::baseline);

@@ -33,6 +33,7 @@ TEST_P(Table1, has_the_particles_and_average_neighbors_of_the_paper) {
   EXPECT_EQ(material.update_threshold, row.update_threshold);
   EXPECT_EQ(scene.surface.voxels, row.voxels);
   EXPECT_FALSE(scene.solver.acoustic_limit);
+  EXPECT_FALSE(scene.solver.wall_pressure);
   EXPECT_EQ(scene.solver.time_step, 0.15f);
 }
 

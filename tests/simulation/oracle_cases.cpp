@@ -13,8 +13,16 @@ namespace {
 /// The paper's free units, small: Δt0 0.15, h about 1, |g| 0.4, and the paper's settings; checks often enough
 /// to fire within 40 steps.
 SolverConfig units(float support_radius = 2.2f) {
-  return with_paper_settings(
-      SolverConfig{.support_radius = support_radius, .gravity = {0, 0, -0.4f}, .update_interval = 10});
+  return with_paper_settings(SolverConfig{.support_radius = support_radius,
+                                          .gravity = {0, 0, -0.4f},
+                                          .update_interval = 10,
+                                          .wall_pressure = false});
+}
+
+SolverConfig walled(float support_radius = 2.2f) {
+  SolverConfig solver = units(support_radius);
+  solver.wall_pressure = true;
+  return solver;
 }
 
 SolverConfig printed() {
@@ -101,6 +109,13 @@ std::vector<Case> paper_cases() {
       {.name = "printed_pair", .blobs = {{lasting(0.5f), {0, 0, 0}, {0, 0, 0.6f}, {5, 5, 4}}, {{.alpha = 0.7f, .pressure_coefficient = 9, .viscosity = 1, .cohesion = 0.2f}, {0.6f, 0.2f, 4.4f}, {0, 0, -0.6f}, {5, 5, 4}}}, .solver = printed()},
       {.name = "cohesive_fluid_in_wind", .blobs = {{{.alpha = 1.0f, .cohesion = 0.5f}, {0, 0, 0}, {0.2f, 0, 0}}}, .solver = units(), .wind = true},
       {.name = "jelly_in_wind", .blobs = {{{.alpha = 0.3f, .update_threshold = 1e6f, .pressure_coefficient = 60, .viscosity = 1.5f, .cohesion = 0.5f}, {0, 0, 0}, {0.2f, 0, 0}, {8, 4, 4}}}, .solver = units(), .wind = true},
+      {.name = "walled_fluid_on_slope", .blobs = {{stuff(1.0f), {0, 0, 4.0f}, {0, 0, -1.0f}}}, .colliders = {k_slope}, .solver = walled()},
+      {.name = "walled_fluid_in_tank", .blobs = {{stuff(1.0f), {0, 0, 3.6f}, {-0.8f, 0.3f, -0.5f}}}, .colliders = {k_tank}, .solver = walled()},
+      {.name = "walled_cream_on_ball_and_slope", .blobs = {{stuff(0.9f), {0, 0, 3.8f}, {0, 0, -1.0f}}}, .colliders = {k_ball, {.shape = Plane{{0, 0.1f, 1}, -0.5f}, .friction = 0.3f}}, .solver = walled(), .updates = 2},
+      {.name = "walled_paste_in_bowl", .blobs = {{stuff(0.7f), {0, 0, 5.0f}, {0, 0, -1.0f}, {5, 5, 7}}}, .colliders = {k_bowl}, .solver = walled(1.7f), .updates = 1},
+      {.name = "walled_paste_on_step", .blobs = {{stuff(0.7f), {0, 0, 3.8f}, {0, 0, -1.0f}}}, .colliders = {k_step}, .solver = walled(), .updates = 1},
+      {.name = "walled_jelly_on_union", .blobs = {{stuff(0.3f), {0, 0, 4.4f}, {0, 0, -1.0f}, {7, 5, 6}}}, .colliders = {k_union}, .solver = walled(), .updates = 1},
+      {.name = "walled_moving_slope", .blobs = {{stuff(0.7f), {0, 0, 4.0f}}}, .colliders = {{.shape = k_tilted, .velocity = {0.5f, 0, 0.6f}, .friction = 0.5f}}, .solver = walled(), .updates = 1},
       {.name = "fast_fall", .blobs = {{stuff(0.7f), {0, 0, 14}, {2, 0, -16}}}, .solver = without_acoustic_limit(), .limited = true},
       {.name = "slow_spring_small_regions", .blobs = {{{.alpha = 0.3f, .update_threshold = 1.0f, .elastic_time_step = 0.3f, .region_radius = 1.6f}, {0, 0, 4.2f}, {0, 0, -1.5f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1},
       // Of the loose points three make an almost straight line. The engine lets its last rotation decide there from 1e-4

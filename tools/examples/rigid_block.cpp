@@ -1,5 +1,6 @@
 // A rigid body of another engine and particles push each other: its pose and twist go in, the impulse and
-// torque that it took come out, step by step. A block hits a free cube of jelly.
+// torque that it took come out, step by step. A block hits a free cube of jelly; one of wood floats in a
+// tank.
 #include <mallow/mallow.h>
 
 #include <algorithm>
@@ -15,15 +16,15 @@ struct RigidBox {
   Vec velocity{0, 0, 0}, spin{0, 0, 0};
 
   /// One step of both engines.
-  void step(mallow::Simulation& simulation) {
+  void step(mallow::Simulation& simulation, const Vec& gravity = {0, 0, 0}) {
     simulation.set_twist(collider, velocity.cast<float>(), spin.cast<float>());
-    simulation.step();
+    const double seconds = simulation.step().time_step;
     const mallow::ColliderLoad load = simulation.load(collider);
     const Eigen::Quaterniond turn(Eigen::Vector4d(simulation.collider(collider).pose.rotation));
     const Vec squares = half.cwiseAbs2();
     const Vec inertia = mass / 3 * (Vec::Constant(squares.sum()) - squares);
     const Vec torque = turn.conjugate() * load.torque;
-    velocity += load.impulse / mass;  // and time_step times gravity, and what other rigid bodies give
+    velocity += load.impulse / mass + seconds * gravity;  // and what other rigid bodies give
     spin += turn * torque.cwiseQuotient(inertia);
   }
 };
@@ -52,8 +53,33 @@ double collision() {
   return most / before.norm();
 }
 
+/// How deep a block of half the water's density floats, as a share of what Archimedes says: half its height.
+double draft() {
+  constexpr int k_side = 20, k_depth = 12;
+  const Vec gravity(0, 0, -0.3), half(5, 5, 5);
+  mallow::Simulation simulation(
+      {.time_step = 0.15f, .support_radius = 2.1f, .gravity = gravity.cast<float>()});
+  const float wall = k_side / 2.0f;
+  simulation.add_collider({.shape = mallow::Box{{-wall, -wall, 0}, {wall, wall, 30}, true}});
+  simulation.add_body(
+      sample(mallow::Lattice{.count = {k_side, k_side, k_depth}, .corner = {-wall, -wall, 0}}),
+      {.alpha = 1.0f, .particle_mass = 1.0f});
+  RigidBox wood{simulation.add_collider(box(half, {0, 0, k_depth + half.z()})), 4 * half.prod(), half};
+  // The wood displaces its mass, which raises the level.
+  const double level = k_depth + wood.mass / (k_side * k_side);
+  double bottom = 0;
+  constexpr int k_steps = 500, k_last = 150;
+  for (int k = 0; k < k_steps; ++k) {
+    wood.step(simulation, gravity);
+    if (k >= k_steps - k_last)
+      bottom += (simulation.collider(wood.collider).pose.translation.z() - half.z()) / k_last;
+  }
+  return (level - bottom) / half.z();
+}
+
 int main() {
-  const double change = collision();
-  std::cout << "momentum of block and jelly kept to " << change << '\n';
-  return change < 1e-4 ? 0 : 1;
+  const double change = collision(), depth = draft();
+  std::cout << "momentum of block and jelly kept to " << change << "; wood floats at " << depth
+            << " of Archimedes' depth\n";
+  return change < 1e-4 && depth > 0.95 && depth < 1.05 ? 0 : 1;
 }

@@ -52,6 +52,11 @@ struct SolverConfig {
   /// Distance from a collider at which a particle touches it [m], >= 0; left out: half the spacing of its
   /// body.
   std::optional<float> contact_offset = {};
+  /// To what is not purely elastic, colliders are filled with matter like it: they count in its density, and
+  /// its pressure ends at no wall. Without, a fluid between walls ends a seventh too dense, and what floats
+  /// in it sinks too deep. A surface is taken to be flat over a support radius. Not with
+  /// Formulation::printed. [Koschier & Bender 2017]
+  bool wall_pressure = true;
   /// A body sleeps whose particles have been slower than this in the mean for sleep_time, with all that it
   /// touches: no phase runs for it until something wakes it [m/s], >= 0; 0: none ever sleeps.
   /// Left out: 0.005 spacings in a time_step. Only where bodies are kept apart by constraint.

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "colliders/contact.h"
+#include "core/column.h"
+#include "core/execution.h"
+#include "core/range_blocks.h"
+#include "sph/sph_lanes.h"
+
+namespace mallow {
+
+/// A body that feels walls.
+struct WalledBody {
+  std::size_t begin, end;  ///< rows
+  float reach;             ///< distance of a collider's surface beyond which it is not felt [m]
+  float alpha;             ///< share of what SPH does that acts
+  float mass;              ///< m [kg]
+  const SphGroup* group;   ///< its constants
+};
+
+/// What colliders are to SPH: filled with the matter that meets them. Each part within σ of a particle is to
+/// it the half space behind the plane that is nearest, so that neither density nor pressure ends at a wall.
+///
+/// symbol | here       | unit | what                                              | source
+/// S      | share      | 1    | ∫ W over the half space                           | Koschier & Bender 2017
+/// B      | gradient   | 1/m  | |∫ ∇W| of it, along its normal n                  |
+/// a^wall | acceleration | m/s² | α (p_i/ρ_i B n + S/(1 − S) (a^SPH − (a^SPH·n) n)) |
+///
+/// Across, what is behind a wall has the particle's own pressure (Akinci et al. 2012). Along, it has the
+/// gradient that the particle's neighbours show, 1 − S of all there would be: without, the fluid beside a
+/// wall is held half and sinks, the rest goes round for ever, and a block floats a fifth too high.
+struct Walls {
+  bool any = false;  ///< some are near some particle
+  /// By row of the particle store, 0 where no wall is near; read only where there is any.
+  Column<float> share;              ///< S of all that are near
+  VectorColumn acceleration;        ///< a^wall, part of a_ext [m/s²]
+  std::vector<ColliderLoad> loads;  ///< what they get of it a second [N, N m]; empty where none measures it
+
+  // Scratch, by block of `bodies`.
+  struct Wall {
+    std::uint32_t row, collider;
+    std::uint32_t before;   ///< the one before it of this row, counted from 1; 0: none
+    float share, gradient;  ///< S and B, what other walls cover left out
+    Vec3 normal;            ///< n
+  };
+  std::vector<WalledBody> bodies;
+  RangeBlocks blocks;
+  std::vector<std::vector<NearWall>> near;
+  std::vector<std::vector<Wall>> walls;
+  std::vector<ColliderLoad> partial_loads;
+
+  void release();
+  std::size_t bytes() const;
+};
+
+/// positions, colliders -> walls of `bodies`, S of every row. The velocities are not used.
+void find_walls(const VectorColumn& position, const VectorColumn& velocity,
+                std::span<const PlacedCollider> colliders, float support_radius, const Execution& execution,
+                Walls& walls);
+
+/// What the pressure of walls follows from, by row of the store.
+struct WallInput {
+  const VectorColumn& position;
+  const Column<float>& density;          ///< ρ [kg/m³]
+  const VectorColumn& sph_acceleration;  ///< a^SPH [m/s²]
+  const std::uint16_t* pin;              ///< rows whose pin is not 0 give no load; null: all do
+};
+/// ρ, a^SPH -> a^wall and loads. A negative pressure counts as none: walls hold nothing back.
+void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders, const Execution& execution,
+                 Walls& walls);
+
+}  // namespace mallow
