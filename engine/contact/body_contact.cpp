@@ -64,7 +64,8 @@ float count_pushes(const Threads& threads, float time_step, ContactPairs& pairs)
 
 /// What its pairs do to the velocity of a point in one round. A particle shares its mass between its pairs,
 /// so that all of them together do not overshoot. What sticks is held back by no more than is left of that.
-Vec3 impulses(const ContactPairs& pairs, std::uint32_t i, std::span<ContactPair> own_pairs) {
+/// got: where the impulse of each pair is added, or null.
+Vec3 impulses(const ContactPairs& pairs, std::uint32_t i, std::span<ContactPair> own_pairs, Vec3* got) {
   const ContactPoint& own = pairs.points[i];
   const float own_share = pairs.velocity[i].pushes * own.inverse_mass;
   Vec3 sum = Vec3::Zero();
@@ -78,6 +79,11 @@ Vec3 impulses(const ContactPairs& pairs, std::uint32_t i, std::span<ContactPair>
     const float rub = std::min(friction * (std::max(push, 0.0f) + pair.sticks), mass * speed);
     sum += push * pair.normal;
     if (speed > 0) sum -= rub / speed * slip;
+    if (got) {
+      Vec3& impulse = got[&pair - own_pairs.data()];
+      impulse += push * pair.normal;
+      if (speed > 0) impulse -= rub / speed * slip;
+    }
     if (pair.sticks > 0) pair.sticks = std::max(0.0f, pair.sticks - std::max(-push, 0.0f));
   });
   return own.inverse_mass * sum;
@@ -90,19 +96,56 @@ void resolve_body_contacts(const VectorColumn& positions, const std::uint16_t* p
                            const Execution& execution, VectorColumn& velocities, ContactPairs& pairs) {
   if (!find_contact_pairs(positions, velocities, pin, bodies, step, execution, pairs)) return;
   const Threads& threads = execution.threads;
+  for (BlockPairs& block : pairs.blocks) {
+    if (pairs.keep_impulses) block.got.reserve(block.pairs.capacity());
+    block.got.assign(pairs.keep_impulses ? block.pairs.size() : 0, Vec3::Zero());
+  }
   for (int round = 0; round < k_most_rounds; ++round) {
     const float excess = count_pushes(threads, step.time_step, pairs);
     if (excess == 0 || (round >= k_least_rounds && excess < k_tolerance)) break;
-    for_touching(pairs, threads, [&](std::uint32_t i, std::span<ContactPair> own) {
-      const ContactVelocity& now = pairs.velocity[i];
-      pairs.next_velocity[i].velocity = now.velocity;
-      if (now.pushes > 0) pairs.next_velocity[i].velocity += impulses(pairs, i, own);
+    parallel_for(threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+      BlockPairs& block = pairs.blocks[number];
+      for_touching(block, [&](std::uint32_t i, std::span<ContactPair> own) {
+        const ContactVelocity& now = pairs.velocity[i];
+        Vec3* const got = block.got.empty() ? nullptr : &block.got[own.data() - block.pairs.data()];
+        pairs.next_velocity[i].velocity = now.velocity;
+        if (now.pushes > 0) pairs.next_velocity[i].velocity += impulses(pairs, i, own, got);
+      });
     });
     pairs.velocity.swap(pairs.next_velocity);
   }
   for_touching(pairs, threads, [&](std::uint32_t i, std::span<ContactPair>) {
     if (pairs.points[i].inverse_mass > 0) velocities.set(pairs.near.row[i], pairs.velocity[i].velocity);
   });
+}
+
+void list_touches(const VectorColumn& before, const ContactPairs& pairs, std::vector<BodyTouch>& touches) {
+  const NearBlocks& near = pairs.near;
+  if (near.row.empty()) return;
+  const std::vector<RangeBlocks::Block>& blocks = near.blocks.blocks;
+  for (std::size_t number = 0; number < pairs.blocks.size(); ++number) {
+    const BlockPairs& block = pairs.blocks[number];
+    if (block.got.empty()) continue;
+    const std::uint32_t body = blocks[number].range;
+    const std::size_t first = touches.size();
+    std::size_t other_block = 0;
+    for_touching(block, [&](std::uint32_t i, std::span<const ContactPair> own) {
+      for (const ContactPair& pair : own) {
+        const Vec3& got = block.got[&pair - block.pairs.data()];
+        if (got.isZero(0)) continue;
+        if (pair.other < near.first_point[other_block] || pair.other >= near.first_point[other_block + 1])
+          other_block = std::ranges::upper_bound(near.first_point, pair.other) - near.first_point.begin() - 1;
+        const std::uint32_t other = blocks[other_block].range;
+        if (other < body) continue;  // seen from there
+        auto touch = std::find_if(touches.begin() + first, touches.end(),
+                                  [&](const BodyTouch& known) { return known.other == other; });
+        if (touch == touches.end()) touch = touches.insert(touch, {body, other, {}});
+        const Vec3 x = 0.5f * (pairs.points[i].position + pairs.points[pair.other].position);
+        const Vec3 v = before.get(near.row[i]) - before.get(near.row[pair.other]);
+        touch->sums.add(got.cast<double>(), x.cast<double>(), v.cast<double>(), pair.normal.cast<double>());
+      }
+    });
+  }
 }
 
 }  // namespace mallow

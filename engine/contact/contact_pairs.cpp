@@ -216,8 +216,8 @@ std::size_t ContactPairs::bytes() const {
   std::size_t sum = near.bytes() + positions.bytes() + points.capacity() * sizeof(ContactPoint) +
                     (velocity.capacity() + next_velocity.capacity()) * sizeof(ContactVelocity);
   for (const BlockPairs& block : blocks)
-    sum +=
-        block.points.capacity() * sizeof(BlockPairs::Touching) + block.pairs.capacity() * sizeof(ContactPair);
+    sum += block.points.capacity() * sizeof(BlockPairs::Touching) +
+           block.pairs.capacity() * sizeof(ContactPair) + block.got.capacity() * sizeof(Vec3);
   return sum;
 }
 

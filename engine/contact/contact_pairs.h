@@ -36,12 +36,14 @@ struct BlockPairs {
   };
   std::vector<Touching> points;
   std::vector<ContactPair> pairs;
+  std::vector<Vec3> got;  ///< from each pair in this step [N s]; empty where nobody asks
 };
 
 /// What a step of contact between bodies needs and finds.
 struct ContactPairs {
   NearBlocks near;
   std::vector<BlockPairs> blocks;  ///< those of `near`
+  bool keep_impulses = false;      ///< somebody asks what pairs gave
   // By point.
   std::vector<ContactPoint> points;
   std::vector<ContactVelocity> velocity, next_velocity;
