@@ -17,11 +17,7 @@ inline constexpr double k_touching = 1.6;
 /// points joins them in which no step is longer than `link_radius` [m], > 0. positions: finite.
 std::vector<std::size_t> connected_parts(std::span<const Vec3> positions, float link_radius, int threads);
 
-/// Parts below this size are crumbs: a few particles that a splash throws off.
-inline constexpr std::size_t k_crumb = 4;
-/// Number of parts that are no crumbs.
-double count_parts(std::span<const std::size_t> sizes);
-/// Share of all points that are in the largest part.
+/// Share of all points that are in the largest part. mallow::count_parts() tells how many are no crumbs.
 double largest_share(std::span<const std::size_t> sizes);
 
 }  // namespace mallow::bench

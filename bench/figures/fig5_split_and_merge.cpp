@@ -1,6 +1,7 @@
 // Fig. 5(c) and (d) of Takamatsu & Kanai: bodies that split and bodies that merge.
 #include <algorithm>
 
+#include "core/disjoint_sets.h"
 #include "figures/connected_parts.h"
 #include "figures/figure.h"
 #include "figures/measures.h"
@@ -31,7 +32,7 @@ std::vector<double> measure_bunny(const FrameView& frame) {
   // would take the thin sheet that runs down the hemisphere for torn before any force lets go: it counts
   // twice the parts.
   const auto parts = connected_parts(frame.now, static_cast<float>(frame.support_radius), frame.threads);
-  return {count_parts(parts), static_cast<double>(parts.size()), largest_share(parts)};
+  return {static_cast<double>(count_parts(parts)), static_cast<double>(parts.size()), largest_share(parts)};
 }
 
 std::vector<Claim> judge_bunny(std::span<const Recording> recordings) {
@@ -127,7 +128,8 @@ std::vector<double> measure_balls(const FrameView& frame) {
   const auto parts =
       connected_parts(frame.now, static_cast<float>(k_touching * frame.spacing), frame.threads);
   // Columns two spacings wide hold about four particles a layer, so that none is empty.
-  return {count_parts(parts), largest_share(parts), unevenness(frame.now, 2 * frame.spacing)};
+  return {static_cast<double>(count_parts(parts)), largest_share(parts),
+          unevenness(frame.now, 2 * frame.spacing)};
 }
 
 std::vector<Claim> judge_balls(std::span<const Recording> recordings) {

@@ -90,12 +90,13 @@ std::size_t find_near_rows(const PlacedCollider::Part& part, const ContactSurfac
 class BlockMeeting {
  public:
   BlockMeeting(ContactBlock& block, const PlacedCollider& collider, const ContactStep& step,
-               VectorColumn& velocity, ColliderLoad* load)
+               VectorColumn& velocity, ColliderLoad* load, ContactSums* touched)
       : block_(block),
         surface_(collider.surface),
         step_(step),
         velocity_(velocity),
         load_(collider.measures_load ? load : nullptr),
+        touched_(touched),
         seen_(seen_bounds(block.bounds, surface_)),
         speed_(most_speed(block.bounds, surface_)) {
     largest_ = seen_.largest();
@@ -113,10 +114,11 @@ class BlockMeeting {
     const std::size_t count =
         find_near_rows(part, surface_, step_, raw(block_.position), raw(std::as_const(velocity_)), slack,
                        block_.begin, block_.end, block_.pin, rows_);
-    if (load_) remember(count);
+    if (load_ || touched_) remember(count);
     part.lanes->resolve(part.numbers, surface_, step_, raw(block_.position), raw(block_.before), rows_.data(),
                         count, raw(velocity_), block_.bounds.squared_speed);
     if (load_) add_load(count);
+    if (touched_) add_touched(count);
   }
 
  private:
@@ -131,12 +133,22 @@ class BlockMeeting {
       load_->torque += (block_.position.get(rows_[k]).cast<double>() - c).cross(given);
     }
   }
+  void add_touched(std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t row = rows_[k];
+      const Vec3 got = velocity_.get(row) - free_[k];
+      if (!got.isZero(0))
+        touched_->add(got.cast<double>(), block_.position.get(row).cast<double>(),
+                      block_.before.get(row).cast<double>());
+    }
+  }
 
   ContactBlock& block_;
   const ContactSurface& surface_;
   const ContactStep& step_;
   VectorColumn& velocity_;
   ColliderLoad* const load_;
+  ContactSums* const touched_;
   const Bounds seen_;
   const float speed_;
   float largest_;
@@ -158,10 +170,12 @@ bool any_measures_load(std::span<const PlacedCollider> colliders) {
 }
 
 void resolve_contacts(const ContactBlock& rows, std::span<const PlacedCollider> colliders,
-                      const ContactStep& step, VectorColumn& velocity, std::span<ColliderLoad> loads) {
+                      const ContactStep& step, VectorColumn& velocity, std::span<ColliderLoad> loads,
+                      std::span<ContactSums> touches) {
   ContactBlock block = rows;
   for (std::size_t k = 0; k < colliders.size(); ++k) {
-    BlockMeeting meeting(block, colliders[k], step, velocity, loads.empty() ? nullptr : &loads[k]);
+    BlockMeeting meeting(block, colliders[k], step, velocity, loads.empty() ? nullptr : &loads[k],
+                         touches.empty() ? nullptr : &touches[k]);
     for (const PlacedCollider::Part& part : colliders[k].parts) meeting.meet(part);
   }
 }

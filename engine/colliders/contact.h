@@ -6,6 +6,7 @@
 
 #include "colliders/collider_lanes.h"
 #include "core/column.h"
+#include "core/contact_sums.h"
 #include "mallow/collider.h"
 #include "mallow/instruction_level.h"
 
@@ -42,9 +43,11 @@ struct ContactBlock {
 /// v of every row becomes what contact with each collider in order makes of it, and with the parts of one in
 /// order. Only rows within reach of a part are resolved, and only parts within reach of the block are looked
 /// at: a surface farther than contact_offset + Δt |v − u| leaves v alone, for |n| = 1. loads: where given,
-/// one a collider, to which what those that measure it got is added, for a mass of 1. [model 2, section 4 A]
+/// one a collider, to which what those that measure it got is added, for a mass of 1. touches: where given,
+/// one a collider, to which what the rows got from it is added, for a mass of 1. [model 2, section 4 A]
 void resolve_contacts(const ContactBlock& block, std::span<const PlacedCollider> colliders,
-                      const ContactStep& step, VectorColumn& velocity, std::span<ColliderLoad> loads);
+                      const ContactStep& step, VectorColumn& velocity, std::span<ColliderLoad> loads,
+                      std::span<ContactSums> touches = {});
 
 /// A part of a collider that a particle is near.
 struct NearWall {

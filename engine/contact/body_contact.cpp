@@ -48,6 +48,9 @@ void push_apart(const Execution& execution, const ContactLanes& lanes, ContactPa
     BlockPairs& block = pairs.blocks[number];
     lanes.impulses(pairs.shared_velocity.front().velocity.data(), block.columns(), block.count,
                    pairs.acts.data() + block.first, pairs.impulses.data() + 4 * block.first);
+    if (pairs.sums.size() == 0) return;
+    for (std::size_t k = 4 * block.first; k < 4 * (block.first + block.count); ++k)
+      pairs.sums.data()[k] += pairs.impulses.data()[k];
   });
   parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
     for_touching(pairs.sides[number], [&](std::uint32_t i, std::span<const BlockSides::Side> sides) {
@@ -78,6 +81,34 @@ void resolve_body_contacts(const VectorColumn& positions, const std::uint16_t* p
       if (pairs.points[point].inverse_mass > 0)
         velocities.set(pairs.near.row[point], pairs.velocity[point].velocity);
   });
+}
+
+void list_touches(const VectorColumn& before, const ContactPairs& pairs, std::vector<BodyTouch>& touches) {
+  const NearBlocks& near = pairs.near;
+  if (near.row.empty() || pairs.sums.size() == 0) return;
+  const std::vector<RangeBlocks::Block>& blocks = near.blocks.blocks;
+  for (std::size_t number = 0; number < pairs.blocks.size(); ++number) {
+    const BlockPairs& block = pairs.blocks[number];
+    const std::size_t first = touches.size();
+    std::size_t other_block = 0;
+    for (std::size_t k = 0; k < block.count; ++k) {
+      const auto got = Eigen::Map<const Vec3>(pairs.sums.data() + 4 * (block.first + k));
+      if (got.isZero(0)) continue;
+      const std::uint32_t i = block.own[k], j = block.other[k];
+      if (j < near.first_point[other_block] || j >= near.first_point[other_block + 1])
+        other_block = static_cast<std::size_t>(
+            std::upper_bound(near.first_point.data(), near.first_point.data() + blocks.size() + 1, j) -
+            near.first_point.data() - 1);
+      const std::uint32_t other = blocks[other_block].range;
+      auto touch = std::find_if(touches.begin() + static_cast<std::ptrdiff_t>(first), touches.end(),
+                                [&](const BodyTouch& known) { return known.other == other; });
+      if (touch == touches.end()) touch = touches.insert(touch, {blocks[number].range, other, {}});
+      const Vec3 x = 0.5f * (pairs.points[i].position + pairs.points[j].position);
+      const Vec3 v = before.get(near.row[i]) - before.get(near.row[j]);
+      const Eigen::Vector3d normal(block.normal_x[k], block.normal_y[k], block.normal_z[k]);
+      touch->sums.add(got.cast<double>(), x.cast<double>(), v.cast<double>(), normal);
+    }
+  }
 }
 
 }  // namespace mallow

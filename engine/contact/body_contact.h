@@ -1,6 +1,8 @@
 #pragma once
 
 #include "contact/contact_pairs.h"
+#include "core/contact_sums.h"
+#include "core/contact_sums.h"
 
 namespace mallow {
 
@@ -11,5 +13,14 @@ namespace mallow {
 void resolve_body_contacts(const VectorColumn& positions, const std::uint16_t* pin,
                            const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
                            const Execution& execution, VectorColumn& velocities, ContactPairs& pairs);
+
+/// What one body got from another in a block of its pairs.
+struct BodyTouch {
+  std::uint32_t body, other;  ///< in the order of TouchingBody, body < other
+  ContactSums sums;           ///< velocity: seen from `other`
+};
+/// Pairs of a step whose impulses were kept -> those bodies that touch, block by block; behind what is there.
+/// before: velocities at the start of the step.
+void list_touches(const VectorColumn& before, const ContactPairs& pairs, std::vector<BodyTouch>& touches);
 
 }  // namespace mallow

@@ -211,7 +211,7 @@ ContactRows ContactPairs::rows() const {
 }
 
 std::size_t ContactPairs::bytes() const {
-  std::size_t sum = near.bytes() + positions.bytes() + acts.bytes() + impulses.bytes() +
+  std::size_t sum = near.bytes() + positions.bytes() + acts.bytes() + impulses.bytes() + sums.bytes() +
                     points.capacity() * sizeof(ContactPoint) +
                     (velocity.capacity() + shared_velocity.capacity()) * sizeof(ContactVelocity);
   for (const BlockPairs& block : blocks) sum += block.bytes();
@@ -242,6 +242,8 @@ bool find_contact_pairs(const VectorColumn& positions, const VectorColumn& veloc
   if (count == 0) return false;
   pairs.acts.resize_unset(count);
   pairs.impulses.resize_unset(4 * count);
+  pairs.sums.resize_unset(pairs.keeps_sums ? 4 * count : 0);
+  std::fill_n(pairs.sums.data(), pairs.sums.size(), 0.0f);
   parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
     find_sides(static_cast<std::uint32_t>(number), pairs);
   });

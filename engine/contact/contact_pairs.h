@@ -67,6 +67,8 @@ struct ContactPairs {
   // By pair, of a round.
   Column<float> acts;      ///< 1 or 0
   Column<float> impulses;  ///< on the first point, rows of four: three, and nothing [N s]
+  bool keeps_sums = false;  ///< somebody asks what pairs gave
+  Column<float> sums;       ///< of the impulses of all rounds; empty where nobody asks
 
   std::vector<float> partial_miss;  ///< scratch
 

@@ -64,6 +64,12 @@ std::size_t first_bad_row(const ParticleStore& store, std::size_t begin, std::si
 /// The particles [begin, end) of the store, of one body; only reads and writes their own rows.
 class MovingBlock {
  public:
+  /// What it gives to colliders and gets from them, one a collider; empty where nobody asks.
+  struct FromColliders {
+    std::span<ColliderLoad> loads;
+    std::span<ContactSums> touches;
+  };
+
   MovingBlock(const MotionInput& in, InstructionLevel level, std::size_t begin, std::size_t end,
               ParticleStore& store)
       : in_(in),
@@ -85,10 +91,10 @@ class MovingBlock {
   BlockBounds bounds() const {
     return lanes_.bounds(forces_, begin_, end_, raw(std::as_const(store_.next_velocity)));
   }
-  void collide(const BlockBounds& bounds, std::span<ColliderLoad> loads) {
+  void collide(const BlockBounds& bounds, const FromColliders& got) {
     if (in_.colliders.empty()) return;
     resolve_contacts({begin_, end_, store_.position, store_.velocity, forces_.pin, bounds}, in_.colliders,
-                     in_.contact, store_.next_velocity, loads);
+                     in_.contact, store_.next_velocity, got.loads, got.touches);
   }
   /// predicted: v' before contact, from the block's first row on.
   void measure(ConstVectors predicted, MotionSums& sums) const {
@@ -110,8 +116,7 @@ class MovingBlock {
 
   /// The phases one after the other. predicted: where v' before contact goes in one loop and comes from in
   /// the next; not used where one loop does both.
-  void move(const MotionPhases& phases, VectorColumn& predicted, std::span<ColliderLoad> loads,
-            MotionSums& sums) {
+  void move(const MotionPhases& phases, VectorColumn& predicted, const FromColliders& got, MotionSums& sums) {
     BlockBounds bounds{};
     if (phases.predict) {
       bounds = predict();
@@ -122,7 +127,7 @@ class MovingBlock {
       std::copy_n(store_.next_velocity.axis(a) + begin_, end_ - begin_,
                   phases.collide ? here[a].data() : predicted.axis(a) + begin_);
     if (phases.collide) {
-      collide(phases.predict ? bounds : this->bounds(), loads);
+      collide(phases.predict ? bounds : this->bounds(), got);
       measure(phases.predict ? ConstVectors{here[0].data(), here[1].data(), here[2].data()}
                              : from(std::as_const(predicted), begin_),
               sums);
@@ -151,6 +156,12 @@ class MovingBlock {
   ParticleStore& store_;
 };
 
+/// Part `number` of a list of equal parts, or none where there is no list.
+template <class T>
+std::span<T> part_of(std::vector<T>& list, std::size_t number, std::size_t size) {
+  return list.empty() ? std::span<T>{} : std::span(list).subspan(number * size, size);
+}
+
 /// What bodies and colliders got, block by block.
 void add_up(MovingBodies& bodies) {
   const std::size_t colliders = bodies.loads.size();
@@ -178,6 +189,8 @@ void join_motion(const MotionInput& input, MovingBodies& bodies) {
   bodies.blocks.add(input.end - input.begin);
   bodies.partial.resize(bodies.blocks.blocks.size());
   bodies.partial_loads.resize(bodies.partial.size() * bodies.loads.size());
+  if (input.sum_touches || !bodies.touches.empty())
+    bodies.touches.resize(bodies.partial.size() * input.colliders.size());
 }
 
 void move_particles(const MotionPhases& phases, const Execution& execution, ParticleStore& store,
@@ -188,13 +201,19 @@ void move_particles(const MotionPhases& phases, const Execution& execution, Part
     for (const MotionInput& in : bodies.inputs) bodies.blocks.add(in.end - in.begin);
     bodies.partial.resize(bodies.blocks.blocks.size());
     bodies.partial_loads.assign(bodies.partial.size() * colliders, {});
+    const auto asks = std::ranges::find_if(bodies.inputs, &MotionInput::sum_touches);
+    bodies.touches.assign(asks == bodies.inputs.end() ? 0 : bodies.partial.size() * asks->colliders.size(),
+                          {});
     if (!phases.collide) bodies.predicted.resize_unset(store.size());
   }
   parallel_for(execution.threads, bodies.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     const MotionInput& in = bodies.inputs[block.range];
     MovingBlock(in, execution.level, in.begin + block.begin, in.begin + block.end, store)
         .move(phases, bodies.predicted,
-              std::span(bodies.partial_loads).subspan(number * colliders, colliders), bodies.partial[number]);
+              {.loads = part_of(bodies.partial_loads, number, colliders),
+               .touches = in.sum_touches ? part_of(bodies.touches, number, in.colliders.size())
+                                         : std::span<ContactSums>{}},
+              bodies.partial[number]);
   });
   if (phases.advance) add_up(bodies);
 }

@@ -40,6 +40,7 @@ struct MotionInput {
   bool measure_external;       ///< sum |a_ext|
   bool measure_rigid = false;  ///< sum the rigid motion that the body has afterwards
   bool measure_speed = false;  ///< sum |v|
+  bool sum_touches = false;    ///< sum up what it gets from colliders
   float damping = 0;           ///< share of what is not `rigid` that goes in this step [model 2, section 4 B]
   RigidMotion rigid = {};      ///< of the body at the start of the step
   float mass;                  ///< m [kg], by which loads are counted
@@ -58,7 +59,7 @@ struct MotionSums {
 /// loop.
 struct MotionPhases {
   bool predict = false;  ///< all accelerations but contact -> v', the velocities of pins
-  bool collide = false;  ///< contact with colliders -> v', loads, |a_ext|
+  bool collide = false;  ///< contact with colliders -> v', loads, touches, |a_ext|
   bool advance = false;  ///< v' -> x'
 };
 
@@ -68,6 +69,9 @@ struct MovingBodies {
   std::vector<MotionSums> sums;  ///< of each
   /// One a collider, where any measures it: what it got from all of them is added. Else empty.
   std::vector<ColliderLoad> loads;
+  /// What each block got from each collider, for a mass of 1, where its input asks for it; empty where none
+  /// does.
+  std::vector<ContactSums> touches;
 
   // Scratch, by block.
   RangeBlocks blocks;

@@ -1,4 +1,5 @@
 // Energies of model 2, section 4, in double and one thread: for those who judge a motion, not for its steps.
+#include <span>
 #include <vector>
 
 #include "core/polar_rotation.h"
@@ -53,31 +54,43 @@ double match(const Simulation::State& state, const BodyState& body, std::vector<
   return sum;
 }
 
+/// Adds a body to a sum, whose `conserved` still lacks the other three.
+void add_energy(const Simulation::State& s, const BodyState& body, std::vector<Vec>& pull, Energy& energy) {
+  const Vec gravity = s.config.gravity.cast<double>();
+  const double mass = static_cast<double>(body.mass);
+  const double stiffness = static_cast<double>(s.stiffness(*body.material));
+  const bool is_elastic = body.matches_shape() && body.shape.built;
+  if (is_elastic) energy.elastic += stiffness * mass * match(s, body, pull);
+  for (std::size_t row = body.begin; row < body.end; ++row) {
+    if (!s.store.pin.empty() && s.store.pin[row] != 0) continue;
+    const Vec x = s.store.position.get(row).cast<double>() + s.origin.cast<double>();
+    const Vec v = s.store.velocity.get(row).cast<double>();
+    const Vec a = is_elastic ? Vec(gravity + stiffness * pull[row - body.begin]) : gravity;
+    energy.kinetic += 0.5 * mass * v.squaredNorm();
+    energy.gravity -= mass * gravity.dot(x);
+    energy.conserved += 0.5 * mass * s.last_time_step * v.dot(a);
+  }
+}
+
+Energy energy_of(const Simulation::State& s, std::span<const BodyState> bodies) {
+  Energy energy;
+  std::vector<Vec> pull;
+  for (const BodyState& body : bodies) add_energy(s, body, pull, energy);
+  energy.conserved += energy.kinetic + energy.gravity + energy.elastic;
+  return energy;
+}
+
 }  // namespace
 
 Energy Simulation::energy() {
   prepare();
-  const State& s = *state_;
-  Energy energy;
-  const Vec gravity = s.config.gravity.cast<double>();
-  std::vector<Vec> pull;
-  for (const BodyState& body : s.bodies) {
-    const double mass = static_cast<double>(body.mass);
-    const double stiffness = static_cast<double>(s.stiffness(*body.material));
-    const bool is_elastic = body.matches_shape() && body.shape.built;
-    if (is_elastic) energy.elastic += stiffness * mass * match(s, body, pull);
-    for (std::size_t row = body.begin; row < body.end; ++row) {
-      if (!s.store.pin.empty() && s.store.pin[row] != 0) continue;
-      const Vec x = s.store.position.get(row).cast<double>() + s.origin.cast<double>();
-      const Vec v = s.store.velocity.get(row).cast<double>();
-      const Vec a = is_elastic ? Vec(gravity + stiffness * pull[row - body.begin]) : gravity;
-      energy.kinetic += 0.5 * mass * v.squaredNorm();
-      energy.gravity -= mass * gravity.dot(x);
-      energy.conserved += 0.5 * mass * s.last_time_step * v.dot(a);
-    }
-  }
-  energy.conserved += energy.kinetic + energy.gravity + energy.elastic;
-  return energy;
+  return energy_of(*state_, state_->bodies);
+}
+
+Energy Simulation::energy(BodyId id) {
+  const BodyState& body = state_->body(id);
+  prepare();
+  return energy_of(*state_, {&body, 1});
 }
 
 }  // namespace mallow

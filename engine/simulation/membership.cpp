@@ -148,6 +148,7 @@ BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name)
   body.name = name.empty() ? "body " + std::to_string(s.body_slots.size()) : std::move(name);
   body.material = &material;
   body.merges = points.merges;
+  body.hit_impulse = s.contacts.hit_impulse;
   body.begin = body.end = s.store.size();
   body.spacing = points.spacing;
   body.shape.region_radius = material.settings.region_radius.value_or(s.config.support_radius);

@@ -173,6 +173,17 @@ void catch_up_with_pull(Simulation::State& state, BodyState& body) {
   });
 }
 
+/// What became of the parts of a body, whose regions are built anew.
+void tell_parts(Simulation::State& state, const BodyState& body) {
+  Parts &before = state.parts_before, &after = state.parts_after;
+  find_parts(body.shape, after);
+  const auto tell = [&](BodyEvent::Kind kind) {
+    state.events.push_back({.kind = kind, .body = body.id, .parts = after.count});
+  };
+  if (any_in_two(before, after)) tell(BodyEvent::Kind::torn);
+  if (any_in_two(after, before)) tell(BodyEvent::Kind::merged);
+}
+
 }  // namespace
 
 int update_references(Simulation::State& state) {
@@ -183,17 +194,23 @@ int update_references(Simulation::State& state) {
     const double threshold =
         static_cast<double>(body.material->update_threshold * (1.0f - body.material->alpha));
     const bool yields = check && body.keeps_reference() && body.mean_external() > threshold;
+    const bool had_regions = body.matches_shape() && body.shape.built;
     const auto due = [&] { return body.matches_shape() && !body.shape.built; };
     // A reference shape outlives the step: nothing that is not finite may get into it.
     if (yields || due()) check_damage(state);
     if (yields) {
-      if (body.matches_shape() && body.shape.built) catch_up_with_pull(state, body);
+      if (had_regions) {
+        find_parts(body.shape, state.parts_before);
+        catch_up_with_pull(state, body);
+      }
       take_reference(state, body);
+      if (had_regions) sort_parts(state.region_scratch.pillars.order.span(), state.parts_before);
       body.yielded = true;
       state.events.push_back({BodyEvent::Kind::yielded, body.id});
       ++updated;
     }
     if (due()) build_regions(state.execution, state.region_scratch, body.shape);
+    if (yields && had_regions) tell_parts(state, body);
   }
   state.matched.clear();
   for (BodyState* body : state.awake)
@@ -389,6 +406,7 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
       .measure_external = body.step_weight > 0,
       .measure_rigid = body.keeps_reference() && state.deformation_damping(body) > 0,
       .measure_speed = state.bodies_sleep(),
+      .sum_touches = body.hit_impulse.has_value(),
       .damping = body.matches_shape() ? -std::expm1(-state.deformation_damping(body) * time_step) : 0.0f,
       .rigid = body.rigid,
       .mass = body.mass,
@@ -500,6 +518,7 @@ void resolve_touching(Simulation::State& state, float time_step) {
                               .sleeps = body.island != 0,
                               .shape = body.matches_shape() ? &body.shape : nullptr});
   const ParticleStore& store = state.store;
+  state.contact_pairs.keeps_sums = state.reports_contacts();
   resolve_body_contacts(store.position, store.pin.empty() ? nullptr : store.pin.data(), state.touching,
                         {.time_step = time_step,
                          .reach = 2 * state.config.support_radius,

@@ -56,6 +56,7 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   archive(body.merges);
   archive(body.enabled);
   archive(body.user_data);
+  archive(body.hit_impulse);
   archive(body.island);
   archive(body.slow_time);
   archive(body.begin);
@@ -129,6 +130,7 @@ void require_valid(const UnpackingArchive& archive, const Simulation::State& sta
   };
   require(body.begin == begin && body.end >= begin, "its rows must follow those of the body before it");
   require(body.size() > 0, "it has no particles");
+  require(!body.hit_impulse || *body.hit_impulse >= 0, "the impulse that it tells of must be 0 or above");
   require(std::isfinite(body.slow_time) && body.slow_time >= 0,
           "the time that it has been slow must be finite and 0 or above");
   for (const float value : {body.spacing, body.mass, body.rest_density})
@@ -306,6 +308,43 @@ void unpack_emitters(const SavedState& saved, Simulation::State& state) {
   });
 }
 
+/// What events of the next step depend on, and those that calls left for it.
+template <class Archive, class State>
+void pass_events(Archive& archive, State& state) {
+  archive(state.contacts.hit_impulse);
+  pass_list(archive, state.contacts.lasting, 25, [&](auto& contact) {
+    archive(contact.key.body);
+    archive(contact.key.of_bodies);
+    archive(contact.key.other);
+    archive(contact.apart);
+  });
+  pass_list(archive, state.next_events, 9, [&](auto& event) {
+    auto kind = static_cast<std::uint8_t>(event.kind);
+    auto body = static_cast<std::uint64_t>(event.body);
+    archive(kind);
+    archive(body);
+    if constexpr (!Archive::k_packs) {
+      if (kind > static_cast<std::uint8_t>(BodyEvent::Kind::woke)) archive.fail("calls leave no such event");
+      event = {static_cast<BodyEvent::Kind>(kind), BodyId{body}};
+    }
+  });
+}
+
+void unpack_events(const SavedState& saved, Simulation::State& state) {
+  unpack(saved, "events", [&](UnpackingArchive& archive) {
+    pass_events(archive, state);
+    const Contacts& contacts = state.contacts;
+    if (contacts.hit_impulse && !(*contacts.hit_impulse >= 0))
+      archive.fail("the impulse that bodies tell of must be 0 or above");
+    for (std::size_t k = 0; k < contacts.lasting.size(); ++k) {
+      const double apart = contacts.lasting[k].apart;
+      if (!std::isfinite(apart) || apart < 0) archive.fail("a contact lasts for no time that there is");
+      if (k > 0 && !(contacts.lasting[k - 1].key < contacts.lasting[k].key))
+        archive.fail("contacts must ascend");
+    }
+  });
+}
+
 void unpack_obstacles(const SavedState& saved, Simulation::State& state) {
   unpack(saved, "origin", [&](UnpackingArchive& archive) {
     archive(state.origin);
@@ -432,6 +471,7 @@ SavedState Simulation::save() const {
     pass_list(archive, s.pins, 0, [&](const PinState& pin) { pass_pin(archive, pin); });
   }));
   add(packed("emitters", [&](PackingArchive& archive) { pass_emitters(archive, s); }));
+  add(packed("events", [&](PackingArchive& archive) { pass_events(archive, s); }));
   add(packed_column("ids", s.store.id));
   pack_slots(saved, "particle_slots", s.store.slots);
   pack_slots(saved, "body_slots", s.body_slots);
@@ -494,6 +534,7 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
   unpack_obstacles(saved, state);
   unpack_particles(saved, state);
   unpack_emitters(saved, state);
+  unpack_events(saved, state);
   hold_sleepers(state);
   unpack_shapes(saved, sizes, state);
   if (state.scale.spacing > 0) resolve_settings(state);

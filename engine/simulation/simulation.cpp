@@ -55,8 +55,9 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
     move_bodies(s, step.time_step, {.predict = true, .collide = true, .advance = true});
   }
   report.awake_bodies = s.awake.size();
-  finish_step(s, step);            // v', x' -> v, x; c ← c + 1
-  rest_bodies(s, step.time_step);  // v -> bodies that sleep
+  tell_contacts(s, step.time_step);  // impulses -> events of contacts
+  finish_step(s, step);              // v', x' -> v, x; c ← c + 1
+  rest_bodies(s, step.time_step);    // v -> bodies that sleep
   timer.lap(Phase::motion);
   return report;
 }

@@ -2,7 +2,6 @@
 // together.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/bounds.h"
 #include "simulation/state.h"
@@ -60,13 +59,12 @@ bool is_kept_awake(const Simulation::State& state, const BodyState& body) {
 void find_islands(Simulation::State& state) {
   Islands& islands = state.islands;
   const auto n = static_cast<std::uint32_t>(state.bodies.size());
-  islands.of.resize(n);
-  std::iota(islands.of.begin(), islands.of.end(), 0u);
+  islands.sets.reset(n);
   islands.first_of_group.assign(state.sph.groups.size(), UINT32_MAX);
   islands.first_of_sleepers.assign(state.body_slots.size() + 1, UINT32_MAX);
   const auto join_first = [&](std::uint32_t& first, std::uint32_t body) {
     if (first == UINT32_MAX) first = body;
-    islands.join(first, body);
+    islands.sets.join(first, body);
   };
   for (std::uint32_t b = 0; b < n; ++b) {
     if (!state.bodies[b].enabled) continue;
@@ -82,7 +80,7 @@ void find_islands(Simulation::State& state) {
       const std::uint32_t row = near.row[point];
       if (other && row >= other->begin && row < other->end) continue;
       other = &std::as_const(state).body_of(row);
-      islands.join(near.blocks.blocks[k].range, static_cast<std::uint32_t>(other - state.bodies.data()));
+      islands.sets.join(near.blocks.blocks[k].range, static_cast<std::uint32_t>(other - state.bodies.data()));
     }
   }
 }
@@ -189,7 +187,7 @@ void rest_bodies(Simulation::State& state, float time_step) {
   find_islands(state);
   Islands& islands = state.islands;
   const auto root = [&](const BodyState& body) {
-    return islands.root(static_cast<std::uint32_t>(&body - state.bodies.data()));
+    return islands.sets.root(static_cast<std::uint32_t>(&body - state.bodies.data()));
   };
   // One whose bodies all sleep already goes on as it is.
   islands.rests.assign(state.bodies.size(), false);

@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "contact/body_contact.h"
+#include "core/disjoint_sets.h"
 #include "core/execution.h"
 #include "core/slots.h"
 #include "mallow/simulation.h"
 #include "motion/motion.h"
 #include "motion/time_step.h"
 #include "particles/particle_store.h"
+#include "shape_matching/parts.h"
 #include "shape_matching/shape_matching.h"
 #include "simulation/near_origin.h"
 #include "sph/sph.h"
@@ -55,6 +57,7 @@ struct BodyState {
   bool yielded = false;  ///< its reference shape was updated since it was built
   bool enabled = true;   ///< see Simulation::enable()
   std::uint64_t user_data = 0;
+  std::optional<double> hit_impulse;  ///< see Simulation::report_contacts(): what says it there [N s]
   /// Those that fell asleep together share a number, that of the slot of one of them and 1, and wake
   /// together; 0: it is awake.
   std::uint32_t island = 0;
@@ -98,22 +101,41 @@ struct SinkState {
   bool outside = false;
 };
 
-/// Which bodies touch each other, by union and find; of bodies by their index.
+/// Who touches whom: a body, and a collider or a body of a greater id. In the order in which events tell of
+/// it.
+struct ContactKey {
+  std::uint64_t body;
+  bool of_bodies;
+  std::uint64_t other;
+  auto operator<=>(const ContactKey&) const = default;
+};
+
+/// Contacts that events() tells of.
+struct Contacts {
+  struct Lasting {
+    ContactKey key;
+    double apart = 0;  ///< for how long nothing has pushed [s]
+  };
+  std::optional<double> hit_impulse;  ///< of bodies that come [N s]
+  std::vector<Lasting> lasting;       ///< ascending
+
+  // Scratch.
+  struct Found {
+    ContactKey key;
+    std::size_t order;  ///< in which sums are taken
+    ContactSums sums;
+  };
+  std::vector<BodyTouch> touches;
+  std::vector<Found> found;
+  std::vector<Lasting> next;
+};
+
+/// Which bodies touch each other; of bodies by their index.
 struct Islands {
-  std::vector<std::uint32_t> of;
+  DisjointSets sets;
   // Scratch, by body and by number of the islands that sleep.
   std::vector<std::uint32_t> first_of_group, first_of_sleepers;
   std::vector<bool> rests;
-
-  std::uint32_t root(std::uint32_t body) {
-    while (of[body] != body) body = of[body] = of[of[body]];
-    return body;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    of[std::max(a, b)] = std::min(a, b);
-  }
 };
 
 /// All that a simulation is.
@@ -142,6 +164,7 @@ struct Simulation::State {
   std::uint64_t emitter_count = 0, sink_count = 0;  ///< that there have been
   std::vector<BodyEvent> events;                    ///< of the last step, and of calls before it
   std::vector<BodyEvent> next_events;               ///< of calls since then
+  Contacts contacts;
   ForceCallback force;
   Sph sph;
   VectorColumn user_acceleration;  ///< empty without a force callback
@@ -156,6 +179,7 @@ struct Simulation::State {
   std::vector<BodyState*> awake;  ///< bodies that move in the step under way
   // Scratch.
   RegionScratch region_scratch;
+  Parts parts_before, parts_after;  ///< of a body whose reference shape is updated
   MatchedBodies matched;  ///< those whose shape is matched in the step under way
   FastestInput fastest;
   MovingBodies moving;
@@ -209,6 +233,10 @@ struct Simulation::State {
   /// What has been slow for long falls asleep.
   bool bodies_sleep() const {
     return config.contact == BodyContact::constraint && config.sleep_speed.value_or(1) > 0;
+  }
+  /// Some contacts are told of.
+  bool reports_contacts() const {
+    return std::ranges::any_of(bodies, [](const BodyState& body) { return body.hit_impulse.has_value(); });
   }
   /// Of the pull towards goals, (1 − α)/(Δt0 Δt_SM) [1/s²]. [TK eq. 13]
   float stiffness(const MaterialState& material) const {
@@ -267,6 +295,8 @@ ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& re
 void move_bodies(Simulation::State& state, float time_step, const MotionPhases& phases);
 /// positions, predicted velocities -> those of bodies that touch. [model 2, section 4 C]
 void resolve_touching(Simulation::State& state, float time_step);
+/// impulses of the step -> events of contacts that begin, hit and end.
+void tell_contacts(Simulation::State& state, float time_step);
 /// next positions and velocities become the present ones; time, step and colliders move on.
 void finish_step(Simulation::State& state, const ChosenStep& step);
 

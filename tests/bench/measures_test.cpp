@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "core/disjoint_sets.h"
 #include "figures/connected_parts.h"
 #include "mallow/body.h"
 
@@ -29,7 +30,7 @@ TEST(connected_parts, are_told_by_gaps_and_come_largest_first) {
   EXPECT_EQ(connected_parts(points, 1.6f, 1), (std::vector<std::size_t>{64, 54, 4, 1}));
   EXPECT_EQ(connected_parts(points, 2.1f, 1), (std::vector<std::size_t>{68, 54, 1}));
   EXPECT_EQ(connected_parts(points, 2.1f, 2), (std::vector<std::size_t>{68, 54, 1}));
-  EXPECT_EQ(count_parts(connected_parts(points, 1.6f, 1)), 3) << "the single point is a crumb";
+  EXPECT_EQ(count_parts(connected_parts(points, 1.6f, 1)), 3u) << "the single point is a crumb";
   EXPECT_DOUBLE_EQ(largest_share(connected_parts(points, 1.6f, 1)), 64.0 / 123);
 }
 

@@ -64,7 +64,7 @@ struct Setup {
 
 /// Two groups that lie on each other in a box, with a pin, a force and a collider that moves. The box is
 /// there because the cell grid grows with what it spans, and a body that slides away spans ever more.
-/// Reference shapes are never updated.
+/// Reference shapes are never updated. Contacts are told of on two threads.
 Simulation scene(const Setup& setup) {
   Simulation s({.support_radius = 2.1f,
                 .update_interval = 7,
@@ -80,6 +80,7 @@ Simulation scene(const Setup& setup) {
   s.add_collider({.shape = Box{{-2, -2, -2}, {11, 11, 40}, true}, .friction = 0.3f});
   s.add_collider(
       {.shape = Union{{Box{{-4, -4, 0}, {-3, -3, 1}}, Sphere{{11, 4, 0}, 1}}}, .velocity = {0.001f, 0, 0}});
+  if (setup.threads > 1) s.report_contacts(0.0);
   s.pin(Aabb{{0, 0, 0}, {1, 1, 2}});
   s.set_force([](const ForceInput& in, VectorSpan a) {
     for (std::size_t i = 0; i < in.positions.size(); ++i) a.x()[i] += -0.001f * in.positions.x()[i];

@@ -30,6 +30,25 @@ double largest_energy(Simulation& simulation, int steps) {
   return largest;
 }
 
+TEST(energy, of_the_bodies_is_that_of_the_whole) {
+  Simulation s(solver());
+  Body thrown = cube(3, 9);
+  thrown.velocity = {0.2f, 0, 0.1f};
+  const BodyId bodies[] = {s.add_body(cube(5, 0.5f), Material{}),
+                           s.add_body(thrown, Material{.alpha = 0.4f, .particle_mass = 3.0f})};
+  s.add_collider({.shape = Plane{}});
+  for (int k = 0; k < 40; ++k) s.step();
+  const Energy whole = s.energy(), a = s.energy(bodies[0]), b = s.energy(bodies[1]);
+  EXPECT_GT(a.elastic, 0);
+  EXPECT_NEAR(a.elastic + b.elastic, whole.elastic, 1e-12 * whole.elastic);
+  EXPECT_NEAR(a.gravity + b.gravity, whole.gravity, 1e-12 * whole.gravity);
+  EXPECT_NEAR(a.conserved + b.conserved, whole.conserved, 1e-12 * whole.conserved);
+  for (const BodyId body : bodies)
+    EXPECT_NEAR(s.energy(body).kinetic, s.motion(body).kinetic_energy, 1e-6 * whole.kinetic);
+  EXPECT_NEAR(b.gravity, 27 * 3 * 0.3 * s.motion(bodies[1]).center_of_mass.z(), 1e-4);
+  EXPECT_THROW(s.energy(BodyId{2}), ConfigError);
+}
+
 // Model 2, section 4: what judges a motion is F, which an elastic body keeps at a constant step.
 TEST(energy, of_a_free_elastic_body_is_kept_at_every_step_up_to_the_elastic_limit) {
   for (const float pull : {0.5f, 1.0f, 2.25f, 2.5f}) {

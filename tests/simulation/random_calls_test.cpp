@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <random>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include "mallow/errors.h"
@@ -31,7 +33,7 @@ class Caller {
   void call() {
     const std::vector<BodyId> bodies = s_->bodies();
     const auto body = [&] { return bodies[pick(bodies.size())]; };
-    switch (pick(18)) {
+    switch (pick(20)) {
       case 0:
       case 1:
         if (bodies.size() < 12) add_body();
@@ -128,6 +130,18 @@ class Caller {
       case 17:
         s_->set_position(body(), {number(12), number(12), 20 + number(8)});
         break;
+      case 18:
+        if (pick(3) == 0)
+          s_->report_contacts(std::nullopt);
+        else
+          s_->report_contacts(5.0);
+        break;
+      case 19:
+        if (pick(3) == 0)
+          s_->report_contacts(body(), std::nullopt);
+        else
+          s_->report_contacts(body(), 0.0);
+        break;
       default:
         break;
     }
@@ -142,9 +156,20 @@ class Caller {
     });
   }
   void step() {
-    for (int k = 0; k < 4; ++k) s_->step();
+    for (int k = 0; k < 4; ++k) {
+      s_->step();
+      for (const BodyEvent& event : s_->events()) {
+        events_ << static_cast<int>(event.kind) << ' ' << static_cast<std::uint64_t>(event.body) << ' '
+                << event.parts << ' ' << static_cast<std::uint64_t>(event.other.value_or(BodyId{9999})) << ' '
+                << static_cast<std::uint64_t>(event.collider.value_or(ColliderId{9999})) << ' '
+                << event.position.transpose() << ' ' << event.normal.transpose() << ' '
+                << event.impulse.transpose() << ' ' << event.speed << '\n';
+      }
+    }
     if (s_->body_count() == 0) add_body();
   }
+  /// Of all steps, as text.
+  std::string events() const { return events_.str(); }
   void restart(int threads) { *s_ = Simulation::restore(s_->save(), threads); }
   const Simulation& simulation() const { return *s_; }
 
@@ -167,6 +192,7 @@ class Caller {
 
   std::mt19937 random_;
   std::unique_ptr<Simulation> s_;
+  std::ostringstream events_;
   std::vector<PinId> pins_;
   std::vector<EmitterId> emitters_;
   std::vector<SinkId> sinks_;
@@ -186,6 +212,7 @@ TEST(random_calls, leave_what_is_finite_and_the_same_bits_after_restores_on_any_
         other.step();
         ASSERT_EQ(one.simulation().particle_count(), other.simulation().particle_count()) << k;
         ASSERT_EQ(one.simulation().state_hash(), other.simulation().state_hash()) << k;
+        ASSERT_EQ(one.events(), other.events()) << k;
         for (std::size_t row = 0; row < one.simulation().particle_count(); ++row)
           ASSERT_LT(one.simulation().positions()[row].norm(), 1e4f) << k;
       }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "mallow/export.h"
 #include "mallow/ids.h"
 #include "mallow/instruction_level.h"
+#include "mallow/vec3.h"
 
 namespace mallow {
 
@@ -47,14 +49,28 @@ struct StepReport {
 
 /// What happened to a body: see Simulation::events().
 struct BodyEvent {
-  /// Each once, in this order.
   enum class Kind {
     slept,    ///< it is at rest and costs nothing from now on
     woke,     ///< it moves again
     yielded,  ///< its reference shape was updated [TK 3.2]
+    torn,     ///< that left it in more parts than it had
+    merged,   ///< that left it in fewer
+    touched,  ///< it touches what it did not; this and the next two where report_contacts() asks for it
+    hit,      ///< in this step it got at least the impulse that was asked for from what it touches
+    parted,   ///< it touches it no more
   };
   Kind kind;
   BodyId body;
+  /// Of torn and merged: those that it has now. Particles are in one part where they share a region of shape
+  /// matching, directly or through others; parts of fewer than four particles are crumbs and not counted.
+  std::size_t parts = 0;
+  std::optional<BodyId> other = {};         ///< of a contact between bodies, greater than `body`
+  std::optional<ColliderId> collider = {};  ///< of a contact with a collider
+  // Of touched and hit; what the particles that touch did in this step, in the mean by their impulses.
+  Vec3 position{0, 0, 0};  ///< between the two bodies, or on the collider [m]
+  Vec3 normal{0, 0, 0};    ///< unit length, from what is touched to `body`
+  Vec3 impulse{0, 0, 0};   ///< momentum that `body` got from it in the step, friction and all [N s]
+  float speed = 0;         ///< along the normal at which they came nearer before the step, >= 0 [m/s]
 };
 
 /// Energies of all particles that are not pinned [J]; see Simulation::energy().

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace mallow {
+
+/// What particles of a body got from what they touch, and the means of how they touched by how much each got.
+struct ContactSums {
+  double weight = 0;                  ///< Σ |j| [N s]
+  Eigen::Vector3d impulse{0, 0, 0};   ///< Σ j, what the body got [N s]
+  Eigen::Vector3d position{0, 0, 0};  ///< Σ |j| x [N s m]
+  Eigen::Vector3d velocity{0, 0, 0};  ///< Σ |j| v, v at the start of the step [N m]
+  Eigen::Vector3d normal{0, 0, 0};    ///< Σ |j| n, towards the body; 0 where nobody said it [N s]
+
+  void add(const Eigen::Vector3d& j, const Eigen::Vector3d& x, const Eigen::Vector3d& v,
+           const Eigen::Vector3d& n = {0, 0, 0}) {
+    const double share = j.norm();
+    weight += share;
+    impulse += j;
+    position += share * x;
+    velocity += share * v;
+    normal += share * n;
+  }
+  /// What `factor` times the mass would have got.
+  ContactSums times(double factor) const {
+    return {factor * weight, factor * impulse, factor * position, factor * velocity, factor * normal};
+  }
+  ContactSums& operator+=(const ContactSums& other) {
+    weight += other.weight;
+    impulse += other.impulse;
+    position += other.position;
+    velocity += other.velocity;
+    normal += other.normal;
+    return *this;
+  }
+  /// The same as the other body has it: what it got, and its velocity seen from this one.
+  ContactSums swapped() const { return {weight, -impulse, position, -velocity, -normal}; }
+};
+
+}  // namespace mallow
