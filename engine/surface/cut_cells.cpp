@@ -7,14 +7,11 @@
 namespace mallow {
 namespace {
 
-constexpr std::size_t k_blocks_at_once = 8;
-constexpr int k_side = k_block_side;
-
 /// By the nine voxels of a row, a bit each: voxels z and z + 1 in byte z.
 constexpr std::array<std::uint64_t, 512> k_pairs = [] {
   std::array<std::uint64_t, 512> pairs{};
   for (std::size_t row = 0; row < pairs.size(); ++row) {
-    std::array<std::uint8_t, k_side> bytes{};
+    std::array<std::uint8_t, k_block_side> bytes{};
     for (std::size_t z = 0; z < bytes.size(); ++z) bytes[z] = static_cast<std::uint8_t>(row >> z & 3);
     pairs[row] = std::bit_cast<std::uint64_t>(bytes);
   }
@@ -55,35 +52,36 @@ void CutCells::find_signs(const SurfaceField& field, std::size_t at) {
   const float* const distances = field.distances(block);
   for (std::size_t row = 0; row < signs_[at].size(); ++row) {
     unsigned bits = 0;
-    for (std::size_t z = 0; z < k_side; ++z) bits |= (distances[row * k_side + z] < 0 ? 1u : 0u) << z;
+    for (std::size_t z = 0; z < k_block_side; ++z)
+      bits |= (distances[row * k_block_side + z] < 0 ? 1u : 0u) << z;
     signs_[at][row] = static_cast<std::uint8_t>(bits);
   }
 }
 
 /// Which corners of a block's cells are inside.
 void CutCells::find_corners(const SurfaceField& field, std::size_t at) {
-  constexpr unsigned k_all = (1u << (k_side + 1)) - 1;
+  constexpr unsigned k_all = (1u << (k_block_side + 1)) - 1;
   // Nine voxels of nine by nine rows, a bit each.
-  unsigned rows[k_side + 1][k_side + 1];
-  for (int x = 0; x <= k_side; ++x) {
-    for (int y = 0; y <= k_side; ++y) {
-      const int row = x % k_side * k_side + y % k_side;
+  unsigned rows[k_block_side + 1][k_block_side + 1];
+  for (int x = 0; x <= k_block_side; ++x) {
+    for (int y = 0; y <= k_block_side; ++y) {
+      const int row = x % k_block_side * k_block_side + y % k_block_side;
       const auto bits = [&](int bz) -> unsigned {
-        const std::size_t slot = neighbor_slot(x / k_side, y / k_side, bz);
+        const std::size_t slot = neighbor_slot(x / k_block_side, y / k_block_side, bz);
         if (const std::uint32_t other = neighbors_[at][slot]; other != k_no_block)
           return signs_[other][static_cast<std::size_t>(row)];
         const std::uint32_t block = field.neighbors(blocks_[at])[slot];
         return block != k_no_block && field.kind(block) == BlockKind::inside ? 255 : 0;
       };
-      rows[x][y] = bits(0) | (bits(1) & 1) << k_side;
+      rows[x][y] = bits(0) | (bits(1) & 1) << k_block_side;
     }
   }
-  for (int x = 0; x < k_side; ++x) {
-    for (int y = 0; y < k_side; ++y) {
+  for (int x = 0; x < k_block_side; ++x) {
+    for (int y = 0; y < k_block_side; ++y) {
       std::uint8_t* const to = cells_[at].inside.data() + cell_at(x, y, 0);
       const unsigned a = rows[x][y], b = rows[x][y + 1], c = rows[x + 1][y], d = rows[x + 1][y + 1];
       if (a == b && a == c && a == d && (a == 0 || a == k_all)) {
-        std::memset(to, a == 0 ? 0 : 255, k_side);
+        std::memset(to, a == 0 ? 0 : 255, k_block_side);
         continue;
       }
       // Corners 0 and 1 are voxels z and z + 1 of row (x, y), and so on.
@@ -104,8 +102,8 @@ void CutCells::count(std::size_t at) {
       const int axis = face / 2, step = face % 2 ? 1 : -1;
       Eigen::Vector3i other(x, y, z), block(0, 0, 0);
       other[axis] += step;
-      if (other[axis] < 0 || other[axis] == k_side) block[axis] = step;
-      other[axis] = (other[axis] + k_side) % k_side;
+      if (other[axis] < 0 || other[axis] == k_block_side) block[axis] = step;
+      other[axis] = (other[axis] + k_block_side) % k_block_side;
       const auto there = cell_at(other.x(), other.y(), other.z());
       if (k_cell_patches[cells_[neighbors_[at][neighbor_slot(block.x(), block.y(), block.z())]].inside[there]]
               .twice == (face ^ 1))

@@ -9,9 +9,6 @@
 namespace mallow {
 namespace {
 
-constexpr std::size_t k_blocks_at_once = 8;
-constexpr int k_side = k_block_side;
-
 /// A block's distances with one more below and two above along each axis, z fastest.
 class Padded {
  public:
@@ -25,7 +22,7 @@ class Padded {
     struct Range {
       int from, count, to;
     };
-    constexpr Range k_ranges[3] = {{k_side - 1, 1, -1}, {0, k_side, 0}, {0, 2, k_side}};
+    constexpr Range k_ranges[3] = {{k_block_side - 1, 1, -1}, {0, k_block_side, 0}, {0, 2, k_block_side}};
     for (int bx = 0; bx < 3; ++bx) {
       for (int by = 0; by < 3; ++by) {
         const float* blocks[3];
@@ -36,10 +33,10 @@ class Padded {
           for (int y = 0; y < ry.count; ++y) {
             const std::size_t row = cell_at(rx.from + x, ry.from + y, 0);
             float* const to = voxel(rx.to + x, ry.to + y, 0);
-            to[-1] = blocks[0][row + k_side - 1];
-            std::memcpy(to, blocks[1] + row, k_side * sizeof(float));
-            to[k_side] = blocks[2][row];
-            to[k_side + 1] = blocks[2][row + 1];
+            to[-1] = blocks[0][row + k_block_side - 1];
+            std::memcpy(to, blocks[1] + row, k_block_side * sizeof(float));
+            to[k_block_side] = blocks[2][row];
+            to[k_block_side + 1] = blocks[2][row + 1];
           }
         }
       }
@@ -129,7 +126,7 @@ void DualMesher::place_vertices(const SurfaceField& field, std::size_t at, Mesh&
   if (cells.vertices == 0) return;
   const std::uint32_t block = cells_.blocks()[at];
   Padded padded(field, block);
-  const Eigen::Vector3d corner = k_side * field.blocks().blocks()[block].cast<double>();
+  const Eigen::Vector3d corner = k_block_side * field.blocks().blocks()[block].cast<double>();
   std::size_t next = cells.first_vertex;
   cells_.for_each_cut(at, [&](std::size_t cell, int x, int y, int z) {
     const float* const voxel = padded.voxel(x, y, z);
@@ -148,7 +145,7 @@ void DualMesher::write_triangles(std::size_t at, Mesh& mesh) const {
       mesh.triangles.data() + first_triangle_ + 2 * static_cast<std::size_t>(cells_.cells(at).first_quad);
   cells_.for_each_quad(at, [&](const std::array<QuadCorner, 4>& quad) {
     const auto place = [&](std::size_t k) -> Eigen::Vector3f {
-      return local_[quad[k].vertex] + (k_side * quad[k].block).cast<float>();
+      return local_[quad[k].vertex] + (k_block_side * quad[k].block).cast<float>();
     };
     // Along the shorter diagonal; ties, as on flat faces, are not left to rounding.
     const std::size_t first =
@@ -164,7 +161,7 @@ void DualMesher::finish_merged(const SurfaceField& field, MeshCounts& counts, Me
   std::vector<std::uint32_t> number(cells_.vertices());  // of a vertex that stays, in the mesh
   std::uint32_t kept = 0;
   for (BlockVertices& run : block_vertices_) {
-    const Eigen::Vector3d corner = k_side * field.blocks().blocks()[run.block].cast<double>();
+    const Eigen::Vector3d corner = k_block_side * field.blocks().blocks()[run.block].cast<double>();
     const std::uint32_t begin = run.first - first_vertex_, end = begin + run.count;
     run.first = first_vertex_ + kept;
     for (std::uint32_t v = begin; v < end; ++v) {

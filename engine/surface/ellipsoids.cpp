@@ -27,11 +27,6 @@ constexpr double k_lone = 0.15, k_shaped = 0.4;
 constexpr std::size_t k_layers = 20;
 constexpr std::size_t k_clusters_at_once = 16;
 
-const SurfaceLanes& lanes() {
-  static const InstructionLevel level = best_instruction_level();
-  return MALLOW_SELECT(level, surface_lanes);
-}
-
 /// A layer of particles taken as a sheet with one particle for each unit of its area, `d` from a point: the
 /// integrals over it of w = 1 − r³ and of w times the square of a coordinate in the sheet.
 struct SheetMoments {
@@ -73,6 +68,11 @@ Ellipsoid make_shape(const AnisotropyModel& model, const Eigen::Matrix3d& varian
 }
 
 }  // namespace
+
+const SurfaceLanes& best_surface_lanes() {
+  static const InstructionLevel level = best_instruction_level();
+  return MALLOW_SELECT(level, surface_lanes);
+}
 
 AnisotropyModel::AnisotropyModel(double radius, double particle_radius) {
   using Layers = std::array<double, k_layers>;
@@ -131,7 +131,8 @@ void Ellipsoids::fit(const AnisotropyModel& model, float radius, const Threads& 
             for (int a = 0; a < 3; ++a)
               x[a][i - places.begin] =
                   static_cast<float>((static_cast<double>(cells.position(i)[a]) - corner[a]) / r);
-          lanes().moments_at_points({x[0], x[1], x[2]}, k_cluster, near.positions(), near.count, moments[0]);
+          best_surface_lanes().moments_at_points({x[0], x[1], x[2]}, k_cluster, near.positions(), near.count,
+                                                 moments[0]);
           for (std::uint32_t i = places.begin; i < places.end; ++i) {
             const auto m = [&](std::size_t k) { return static_cast<double>(moments[k][i - places.begin]); };
             const Eigen::Vector3d mean = Eigen::Vector3d(m(1), m(2), m(3)) / m(0);

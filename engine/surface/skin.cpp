@@ -17,7 +17,7 @@
 namespace mallow {
 namespace {
 
-const SkinLanes& lanes() {
+const SkinLanes& best_skin_lanes() {
   static const InstructionLevel level = best_instruction_level();
   return MALLOW_SELECT(level, skin_lanes);
 }
@@ -182,8 +182,8 @@ void Skin::Work::take_reference(const Simulation& simulation, const VectorView& 
 
 void Skin::Work::blend(const Vec3& origin, std::vector<Vec3>& to_vertices, std::vector<Vec3>& to_normals) {
   parallel_for(threads, vertices.size(), [&](std::size_t begin, std::size_t end) {
-    lanes().blend(bindings.data(), motions.data(), origin.data(), floats(vertices), floats(normals), begin,
-                  end, floats(to_vertices), floats(to_normals));
+    best_skin_lanes().blend(bindings.data(), motions.data(), origin.data(), floats(vertices), floats(normals),
+                            begin, end, floats(to_vertices), floats(to_normals));
   });
 }
 

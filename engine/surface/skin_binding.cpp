@@ -9,6 +9,7 @@
 #include "core/checks.h"
 #include "core/parallel.h"
 #include "surface/particle_cells.h"
+#include "surface/surface_checks.h"
 
 namespace mallow {
 namespace {
@@ -18,17 +19,6 @@ constexpr float k_reach = 3;
 /// Square of the kernel's radius, by that of the distance to the nearest particle that does not carry the
 /// vertex: where the nearest nine are equally far, eight of them share the vertex.
 constexpr float k_beyond = 1.01f;
-
-std::string element(const char* column, std::size_t index) {
-  return column + ('[' + std::to_string(index) + ']');
-}
-
-/// The first that is not finite.
-void check_finite(const char* column, const std::vector<Vec3>& vectors, Checks& checks) {
-  const auto wrong = std::ranges::find_if(vectors, [](const Vec3& v) { return !v.allFinite(); });
-  if (wrong != vectors.end())
-    checks.vector(element(column, static_cast<std::size_t>(wrong - vectors.begin())), *wrong);
-}
 
 struct NearVertex {
   float square;  ///< of the distance, in reaches

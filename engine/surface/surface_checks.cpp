@@ -1,7 +1,6 @@
 #include "surface/surface_checks.h"
 
 #include <algorithm>
-#include <string>
 #include <vector>
 
 #include "config/field_checks.h"
@@ -10,19 +9,6 @@
 
 namespace mallow {
 namespace {
-
-std::string element(const char* name, std::size_t index) {
-  return name + ('[' + std::to_string(index) + ']');
-}
-
-/// The first vector that is not finite.
-void check_finite(const char* name, const StridedVectors& values, Checks& checks) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i].allFinite()) continue;
-    checks.vector(element(name, i), values[i]);
-    return;
-  }
-}
 
 void check_bodies(const SurfaceParticles& particles, Checks& checks) {
   const std::size_t n = particles.positions.size();
@@ -47,6 +33,18 @@ void check_bodies(const SurfaceParticles& particles, Checks& checks) {
 }
 
 }  // namespace
+
+std::string element(const char* column, std::size_t index) {
+  return column + ('[' + std::to_string(index) + ']');
+}
+
+void check_finite(const char* column, const StridedVectors& vectors, Checks& checks) {
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    if (vectors[i].allFinite()) continue;
+    checks.vector(element(column, i), vectors[i]);
+    return;
+  }
+}
 
 void check(const SurfaceConfig& config, int threads) {
   Checks checks;

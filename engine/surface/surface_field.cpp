@@ -12,9 +12,6 @@
 namespace mallow {
 namespace {
 
-/// Blocks that a thread takes at once.
-constexpr std::size_t k_blocks_at_once = 8;
-
 // Variance of particles about their mean that is taken for one part of a body, in squared kernel radii. A
 // face of a full body has 0.19 at a fullness of 0.46, its inside 0.27; a cubic lattice of 1.3 spacings 0.32
 // at 0.5. The middle of a gap of 2.2 spacings has 0.44 at 0.29, that of a pair 2.2 apart 0.30 at 0.13. With
@@ -71,10 +68,6 @@ int step_within(double distance) {
   return distance >= 4 ? 4 : distance >= 2 ? 2 : 1;
 }
 
-const SurfaceLanes& lanes() {
-  static const InstructionLevel level = best_instruction_level();
-  return MALLOW_SELECT(level, surface_lanes);
-}
 void find_neighbors(const BlockMap& blocks, const Threads& threads,
                     std::vector<std::array<std::uint32_t, 27>>& neighbors) {
   neighbors.resize(blocks.size());
@@ -216,15 +209,17 @@ void SurfaceField::find_distances(const VoxelLattice& points, const Near& near, 
   const std::size_t n = points.x.size();
   switch (surface_kind_) {
     case SurfaceKind::blended:
-      lanes().sum_at_points(points.points(), n, near.positions(), near.count, sums);
-      lanes().distances(shape_, sums, n, distances);
+      best_surface_lanes().sum_at_points(points.points(), n, near.positions(), near.count, sums);
+      best_surface_lanes().distances(shape_, sums, n, distances);
       break;
     case SurfaceKind::anisotropic:
-      lanes().density_at_points(points.points(), n, near.positions(), near.shapes.data(), near.count, sums);
-      lanes().density_distances(shape_, sums, n, distances);
+      best_surface_lanes().density_at_points(points.points(), n, near.positions(), near.shapes.data(),
+                                             near.count, sums);
+      best_surface_lanes().density_distances(shape_, sums, n, distances);
       break;
     case SurfaceKind::spheres:
-      lanes().sphere_distances(shape_, points.points(), n, near.positions(), near.count, distances);
+      best_surface_lanes().sphere_distances(shape_, points.points(), n, near.positions(), near.count,
+                                            distances);
       break;
   }
 }
@@ -333,8 +328,8 @@ void SurfaceField::sum_at_nodes(const Threads& threads) {
         for (std::size_t b = begin; b < end; ++b) {
           if (!needs_nodes_[b]) continue;
           find_near(static_cast<std::uint32_t>(b), near);
-          lanes().sum_at_points(points.points(), n, near.positions(), near.count,
-                                node_sums_.data() + node_place_[b]);
+          best_surface_lanes().sum_at_points(points.points(), n, near.positions(), near.count,
+                                             node_sums_.data() + node_place_[b]);
         }
       },
       k_blocks_at_once);
@@ -385,7 +380,7 @@ void SurfaceField::fill(const Threads& threads) {
           float* const to = distances_.data() + place_[b];
           if (node_step_ > 1) {
             collect_nodes(static_cast<std::uint32_t>(b), sums);
-            lanes().fill_block(shape_, weights_, sums, to);
+            best_surface_lanes().fill_block(shape_, weights_, sums, to);
             continue;
           }
           find_near(static_cast<std::uint32_t>(b), near);
@@ -454,7 +449,7 @@ void SurfaceField::mean_at(const Near& near, ConstVectors points, std::size_t n,
   const auto raw = [](const std::vector<float>(&axes)[3]) {
     return ConstVectors{axes[0].data(), axes[1].data(), axes[2].data()};
   };
-  lanes().mean_at_points(raw(scaled), n, near.positions(), raw(near_values), near.count, means);
+  best_surface_lanes().mean_at_points(raw(scaled), n, near.positions(), raw(near_values), near.count, means);
 }
 
 std::size_t SurfaceField::bytes() const {

@@ -73,5 +73,7 @@ struct SurfaceLanes {
                          std::size_t count, Vectors means) noexcept;
 };
 MALLOW_DECLARE_LEVELS(SurfaceLanes, surface_lanes)
+/// Those of best_instruction_level().
+const SurfaceLanes& best_surface_lanes();
 
 }  // namespace mallow

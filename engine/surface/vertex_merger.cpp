@@ -9,8 +9,6 @@
 namespace mallow {
 namespace {
 
-constexpr int k_side = k_block_side;
-constexpr std::size_t k_blocks_at_once = 8;
 /// Normals of merged vertices are at most 37 degrees off their mean, so that no triangle turns over.
 constexpr float k_least_cosine = 0.8f;
 
@@ -66,7 +64,8 @@ class CubeFinder {
  private:
   /// Whether a corner of the cells, 0 to 8 along each axis, is inside.
   bool is_inside(int x, int y, int z) const {
-    const int cx = std::min(x, k_side - 1), cy = std::min(y, k_side - 1), cz = std::min(z, k_side - 1);
+    const int cx = std::min(x, k_block_side - 1), cy = std::min(y, k_block_side - 1),
+              cz = std::min(z, k_block_side - 1);
     return cells_.inside[cell_at(cx, cy, cz)] >> ((x - cx) * 4 + (y - cy) * 2 + (z - cz)) & 1;
   }
 
@@ -166,7 +165,7 @@ void VertexMerger::merge_block(const CutCells& cells, std::size_t at, std::span<
 
 /// A corner's place, in voxels from the first one of the quad's block.
 Eigen::Vector3f VertexMerger::place_of(const QuadCorner& corner) const {
-  return places_[corner.vertex] + (k_side * corner.block).cast<float>();
+  return places_[corner.vertex] + (k_block_side * corner.block).cast<float>();
 }
 
 /// Above 0 where a triangle of a quad's corners faces the way its vertices do.
@@ -222,8 +221,9 @@ void VertexMerger::halve(const CutCells& cells, const std::vector<CellOfBlock>& 
     if (sides_[at][cell] != side) continue;  // a fold before this one was in the same cube
     const auto corner = [side = int{side}](std::uint32_t c) { return static_cast<int>(c) / side * side; };
     const BlockCells& block = cells.cells(at);
-    for_each_cell(side, corner(cell / (k_side * k_side)), corner(cell / k_side % k_side),
-                  corner(cell % k_side), [&, at = at, side = side](std::size_t c) {
+    for_each_cell(side, corner(cell / (k_block_side * k_block_side)),
+                  corner(cell / k_block_side % k_block_side), corner(cell % k_block_side),
+                  [&, at = at, side = side](std::size_t c) {
                     if (is_cut(block.inside[c])) sides_[at][c] = side / 2;
                   });
   }
@@ -250,7 +250,7 @@ void VertexMerger::merge(const CutCells& cells, float tolerance, const Threads& 
     sides_[at].fill(1);
     CubeFinder(block, places.subspan(block.first_vertex, block.vertices),
                normals.subspan(block.first_vertex, block.vertices), tolerance, sides_[at])
-        .find(k_side, 0, 0, 0);
+        .find(k_block_side, 0, 0, 0);
   });
   for (;;) {
     each([&](std::size_t at) { merge_block(cells, at, places, normals); });

@@ -110,9 +110,10 @@ TEST(emitter, leaves_what_others_have_pinned_and_gives_its_pin_back) {
   Simulation s(solver(0));
   const MaterialId jelly = s.add_material({});
   const EmitterId id = s.add_emitter(nozzle(0), jelly);
-  const PinId mine = s.pin(std::vector<ParticleId>{0, 1, 2}, {0, 0, -1});
+  const std::vector<ParticleId> held = {0, 1, 2};
+  const PinId mine = s.pin(held, {0, 0, -1});
   for (int k = 0; k < 60; ++k) s.step();
-  for (const ParticleId held : {0, 1, 2}) EXPECT_EQ(s.velocities()[s.row(held)], Vec3(0, 0, -1));
+  for (const ParticleId particle : held) EXPECT_EQ(s.velocities()[s.row(particle)], Vec3(0, 0, -1));
   s.remove_body(s.body(id));
   s.add_body(sample(Lattice{.count = {3, 3, 3}, .corner = {50, 0, 0}}), jelly);
   s.step();
