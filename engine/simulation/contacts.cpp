@@ -42,8 +42,9 @@ struct Sides {
   }
 };
 
-/// What touches in this step, in the order of events, each pair once.
-void find_touching(Simulation::State& s) {
+/// What touches in this step, in the order of events, each pair once. What walls press on a fluid that
+/// touches them is part of its impulse.
+void find_touching(Simulation::State& s, double time_step) {
   std::vector<Contacts::Found>& found = s.contacts.found;
   found.clear();
   const auto add = [&](const ContactKey& key, const ContactSums& sums) {
@@ -58,6 +59,15 @@ void find_touching(Simulation::State& s) {
       const BodyState& body = *s.awake[moving.blocks.blocks[b].range];
       add({static_cast<std::uint64_t>(body.id), false, s.collider_ids[c]},
           sums.times(static_cast<double>(body.mass)));
+    }
+  const Walls& walls = s.sph.walls;
+  if (s.walls() && walls.any && !walls.loads.empty())
+    for (std::size_t k = 0; k < walls.partial_loads.size(); ++k) {
+      const std::size_t c = k % walls.loads.size(), block = k / walls.loads.size();
+      const BodyState& body = s.body_of(walls.bodies[walls.blocks.blocks[block].range].begin);
+      const Vec pressed = -time_step * walls.partial_loads[k].impulse;
+      if (!pressed.isZero(0))
+        add({static_cast<std::uint64_t>(body.id), false, s.collider_ids[c]}, {.impulse = pressed});
     }
   s.contacts.touches.clear();
   if (s.bodies_touch() && !s.awake.empty())
@@ -80,6 +90,7 @@ void find_touching(Simulation::State& s) {
     else
       found[count++] = part;
   found.resize(count);
+  std::erase_if(found, [](const Contacts::Found& one) { return !(one.sums.weight > 0); });
 }
 
 BodyEvent event_of(BodyEvent::Kind kind, const ContactKey& key) {
@@ -122,7 +133,7 @@ void check_impulse(std::optional<double> hit_impulse) {
 void tell_contacts(Simulation::State& state, float time_step) {
   Contacts& contacts = state.contacts;
   if (!state.reports_contacts() && contacts.lasting.empty()) return;
-  find_touching(state);
+  find_touching(state, static_cast<double>(time_step));
   contacts.next.clear();
   auto found = contacts.found.begin();
   // One that touches; was: whether it did before.

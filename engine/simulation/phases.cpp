@@ -265,9 +265,12 @@ void press_walls(Simulation::State& state) {
   Sph& sph = state.sph;
   if (sph.walls.bodies.empty()) return;
   const ParticleStore& store = state.store;
-  press_walls(
-      {store.position, sph.density_by_row, sph.acceleration, store.pin.empty() ? nullptr : store.pin.data()},
-      state.placed_colliders, state.execution, sph.walls);
+  press_walls({.position = store.position,
+               .density = sph.density_by_row,
+               .sph_acceleration = sph.acceleration,
+               .pin = store.pin.empty() ? nullptr : store.pin.data(),
+               .all_loads = state.reports_contacts()},
+              state.placed_colliders, state.execution, sph.walls);
 }
 
 void call_force(Simulation::State& state) {

@@ -125,7 +125,7 @@ void find_walls(const VectorColumn& position, const VectorColumn& velocity,
 
 void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders, const Execution& execution,
                  Walls& walls) {
-  const std::size_t count = any_measures_load(colliders) ? colliders.size() : 0;
+  const std::size_t count = in.all_loads || any_measures_load(colliders) ? colliders.size() : 0;
   walls.loads.assign(count, {});
   if (!walls.any) return;
   walls.partial_loads.assign(count * walls.blocks.blocks.size(), {});
@@ -140,7 +140,8 @@ void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders,
       const Vec3 a = in.sph_acceleration.get(row), &n = wall.normal;
       const Vec3 push = body.alpha * (across * n + along * (a - a.dot(n) * n));
       walls.acceleration.set(row, walls.acceleration.get(row) + push);
-      if (count == 0 || !colliders[wall.collider].measures_load || (in.pin && in.pin[row] != 0)) continue;
+      const bool loads = in.all_loads || colliders[wall.collider].measures_load;
+      if (!loads || (in.pin && in.pin[row] != 0)) continue;
       ColliderLoad& load = walls.partial_loads[number * count + wall.collider];
       const Eigen::Vector3d given = -static_cast<double>(body.mass) * push.cast<double>();
       const Vec3 arm = in.position.get(row) - Vec3(colliders[wall.collider].surface.translation);

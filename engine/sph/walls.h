@@ -37,7 +37,7 @@ struct Walls {
   /// By row of the particle store, 0 where no wall is near; read only where there is any.
   Column<float> share;              ///< S of all that are near
   VectorColumn acceleration;        ///< a^wall, part of a_ext [m/s²]
-  std::vector<ColliderLoad> loads;  ///< what they get of it a second [N, N m]; empty where none measures it
+  std::vector<ColliderLoad> loads;  ///< what they get of it a second [N, N m]; empty where nobody asks
 
   // Scratch, by block of `bodies`.
   struct Wall {
@@ -50,7 +50,7 @@ struct Walls {
   RangeBlocks blocks;
   std::vector<std::vector<NearWall>> near;
   std::vector<std::vector<Wall>> walls;
-  std::vector<ColliderLoad> partial_loads;
+  std::vector<ColliderLoad> partial_loads;  ///< by block, and in it by collider
 
   void release();
   std::size_t bytes() const;
@@ -67,6 +67,7 @@ struct WallInput {
   const Column<float>& density;          ///< ρ [kg/m³]
   const VectorColumn& sph_acceleration;  ///< a^SPH [m/s²]
   const std::uint16_t* pin;              ///< rows whose pin is not 0 give no load; null: all do
+  bool all_loads;                        ///< of colliders that do not measure theirs too
 };
 /// ρ, a^SPH -> a^wall and loads. A negative pressure counts as none: walls hold nothing back.
 void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders, const Execution& execution,
