@@ -34,8 +34,8 @@ void close_gaps(T* values, std::size_t size, std::span<const std::uint32_t> plac
 }
 
 /// One quantity of all particles: an array on cache line boundaries whose capacity is a whole number of lane
-/// blocks. What lies between size() and the end of its last block is zero, so that lanes need no tail; the
-/// cache line behind may be read, so that they may load lanes from any value on.
+/// blocks. What lies between size() and the end of its last block is zero, so that lanes need no tail; so is
+/// the cache line behind, so that they may load lanes from any value on.
 template <class T>
 class Column {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -62,9 +62,7 @@ class Column {
   /// any, or what gets a little longer in every step would be allocated anew in every step: see release().
   void resize(std::size_t size) {
     if (padded(size) > capacity_) grow(with_room(padded(size)));
-    if (padded(size) > size_)
-      std::memset(static_cast<void*>(data_ + size_), 0, (padded(size) - size_) * sizeof(T));
-    if (size < size_) std::memset(static_cast<void*>(data_ + size), 0, (padded(size) - size) * sizeof(T));
+    clear(std::min(size, size_), size);
     size_ = size;
   }
   /// Keeps nothing: values are whatever they are, only the padding is zero. For columns that are written
@@ -75,8 +73,7 @@ class Column {
       release();
       grow(capacity);
     }
-    // An empty column may have no memory at all, which memset may not be given.
-    if (size > 0) std::memset(static_cast<void*>(data_ + size), 0, (padded(size) - size) * sizeof(T));
+    clear(size, size);
     size_ = size;
   }
   /// Opens a gap of `count` zeros before the value `at`.
@@ -117,9 +114,14 @@ class Column {
     return std::max(capacity, padded(capacity_ + capacity_ / 4));
   }
 
+  /// Zeros from the value `first` to the end of what lanes may read of `size` values.
+  void clear(std::size_t first, std::size_t size) {
+    // An empty column may have no memory at all, which memset may not be given.
+    if (data_)
+      std::memset(static_cast<void*>(data_ + first), 0, (padded(size) - first) * sizeof(T) + k_read_ahead);
+  }
   void grow(std::size_t capacity) {
     T* data = static_cast<T*>(allocate_column(allocated(capacity)));
-    std::memset(static_cast<void*>(data + capacity), 0, k_read_ahead);
     if (size_ > 0) std::memcpy(static_cast<void*>(data), data_, size_ * sizeof(T));
     const std::size_t size = size_;
     release();
@@ -143,8 +145,8 @@ class VectorColumn {
   void resize(std::size_t size) {
     if (padded(size) > stride_) grow(std::max(padded(size), padded(stride_ + stride_ / 4)));
     for (std::size_t axis = 0; axis < 3 && stride_ > 0; ++axis)
-      std::fill(this->axis(axis) + std::min(size, size_), this->axis(axis) + padded(std::max(size, size_)),
-                0.0f);
+      std::fill(this->axis(axis) + std::min(size, size_),
+                this->axis(axis) + std::min(stride_, padded(std::max(size, size_)) + k_lanes), 0.0f);
     size_ = size;
   }
   /// Keeps nothing: see Column::resize_unset.

@@ -73,6 +73,21 @@ TEST(column, opens_and_closes_gaps_and_keeps_its_padding_zero) {
   }
 }
 
+TEST(column, has_zeros_in_the_cache_line_behind_its_last_block) {
+  Column<float> shrunk(64), unset(64);
+  VectorColumn vectors(64);
+  for (Column<float>* column : {&shrunk, &unset}) std::fill(column->begin(), column->end(), 1.0f);
+  for (std::size_t i = 0; i < 64; ++i) vectors.set(i, Vec3::Ones());
+  shrunk.resize(20);
+  unset.resize_unset(20);
+  vectors.resize(20);
+  for (std::size_t i = 20; i < padded(20) + k_lanes; ++i) {
+    EXPECT_EQ(shrunk.data()[i], 0.0f) << i;
+    EXPECT_EQ(unset.data()[i], 0.0f) << i;
+    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(vectors.axis(axis)[i], 0.0f) << i;
+  }
+}
+
 TEST(vector_column, keeps_all_three_axes_when_the_stride_changes) {
   VectorColumn column(3);
   for (std::size_t i = 0; i < 3; ++i) column.set(i, Vec3(1, 2, 3) * static_cast<float>(i + 1));
