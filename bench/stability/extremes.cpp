@@ -91,6 +91,8 @@ class Catalogue {
       Trial t = trial;
       t.spacing = setup.body.spacing;
       t.mass = setup.material.particle_mass.value_or(1.0f);
+      t.other_mass = setup.other_mass;
+      if (!setup.other.positions.empty()) t.other_begin = setup.body.positions.size();
       t.is_free = setup.config.gravity.isZero() && setup.colliders.empty();
       t.build = [setup] { return setup.build(); };
       list_.push_back({name, alpha, t});

@@ -20,7 +20,7 @@ Sums sums(const Simulation& simulation, const Trial& trial) {
   const Eigen::Vector3d gravity = simulation.config().gravity.cast<double>();
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Eigen::Vector3d xi = x[i].cast<double>(), vi = v[i].cast<double>();
-    const double m = static_cast<double>(trial.mass);
+    const double m = static_cast<double>(i < trial.other_begin ? trial.mass : trial.other_mass);
     s.finite = s.finite && xi.allFinite() && vi.allFinite();
     s.kinetic += 0.5 * m * vi.squaredNorm();
     s.potential += m * gravity.norm() * (xi.z() - static_cast<double>(trial.floor));
@@ -83,7 +83,8 @@ Outcome run(const Trial& trial) {
                         static_cast<double>(*simulation.config().time_step / trial.spacing);
     if (trial.is_free) {
       outcome.momentum_drift = ratio((end.momentum - start.momentum).norm(), start.speed);
-      outcome.angular_drift = ratio((end.angular - start.angular).norm(), start.moment);
+      if (trial.other_begin == SIZE_MAX)
+        outcome.angular_drift = ratio((end.angular - start.angular).norm(), start.moment);
     }
   } catch (const ConfigError& error) {
     outcome.verdict = Verdict::refused;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -25,8 +26,11 @@ struct Trial {
   std::function<void(Simulation&, int step)> before_step = {};
   float spacing = 1;     ///< of the particles [m], what distances are compared with
   float mass = 1;        ///< of a particle [kg]
+  float other_mass = 1;  ///< of one of a second body, whose rows begin at `other_begin` [kg]
+  std::size_t other_begin = SIZE_MAX;
   float floor = 0;       ///< height that nothing falls below [m]; where there is gravity
-  bool is_free = false;  ///< nothing acts from outside: momentum has to stay
+  bool is_free = false;  ///< nothing acts from outside: momentum has to stay, and spin
+                         ///< where there is one body: those that touch rub between points apart
   /// Work that something outside may do on the particles, relative to their energy at the start. 0.5 leaves
   /// room for what falls onto others.
   double energy_room = 0.5;

@@ -69,7 +69,7 @@ const Case k_cases[] = {
      "scene.toml:4:8: material[0].name: 3 is not allowed: a string"},
     {{.material = "name = \"jelly\"\nalpha = 2024-01-01"},
      "scene.toml:5:9: material[0].alpha: a date or time is not allowed: a number in [0, 1], or [[time, "
-     "alpha], ...] "
+     "number], ...] "
      "with times that increase and numbers in [0, 1]"},
     {{.source = "box = 3"}, "scene.toml:7:7: body[0].box: 3 is not allowed: a table"},
     {{.rest = "[collider]\nplane = {}"},
@@ -102,7 +102,7 @@ const Case k_cases[] = {
      "scene.toml:5:22: material[0].alpha[1]: 0.5 is not allowed: two numbers [time, number]"},
     {{.material = "name = \"jelly\"\nalpha = []"},
      "scene.toml:5:9: material[0].alpha: an array of 0 is not allowed: a number in [0, 1], or [[time, "
-     "alpha], ...] "
+     "number], ...] "
      "with times that increase and numbers in [0, 1]"},
     {{.solver = "support_radius = 2.0\nrotation_iterations = 9"},
      "scene.toml:3:23: solver.rotation_iterations: 9 is not allowed: a whole number in [0, 8]"},
