@@ -84,7 +84,9 @@ box = { min = [15, -5, -5], max = [30, 9, 30] }
   running.send(SIGINT);
   running.wait();
   const int frames = static_cast<int>(names_in(folder_ / "sunk/particles").size());
-  ASSERT_EQ(resume("sunk", {"--frames", std::to_string(frames + 3)}).exit_code, 0);
+  const Outcome longer = resume("sunk", {"--frames", std::to_string(frames + 3)});
+  ASSERT_EQ(longer.exit_code, 0);
+  EXPECT_TRUE(longer.out.starts_with("particles 64\n")) << longer.out;
   EXPECT_EQ(read_json(folder_ / "sunk/report.json").at("groups").size(), 2u);
   EXPECT_EQ(run_mallow({"surface", at("sunk")}).exit_code, 0);
 }

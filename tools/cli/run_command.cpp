@@ -259,10 +259,11 @@ void run_stages(const RunOptions& options, Run& run) {
   make_film(options.film, *cache, run.scene.render.frames_per_second, run.plan.threads);
 }
 
-void print_result(const program::Cache* cache, const program::RunReport& report) {
+/// particles: at the end, when some have come or gone.
+void print_result(const program::Cache* cache, const program::RunReport& report, std::size_t particles) {
   std::printf("particles %zu\nframes %d\nsteps %lld\nsimulated_time %.9g\nstate_hash %s\n",
-              report.info.particles, report.frames, static_cast<long long>(report.steps),
-              report.simulated_time, program::hash_text(report.state_hash).c_str());
+              particles, report.frames, static_cast<long long>(report.steps), report.simulated_time,
+              program::hash_text(report.state_hash).c_str());
   if (cache) std::printf("summary %s\n", cache->summary_file().c_str());
 }
 
@@ -298,7 +299,7 @@ void run(const RunOptions& options) {
     }
     throw program::RunFailure(failure.what());
   }
-  print_result(out, run.report);
+  print_result(out, run.report, run.simulation->particle_count());
   require_film(options.film);
 }
 
