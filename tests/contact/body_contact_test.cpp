@@ -91,6 +91,21 @@ TEST(body_contact, four_cubes_stand_where_their_weight_is_small) {
   }
 }
 
+TEST(body_contact, four_cubes_in_a_bin_come_to_rest_and_sleep_whatever_alpha) {
+  for (const float alpha : {0.0f, 0.3f, 0.7f, 0.95f}) {
+    SCOPED_TRACE(alpha);
+    Simulation s(solver(0.3f));
+    for (int k = 0; k < 4; ++k)
+      s.add_body(box({8, 8, 8}, {-4, -4, 8.2f * static_cast<float>(k)}), material(alpha));
+    s.add_collider({.shape = Plane{}, .friction = 0.5f});
+    s.add_collider({.shape = Box{{-4.6f, -4.6f, -5}, {4.6f, 4.6f, 100}, true}, .friction = 0.3f});
+    run(s, 240);
+    for (const BodyId body : s.bodies()) EXPECT_FALSE(s.is_awake(body));
+    const std::vector<Vec> at = centers(s);
+    for (std::size_t k = 1; k < at.size(); ++k) EXPECT_GT(at[k].z() - at[k - 1].z(), 5);
+  }
+}
+
 TEST(body_contact, a_pyramid_of_ten_stands_and_falls_asleep) {
   Simulation s(solver(0.1f));
   s.add_collider({.shape = Plane{}, .friction = 0.5f});
