@@ -46,7 +46,8 @@ std::vector<DriftScene> drift_scenes() {
     DriftScene scene;
     scene.name = name;
     // The paper's numbers, the same with gravity and without.
-    scene.config = {.time_step = 0.15f, .support_radius = 2.1f, .update_interval = 60, .sleep_speed = 0.0f, .threads = 1};
+    scene.config = {
+        .time_step = 0.15f, .support_radius = 2.1f, .update_interval = 60, .sleep_speed = 0.0f, .threads = 1};
     scene.config.wall_pressure = false;  // the textbook has none
     scene.material = {.alpha = alpha,
                       .update_threshold = 12.0f,

@@ -28,14 +28,14 @@ float find_acting(const Execution& execution, const ContactLanes& lanes, Contact
   pairs.partial_miss.assign(pairs.blocks.size(), 0);
   parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
     BlockPairs& block = pairs.blocks[number];
-    pairs.partial_miss[number] = lanes.acting(pairs.rows().velocities, block.columns(), block.count,
-                                              pairs.acts.data() + block.first);
+    pairs.partial_miss[number] =
+        lanes.acting(pairs.rows().velocities, block.columns(), block.count, pairs.acts.data() + block.first);
   });
   return std::ranges::max(pairs.partial_miss);
 }
 
-/// One round of impulses. Each particle shares its mass between its pairs that act, so that all of them together
-/// do not overshoot.
+/// One round of impulses. Each particle shares its mass between its pairs that act, so that all of them
+/// together do not overshoot.
 void push_apart(const Execution& execution, const ContactLanes& lanes, ContactPairs& pairs) {
   parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
     for_touching(pairs.sides[number], [&](std::uint32_t i, std::span<const BlockSides::Side> sides) {

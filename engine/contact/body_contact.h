@@ -2,7 +2,6 @@
 
 #include "contact/contact_pairs.h"
 #include "core/contact_sums.h"
-#include "core/contact_sums.h"
 
 namespace mallow {
 

@@ -118,8 +118,8 @@ MALLOW_INLINE Floats turn(const Floats& along, const Floats& depth, const Floats
   return s * s * (3 - 2 * s) * clamped((depth / spacing - 0.1f) / 0.15f, 0, 1);
 }
 
-/// The way from the second body to the first, and the distance along it beyond that at which they touch; meets
-/// where they meet this way. Swapped points have the opposite normal and the same gap, to the bit.
+/// The way from the second body to the first, and the distance along it beyond that at which they touch;
+/// meets where they meet this way. Swapped points have the opposite normal and the same gap, to the bit.
 struct Meeting {
   ClusterVec3 normal;
   Floats gap;
@@ -134,8 +134,8 @@ MALLOW_INLINE Meeting meeting_of(const Row& i, const Row& j, const ClusterVec3& 
                turn_j = turn(dot(j.vector, line), j.number, spacing), most = larger(turn_i, turn_j);
   const Ints turns = is_larger(most, Floats{});
   if (!any(turns)) return {line, distance - spacing, ~Ints{}};
-  // The flatter side wins: its particles have more of their body on one side. Where there is no depth there is
-  // no turn either.
+  // The flatter side wins: its particles have more of their body on one side. Where there is no depth there
+  // is no turn either.
   const Floats cube_i = i.number * i.number * i.number, cube_j = j.number * j.number * j.number;
   const Floats weight_i = turn_i * (is_larger(cube_j, Floats{}) ? cube_j : all(1)),
                weight_j = turn_j * (is_larger(cube_i, Floats{}) ? cube_i : all(1));
@@ -160,13 +160,13 @@ std::size_t add_pairs(const ContactRows& of, const PairStep& step, std::uint32_t
         squared(velocity(of.velocities, own + k).vector - velocity(of.velocities, other + k).vector));
     const Floats most = step.time_step * closing + step.pushed, along = spacing + most;
     // In one point nothing says which way.
-    Ints touch = is_at_most(square, across * across + along * along) &
-                 is_larger(square, 1e-12f * spacing * spacing);
+    Ints touch =
+        is_at_most(square, across * across + along * along) & is_larger(square, 1e-12f * spacing * spacing);
     if (!any(touch)) continue;
-    const Meeting meeting =
-        meeting_of(outward(of, own + k), outward(of, other + k), r, square, spacing);
+    const Meeting meeting = meeting_of(outward(of, own + k), outward(of, other + k), r, square, spacing);
     const Matter i = matter(of, own + k), j = matter(of, other + k);
-    touch &= meeting.meets & is_at_most(meeting.gap, most) & is_larger(i.inverse_mass + j.inverse_mass, Floats{});
+    touch &=
+        meeting.meets & is_at_most(meeting.gap, most) & is_larger(i.inverse_mass + j.inverse_mass, Floats{});
     const Floats closes = -meeting.gap / step.time_step, slop = k_slop * spacing / step.time_step;
     const Floats target =
         is_larger(Floats{}, meeting.gap) ? clamped(k_correction * (closes - slop), 0, step.max_push) : closes;
@@ -206,7 +206,8 @@ float acting(const float* velocities, const PairColumns& pairs, std::size_t n, f
   Floats most = {};
   for (std::size_t k = 0; k < n; k += k_cluster) {
     const Closing c = closing_of(velocities, pairs, k);
-    const Ints act = (is_larger(c.target, c.along) | is_larger(c.sticks, Floats{})) & (k_count < static_cast<int>(n - k));
+    const Ints act =
+        (is_larger(c.target, c.along) | is_larger(c.sticks, Floats{})) & (k_count < static_cast<int>(n - k));
     store(where(act, all(1)), acts + k);
     const Floats miss = c.target - c.along;
     most = larger(where(act, larger(miss, -miss)), most);
@@ -228,10 +229,10 @@ void impulses(const float* velocities, const PairColumns& pairs, std::size_t n, 
     const Floats push = larger(mass * (c.target - c.along), -c.sticks);
     const ClusterVec3 slip = c.velocity - c.along * c.normal;
     const Floats speed = square_root(squared(slip));
-    const Floats rub =
-        smaller(load(pairs.friction + k) * (larger(push, Floats{}) + c.sticks), mass * speed);
+    const Floats rub = smaller(load(pairs.friction + k) * (larger(push, Floats{}) + c.sticks), mass * speed);
     const Floats per_speed = where(is_larger(speed, Floats{}), rub / speed);
-    const ClusterVec3 impulse = where(is_larger(load(acts + k), Floats{}), push * c.normal - per_speed * slip);
+    const ClusterVec3 impulse =
+        where(is_larger(load(acts + k), Floats{}), push * c.normal - per_speed * slip);
     Floats numbers[4] = {impulse.x, impulse.y, impulse.z, Floats{}};
     store_rows(numbers, rows + 4 * k);
     if (any(is_larger(c.sticks, Floats{})))

@@ -110,8 +110,8 @@ void find_candidates(const ContactPairs& pairs, std::size_t number, const Aabb& 
   }
 }
 
-/// The pairs of the points of a block with those of later ones: those of a few points at a time, which lie side by side, are tried with
-/// what is near all of these.
+/// The pairs of the points of a block with those of later ones. A few points at a time, which lie side by
+/// side, are tried with what is near all of them.
 void find_pairs(std::size_t number, const PairStep& step, const ContactLanes& lanes, ContactPairs& pairs) {
   const NearBlocks& near = pairs.near;
   const std::uint32_t begin = near.first_point[number], end = near.first_point[number + 1];
@@ -145,8 +145,8 @@ void find_pairs(std::size_t number, const PairStep& step, const ContactLanes& la
       count += found;
     }
     block.reserve(block.count + count);
-    block.count = lanes.add_pairs(pairs.rows(), step, first.data(), second.data(), count, block.columns(),
-                                  block.count);
+    block.count =
+        lanes.add_pairs(pairs.rows(), step, first.data(), second.data(), count, block.columns(), block.count);
   }
 }
 

@@ -39,8 +39,8 @@ struct BlockPairs {
   std::size_t bytes() const;
 };
 
-/// The points of one block that have pairs, and for each which, one point's behind the other's: those in which
-/// it is the first, then those in which it is the second.
+/// The points of one block that have pairs, and for each which, one point's behind the other's: those in
+/// which it is the first, then those in which it is the second.
 struct BlockSides {
   struct Touching {
     std::uint32_t point, end;
@@ -65,8 +65,8 @@ struct ContactPairs {
   std::vector<ContactVelocity> shared_velocity;  ///< the same, with the shares of a round
   VectorColumn positions;
   // By pair, of a round.
-  Column<float> acts;      ///< 1 or 0
-  Column<float> impulses;  ///< on the first point, rows of four: three, and nothing [N s]
+  Column<float> acts;       ///< 1 or 0
+  Column<float> impulses;   ///< on the first point, rows of four: three, and nothing [N s]
   bool keeps_sums = false;  ///< somebody asks what pairs gave
   Column<float> sums;       ///< of the impulses of all rounds; empty where nobody asks
 
