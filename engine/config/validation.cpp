@@ -104,6 +104,11 @@ void check(const Emitter& emitter, Checks& checks) {
   constexpr double k_most_points = 1e6;
   if (area > k_most_points * static_cast<double>(emitter.spacing) * static_cast<double>(emitter.spacing))
     checks.problem("emitter.spacing", "makes layers of over a million particles");
+  if (emitter.start && emitter.stop && *emitter.stop <= *emitter.start) {
+    std::ostringstream text;
+    text << *emitter.stop << " is not allowed: after start, " << *emitter.start << " s, or it never flows";
+    checks.problem("emitter.stop", text.str());
+  }
   for (const Vec3& x : emitter.points)
     if (!x.allFinite()) return checks.vector("emitter.points", x);
 }

@@ -51,6 +51,7 @@ struct TimeStepLimits {
     float coefficient;          ///< α k, or k where it pushes other bodies [m²/s²]
     float kinematic_viscosity;  ///< α μ/ρ0, or μ/ρ0 likewise [m²/s]
     float stiffness;            ///< (1 − α)/(Δt0 Δt_SM) [1/s²]
+    float pull = 0;             ///< of `coefficient` what draws, α k times cohesion [m²/s²]
     float damping_time = 0;     ///< τ [s]
     float damping_rate = 0;     ///< ζ, where it is given [1/s]
   };

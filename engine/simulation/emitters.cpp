@@ -1,6 +1,8 @@
 // Strands that leave nozzles, and what sinks take away. [model 2, section 6]
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "colliders/collider_checks.h"
@@ -33,23 +35,58 @@ double noise(std::uint64_t x) {
   return static_cast<double>((x ^ (x >> 31)) >> 32) / 2147483648.0 - 1;
 }
 
+/// Points of a lattice around the origin, h apart.
+std::vector<Vec> lattice(std::size_t columns, std::size_t rows, double h) {
+  std::vector<Vec> points;
+  for (std::size_t b = 0; b < rows; ++b)
+    for (std::size_t a = 0; a < columns; ++a)
+      points.emplace_back(h * (static_cast<double>(a) - 0.5 * static_cast<double>(columns - 1)),
+                          h * (static_cast<double>(b) - 0.5 * static_cast<double>(rows - 1)), 0);
+  return points;
+}
+
+/// As many points, each for h², as come nearest to the area of a disc: those within some radius, of a lattice
+/// with a point in the middle, or with none there.
+std::vector<Vec> disc(double radius, double h) {
+  const double wanted = std::numbers::pi * radius * radius / (h * h);
+  const auto half = static_cast<std::size_t>(std::ceil(radius / h)) + 1;
+  std::vector<Vec> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t side : {2 * half + 1, 2 * half}) {
+    std::vector<Vec> points = lattice(side, side, h);
+    std::ranges::stable_sort(points, {},
+                             [&](const Vec& x) { return std::round(x.squaredNorm() / (h * h) * 4); });
+    for (std::size_t n = 1; n < points.size(); ++n) {
+      const bool shell_ends = points[n].squaredNorm() - points[n - 1].squaredNorm() > 0.1 * h * h;
+      const double off = std::abs(static_cast<double>(n) - wanted);
+      if (!shell_ends || off >= least) continue;
+      least = off;
+      best.assign(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n));
+    }
+  }
+  return best;
+}
+
+/// The same of a rectangle, of whole rows and columns.
+std::vector<Vec> rectangle(double width, double height, double h) {
+  const double wanted = width * height / (h * h);
+  std::array<double, 2> best{1, 1};
+  for (const double columns : {std::floor(width / h + 1e-3), std::ceil(width / h - 1e-3)})
+    for (const double rows : {std::floor(height / h + 1e-3), std::ceil(height / h - 1e-3)})
+      if (columns >= 1 && rows >= 1 &&
+          std::abs(columns * rows - wanted) < std::abs(best[0] * best[1] - wanted))
+        best = {columns, rows};
+  return lattice(static_cast<std::size_t>(best[0]), static_cast<std::size_t>(best[1]), h);
+}
+
 /// Points of a layer across the flow, in the frame of the nozzle.
 std::vector<Vec> section(const Emitter& emitter) {
+  const double h = static_cast<double>(emitter.spacing);
+  if (emitter.radius) return disc(static_cast<double>(*emitter.radius), h);
+  if (emitter.width)
+    return rectangle(static_cast<double>(*emitter.width), static_cast<double>(*emitter.height), h);
   std::vector<Vec> points;
   for (const Vec3& x : emitter.points) points.emplace_back(x.x(), x.y(), 0);
-  if (!points.empty()) return points;
-  const double h = static_cast<double>(emitter.spacing);
-  const double width =
-      emitter.radius ? 2 * static_cast<double>(*emitter.radius) : static_cast<double>(*emitter.width);
-  const double height = emitter.radius ? width : static_cast<double>(*emitter.height);
-  // A lattice in the middle of it, of whole cells.
-  const auto cells = [&](double side) { return std::max(1.0, std::floor(side / h + 1e-3)); };
-  const double columns = cells(width), rows = cells(height);
-  for (double b = 0; b < rows; ++b)
-    for (double a = 0; a < columns; ++a) {
-      const Vec x(h * (a - 0.5 * (columns - 1)), h * (b - 0.5 * (rows - 1)), 0);
-      if (!emitter.radius || x.norm() <= 0.5 * width || columns == 1) points.push_back(x);
-    }
   return points;
 }
 

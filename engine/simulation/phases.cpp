@@ -31,9 +31,11 @@ TimeStepLimits::Pressure acting_pressure(const Simulation::State& state, const B
   const bool presses = state.bodies.size() > 1 && !state.sph.apart;
   const float push = presses ? (follows ? contact_share(body.material->alpha) : 1.0f) : body.material->alpha;
   const float drag = presses ? 1.0f : body.material->alpha;
-  return {.coefficient = push * pressure_coefficient(state, *body.material),
+  const float coefficient = push * pressure_coefficient(state, *body.material);
+  return {.coefficient = coefficient,
           .kinematic_viscosity = drag * body.viscosity / body.rest_density,
           .stiffness = state.stiffness(*body.material),
+          .pull = follows ? 0.0f : body.material->settings.cohesion * coefficient,
           .damping_time = body.material->settings.damping_time,
           .damping_rate = body.material->settings.deformation_damping.value_or(0.0f)};
 }

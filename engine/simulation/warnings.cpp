@@ -89,7 +89,10 @@ class Warnings {
     if (limits.by_pressure >= k_short_steps * longest) return;
     if (body.material->settings.pressure_coefficient)
       add(body, "pressure_coefficient ", *body.material->settings.pressure_coefficient,
-          shortens(limits.by_pressure), "lower it, or solver.time_step, or raise viscosity");
+          shortens(limits.by_pressure),
+          body.material->settings.cohesion > 0
+              ? "lower it, or cohesion, or solver.time_step, or raise viscosity"
+              : "lower it, or solver.time_step, or raise viscosity");
     else if (body.material->settings.viscosity)
       add(body, "viscosity ", body.viscosity, " is too low to calm the pressure that keeps the volume, and",
           shortens(limits.by_pressure), "leave it out, raise it, or give a lower pressure_coefficient");

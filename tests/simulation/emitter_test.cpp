@@ -49,10 +49,35 @@ TEST(emitter, lets_a_strand_out_at_its_speed_without_strain) {
     const Aabb box = s.bounds(s.body(id));
     EXPECT_NEAR(box.min.z(), -32 + 0.5, 0.7);
     EXPECT_EQ(pieces(s, 1.6f), 1u);
-    const double each = 12;
+    const double each = 13;
     EXPECT_NEAR(static_cast<double>(s.particle_count() - before), 32 * each, 9 * each);
     EXPECT_LT(s.energy().elastic, alpha < 0.1f ? 1e-3 : 10.0) << "layers rest where they are put";
   }
+}
+
+TEST(emitter, pours_what_its_area_times_its_speed_says) {
+  const auto poured_share = [](Emitter emitter, double area) {
+    emitter.spacing = 1;
+    Simulation s(solver(0));
+    s.add_emitter(emitter, s.add_material({.alpha = 1.0f}));
+    const std::size_t before = s.particle_count();
+    s.advance(80);  // ten times eight layers
+    return static_cast<double>(s.particle_count() - before) / (80 * area);
+  };
+  for (const float radius : {2.0f, 2.5f, 3.0f, 4.0f, 5.0f})
+    EXPECT_NEAR(poured_share({.radius = radius}, std::acos(-1.0) * static_cast<double>(radius * radius)), 1,
+                0.1)
+        << radius;
+  EXPECT_NEAR(poured_share({.width = 2.5f, .height = 2.5f}, 6.25), 1, 0.1);
+  EXPECT_NEAR(poured_share({.width = 5.5f, .height = 2.5f}, 13.75), 1, 0.1);
+  EXPECT_NEAR(poured_share({.width = 0.5f, .height = 1.2f}, 1), 1, 0.1) << "one particle at least";
+}
+
+TEST(emitter, that_stops_before_it_starts_is_refused) {
+  Simulation s(solver(0));
+  const MaterialId material = s.add_material({});
+  EXPECT_THROW(s.add_emitter({.radius = 2.0f, .start = 2.0, .stop = 1.0}, material), ConfigError);
+  EXPECT_THROW(s.add_emitter({.radius = 2.0f, .start = 1.0, .stop = 1.0}, material), ConfigError);
 }
 
 TEST(emitter, of_an_elastic_strand_that_moves_lays_down_one_strand) {

@@ -25,6 +25,21 @@ Body cube(int side, const Vec3& corner = {0, 0, 0}) {
   return sample(Lattice{{side, side, side}, 1.0f, corner, 0});
 }
 
+TEST(step, of_a_stiff_fluid_that_draws_together_leaves_it_at_rest) {
+  for (const float share : {1.2f, 4.0f}) {  // of σ²/Δt0²
+    Simulation s({.time_step = 0.15f, .support_radius = 2.1f, .gravity = {0, 0, -0.3f}, .threads = 2});
+    s.add_body(sample(Lattice{.count = {8, 8, 8}, .corner = {-4, -4, 0}}),
+               {.alpha = 1.0f, .pressure_coefficient = share * 2.1f * 2.1f / 0.0225f, .cohesion = 1.0f});
+    s.add_collider({.shape = Box{{-5, -5, 0}, {5, 5, 100}, true}});
+    s.advance(30);
+    float top = 0, fastest = 0;
+    for (const Vec3& x : s.positions_by_id()) top = std::max(top, x.z());
+    for (const Vec3& v : s.velocities_by_id()) fastest = std::max(fastest, v.norm());
+    EXPECT_LT(top, 8) << share;
+    EXPECT_LT(fastest * 0.15f, 0.1f) << share;
+  }
+}
+
 /// Everything at once: three groups, an update, a pin, a force, colliders that move, alpha that changes.
 Simulation busy_scene(int threads) {
   Simulation s(config(threads));

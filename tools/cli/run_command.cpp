@@ -259,11 +259,10 @@ void run_stages(const RunOptions& options, Run& run) {
   make_film(options.film, *cache, run.scene.render.frames_per_second, run.plan.threads);
 }
 
-/// particles: at the end, when some have come or gone.
-void print_result(const program::Cache* cache, const program::RunReport& report, std::size_t particles) {
+void print_result(const program::Cache* cache, const program::RunReport& report) {
   std::printf("particles %zu\nframes %d\nsteps %lld\nsimulated_time %.9g\nstate_hash %s\n",
-              particles, report.frames, static_cast<long long>(report.steps), report.simulated_time,
-              program::hash_text(report.state_hash).c_str());
+              report.info.particles, report.frames, static_cast<long long>(report.steps),
+              report.simulated_time, program::hash_text(report.state_hash).c_str());
   if (cache) std::printf("summary %s\n", cache->summary_file().c_str());
 }
 
@@ -280,6 +279,7 @@ void run(const RunOptions& options) {
   const auto close_report = [&](const std::string& why_ended) {
     run.report.error = why_ended;
     run.report.complete = why_ended.empty();
+    run.report.info.particles = run.simulation->particle_count();  // some may have come or gone
     run.report.simulated_time = run.simulation->time();
     run.report.state_hash = run.simulation->state_hash();
     write_reports(options, run.scene, out, run.report);
@@ -299,7 +299,7 @@ void run(const RunOptions& options) {
     }
     throw program::RunFailure(failure.what());
   }
-  print_result(out, run.report, run.simulation->particle_count());
+  print_result(out, run.report);
   require_film(options.film);
 }
 
