@@ -102,4 +102,31 @@ std::optional<Damage> find_damage(const Simulation::State& state, Phase last) {
   return search.found();
 }
 
+std::ostringstream describe_particle(const Simulation::State& state, std::uint32_t row) {
+  std::ostringstream text;
+  text << "step " << state.step << ": particle " << state.store.id[row] << " at ("
+       << state.far(state.store.position.get(row)).transpose() << ") ";
+  return text;
+}
+
+namespace {
+
+[[noreturn]] void refuse(const Simulation::State& state, const Damage& damage) {
+  std::ostringstream text = describe_particle(state, damage.row);
+  text << "has a number that is not finite: " << damage.column << ", of phase " << name(damage.phase)
+       << "; lower solver.time_step (now " << state.base_step() << ") or material.pressure_coefficient";
+  throw StepError(text.str(), state.store.id[damage.row], damage.phase);
+}
+
+}  // namespace
+
+void refuse_damage(const Simulation::State& state, Phase phase, std::uint32_t row) {
+  refuse(state, find_damage(state, phase).value_or(Damage{phase, "velocity", row}));
+}
+
+void check_damage(const Simulation::State& state) {
+  if (const std::optional<Damage> damage = find_damage(state, Phase::reference_update))
+    refuse(state, *damage);
+}
+
 }  // namespace mallow
