@@ -30,8 +30,6 @@ struct Claim {
   double limit;
   std::string unit = {};            ///< of `measured` and `limit`; empty: a ratio or a number
   std::vector<double> values = {};  ///< what `measured` comes from, one per recording; may be empty
-  /// The paper shows it, and the model as it is does not do it: told, and not held against a run.
-  bool known_gap = false;
 };
 
 /// A number that is not one is on the wrong side of every limit.
