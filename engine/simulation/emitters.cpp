@@ -151,7 +151,21 @@ void free_layers(Simulation::State& s, EmitterState& emitter) {
   }
 }
 
+/// The strand ends at the nozzle: what has not left it by then is taken away, or it would hang there for
+/// ever.
+void cut_off(Simulation::State& s, EmitterState& emitter) {
+  std::vector<ParticleId> ids;
+  for (const std::vector<ParticleId>& layer : emitter.held)
+    std::ranges::copy_if(layer, std::back_inserter(ids), [&](ParticleId id) {
+      const std::optional<std::size_t> row = s.store.slots.find(id);
+      return row && s.store.pin[*row] == slot_of(emitter.pin) + 1;
+    });
+  emitter.held.clear();
+  if (!ids.empty()) erase_particles(s, ids);
+}
+
 void flow_out(Simulation::State& s, EmitterState& emitter) {
+  if (s.time >= emitter.settings.stop.value_or(s.time + 1)) return cut_off(s, emitter);
   BodyState& body = s.body(emitter.body);
   const Emitter& settings = emitter.settings;
   const double speed = flows(s, emitter) ? static_cast<double>(settings.speed.at(s.time)) : 0;

@@ -105,13 +105,35 @@ TEST(emitter, starts_stops_and_ends) {
   const double out = s.bounds(s.body(id)).min.z();
   EXPECT_NEAR(out, -3, 1);
   s.advance(3);
-  EXPECT_NEAR(s.bounds(s.body(id)).min.z(), out, 0.5);
+  EXPECT_NEAR(s.bounds(s.body(id)).min.z(), out - 3, 0.1) << "nothing holds it, so that it flies on";
+  EXPECT_NEAR(s.bounds(s.body(id)).max.z(), -3.5, 0.5) << "what was behind the nozzle is gone";
   const BodyId strand = s.body(id);
-  s.remove_emitter(id);
-  EXPECT_THROW(s.emitter(id), ConfigError);
   s.set_gravity({0, 0, -0.3f});
   s.advance(3);
-  EXPECT_LT(s.motion(strand).velocity.z(), -0.8) << "what it held is free";
+  EXPECT_LT(s.motion(strand).velocity.z(), -1.8) << "and it falls";
+  s.remove_emitter(id);
+  EXPECT_THROW(s.emitter(id), ConfigError);
+  EXPECT_TRUE(s.motion(strand).velocity.allFinite());
+}
+
+TEST(emitter, that_stops_before_anything_has_left_leaves_nothing) {
+  Simulation s(solver(0));
+  Emitter emitter = nozzle(0, 0.01f);
+  emitter.stop = 1;
+  const EmitterId id = s.add_emitter(emitter, s.add_material({}));
+  s.advance(3);
+  EXPECT_EQ(s.particle_count(), 0u);
+  EXPECT_THROW(s.emitter(id), ConfigError) << "an emitter goes with its body";
+}
+
+TEST(emitter, frees_what_it_holds_when_it_is_removed) {
+  Simulation s(solver(0.3f));
+  const EmitterId id = s.add_emitter(nozzle(0, 1), s.add_material({}));
+  s.advance(3);
+  const BodyId strand = s.body(id);
+  s.remove_emitter(id);
+  s.advance(3);
+  EXPECT_LT(s.motion(strand).velocity.z(), -0.8);
 }
 
 TEST(emitter, grows_no_longer_than_its_budget_and_sinks_take_what_comes_to_them) {

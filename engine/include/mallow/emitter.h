@@ -32,7 +32,8 @@ struct Emitter {
   std::vector<PoseKeyframe> keyframes = {};
   Schedule speed = 1.0f;             ///< of the strand, from the nozzle on [m/s], >= 0; 0: it does not flow
   std::optional<double> start = {};  ///< it flows from this time on [s], >= 0; left out: at once
-  std::optional<double> stop = {};   ///< and until this [s], >= 0; left out: it goes on
+  /// And until this [s], >= 0, when what has not passed the nozzle is taken away; left out: it goes on.
+  std::optional<double> stop = {};
   /// Random displacement of every point across the flow, at most jitter h per axis, in [0, 0.45]. Layers of a
   /// disc are turned besides, each by 2.4 rad: a strand of straight rows does not buckle.
   float jitter = k_default_jitter;
