@@ -12,7 +12,7 @@ inline SolverConfig with_paper_settings(SolverConfig config) {
   return config;
 }
 inline Material with_paper_settings(Material material) {
-  if (!material.update_threshold) material.update_threshold = 12.0f;
+  if (!material.update_threshold && !material.plastic_yield) material.update_threshold = 12.0f;
   if (!material.pressure_coefficient) material.pressure_coefficient = 16.0f;
   if (!material.viscosity) material.viscosity = 0.5f;
   return material;

@@ -32,6 +32,9 @@ void check(const AlphaSchedule& alpha, Checks& checks) {
 
 void check(const Material& material, Checks& checks) {
   check_fields("material.", material, checks);
+  if (material.plastic_creep && !material.plastic_yield)
+    checks.problem("material.plastic_creep",
+                   "is not allowed without plastic_yield: give the strain beyond which it flows, 0 or above");
 }
 
 namespace {

@@ -151,6 +151,7 @@ void make_room(std::size_t n, std::size_t regions, const Threads& threads, Shape
   shape.sums.resize_unset((regions + k_longest_run) * k_row);
   std::fill(shape.sums.data() + regions * k_row, shape.sums.end(), 0.0f);
   shape.undecided.resize_unset(regions);
+  reset_stretches(shape);
   const std::size_t of_regions = shape.by_particle().lengths.count;
   shape.table.resize_unset(
       std::max(n * shape.regions.lengths.count, of_regions > 1 ? regions * of_regions : 0) * k_row);
@@ -166,7 +167,7 @@ bool is_drawn(std::uint32_t row, std::uint32_t stride) {
 std::size_t ShapeMatching::bytes() const {
   std::size_t sum = reference.bytes() + regions.bytes() + memberships.bytes() + weight.bytes() +
                     region_weight.bytes() + center.bytes() + table.bytes() + sums.bytes() +
-                    undecided.bytes() + pull.bytes();
+                    undecided.bytes() + plastic.bytes() + pull.bytes();
   for (const Column<float>& column : moment) sum += column.bytes();
   for (const Column<float>& column : rotation) sum += column.bytes();
   return sum;

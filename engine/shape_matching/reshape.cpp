@@ -1,5 +1,7 @@
 #include "shape_matching/reshape.h"
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -83,6 +85,7 @@ std::vector<std::optional<std::size_t>> nearest_of_body(const VectorColumn& posi
 CarriedRegions carry_regions(const ShapeMatching& shape) {
   const std::size_t n = shape.reference.size();
   CarriedRegions carried{.rotations = std::vector<Eigen::Vector4f>(n),
+                         .stretches = {},
                          .former = std::vector<std::uint32_t>(n),
                          .former_rows = n,
                          .news = empty_box()};
@@ -91,7 +94,26 @@ CarriedRegions carry_regions(const ShapeMatching& shape) {
     for (std::size_t k = 0; k < 4; ++k)
       carried.rotations[i][static_cast<Eigen::Index>(k)] = shape.rotation[k][region];
   }
+  if (shape.flows)
+    for (std::size_t i = 0; i < n; ++i)
+      carried.stretches.push_back(carried_stretch(shape.plastic, shape.first_region(i)));
   std::iota(carried.former.begin(), carried.former.end(), 0u);
+  return carried;
+}
+
+CarriedRegions reframe_regions(const VectorColumn& positions, std::size_t begin, int iterations,
+                               const Execution& execution, ShapeMatching& shape) {
+  std::vector<Eigen::Matrix3f> reframed(shape.region_weight.size());
+  MatchedBodies matched;
+  matched.add(shape, begin);
+  for (auto* bodies : {&matched.small, &matched.large})
+    for (MatchedBodies::Body& body : *bodies) body.reframed = &reframed;
+  match_shapes(positions, iterations, execution, matched);
+  CarriedRegions carried = carry_regions(shape);
+  std::ranges::fill(carried.rotations, Eigen::Vector4f(0, 0, 0, 1));
+  for (std::size_t i = 0; i < carried.stretches.size(); ++i)
+    carried.stretches[i] = {.stretch = reframed[shape.first_region(i)]};
+  forget_lists(carried);
   return carried;
 }
 
@@ -107,6 +129,7 @@ void sort_carried(std::span<const std::uint32_t> order, CarriedRegions& carried)
     values.swap(sorted);
   };
   sort(carried.rotations);
+  if (!carried.stretches.empty()) sort(carried.stretches);
   sort(carried.former);
 }
 
@@ -119,9 +142,12 @@ void build_carried(const CarriedRegions& carried, const Execution& execution, Re
     if (now[r - 1].count > 0 && now[r - 1].first + 1 == now[r].first) now[r - 1].count += now[r].count;
   const FormerLists former{shape.regions, carried.former, now, carried.news};
   build_regions(execution, scratch, shape, &former);
-  for (std::size_t j = 0; j < shape.region_weight.size(); ++j)
+  for (std::size_t j = 0; j < shape.region_weight.size(); ++j) {
+    const std::size_t row = shape.first_row(j);
     for (std::size_t k = 0; k < 4; ++k)
-      shape.rotation[k][j] = carried.rotations[shape.first_row(j)][static_cast<Eigen::Index>(k)];
+      shape.rotation[k][j] = carried.rotations[row][static_cast<Eigen::Index>(k)];
+    if (shape.flows && !carried.stretches.empty()) set_stretch(carried.stretches[row], j, shape.plastic);
+  }
 }
 
 void erase_from_reference(std::span<const std::uint32_t> places, CarriedRegions& carried,
@@ -133,6 +159,7 @@ void erase_from_reference(std::span<const std::uint32_t> places, CarriedRegions&
   };
   if (shape.built) {
     erase(carried.rotations);
+    if (!carried.stretches.empty()) erase(carried.stretches);
     erase(carried.former);
   }
   center_reference(carried, shape);
@@ -152,7 +179,14 @@ void append_to_reference(const VectorColumn& positions, std::size_t begin, std::
     const Eigen::Vector4f rotation = beside ? carried.rotations[*beside] : whole;
     const Vec3 from = beside ? positions.get(begin + *beside) : Vec3(middle.cast<float>());
     const Vec3 rest = beside ? shape.reference.get(*beside) : Vec3(shape.mean.cast<float>());
-    shape.reference.set(n + k, rest + turn(rotation).conjugate() * (added[k] - from));
+    Vec3 away = turn(rotation).conjugate() * (added[k] - from);
+    if (shape.flows) {
+      // Beside what has flowed it rests where nothing pulls at it: stretched as its neighbour is.
+      const CarriedStretch stretch = beside ? carried.stretches[*beside] : CarriedStretch{};
+      away = stretch.stretch.inverse() * away;
+      carried.stretches.push_back({.stretch = stretch.stretch});
+    }
+    shape.reference.set(n + k, rest + away);
     carried.rotations.push_back(rotation);
     carried.former.push_back(FormerLists::k_none);
   }

@@ -13,6 +13,7 @@ namespace mallow {
 /// What particles take along while others come, go and are sorted: of each, in the order of rows.
 struct CarriedRegions {
   std::vector<Eigen::Vector4f> rotations;  ///< R of the region that it owns, or is in first, as x y z w
+  std::vector<CarriedStretch> stretches;   ///< S and κ likewise; empty where it does not flow
   std::vector<std::uint32_t> former;       ///< its row when regions were built; of what came k_none
   std::size_t former_rows = 0;             ///< that there were then
   Aabb news;                               ///< in the reference shape, around what came
@@ -20,6 +21,10 @@ struct CarriedRegions {
 
 /// Those of a shape that is built.
 CarriedRegions carry_regions(const ShapeMatching& shape);
+/// Those of a shape whose reference shape is to be where its particles are now: they keep the elastic strain
+/// that they have, and nothing else. The pull is that of now.
+CarriedRegions reframe_regions(const VectorColumn& positions, std::size_t begin, int iterations,
+                               const Execution& execution, ShapeMatching& shape);
 /// No list is as it was.
 void forget_lists(CarriedRegions& carried);
 /// Row k becomes what row order[k] was.

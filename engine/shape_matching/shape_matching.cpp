@@ -52,23 +52,11 @@ void update_frame(const VectorColumn& positions, std::size_t begin, std::span<co
 void solve_undecided(const ShapeInput& in, std::size_t begin, std::size_t end, ShapeMatching& shape) {
   for (std::size_t j = begin; j < end; ++j) {
     if (!shape.undecided[j]) continue;
-    float* const row = shape.sums.data() + j * k_row;
-    Eigen::Matrix3d a;
-    for (int i = 0; i < 3; ++i)
-      for (int k = 0; k < 3; ++k) a(i, k) = static_cast<double>(row[3 * i + k]);
-    const Eigen::Quaterniond last(
-        static_cast<double>(shape.rotation[3][j]), static_cast<double>(shape.rotation[0][j]),
-        static_cast<double>(shape.rotation[1][j]), static_cast<double>(shape.rotation[2][j]));
     const double scale = static_cast<double>(shape.moment[0][j] + shape.moment[1][j] + shape.moment[2][j]);
-    if (!a.allFinite() || !last.coeffs().allFinite()) {
-      // The rotation stays, for a later step; the goals show that this one has none.
-      row[9] = std::numeric_limits<float>::quiet_NaN();
-      continue;
-    }
-    const Eigen::Quaterniond rotation = polar_rotation(a, last.normalized(), scale);
-    for (std::size_t k = 0; k < 4; ++k)
-      shape.rotation[k][j] = static_cast<float>(rotation.coeffs()[static_cast<Eigen::Index>(k)]);
-    const Eigen::Matrix3d r = rotation.toRotationMatrix();
+    const std::optional<Eigen::Quaterniond> rotation = solve_exactly(j, scale, shape);
+    if (!rotation) continue;
+    float* const row = shape.sums.data() + j * k_row;
+    const Eigen::Matrix3d r = rotation->toRotationMatrix();
     const Vec3 center = shape.center.get(j);
     const float weight = shape.region_weight[j];
     for (int i = 0; i < 3; ++i) {
@@ -100,9 +88,10 @@ void write_particle_table(const ShapeInput& in, const Block& block, const ShapeL
   lanes.sum_runs(rows, last - first, lengths, n, table);
 }
 
-void solve_block(int iterations, const Block& block, InstructionLevel level,
+void solve_block(int iterations, const Block& block, InstructionLevel level, float time_step,
                  const MatchedBodies::Body& body) {
   ShapeMatching& shape = *body.shape;
+  if (shape.flows) return solve_plastic_regions(body, block.begin, block.end, iterations, level, time_step);
   float* const rotation[4] = {shape.rotation[0].data(), shape.rotation[1].data(), shape.rotation[2].data(),
                               shape.rotation[3].data()};
   MALLOW_SELECT(level, rotation_lanes)
@@ -132,6 +121,23 @@ constexpr std::size_t k_body_block = 8;
 
 }  // namespace
 
+std::optional<Eigen::Quaterniond> solve_exactly(std::size_t region, double scale, ShapeMatching& shape) {
+  float* const row = shape.sums.data() + region * k_row;
+  Eigen::Matrix3d a;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) a(i, k) = static_cast<double>(row[3 * i + k]);
+  const auto q = [&](std::size_t k) { return static_cast<double>(shape.rotation[k][region]); };
+  const Eigen::Quaterniond last(q(3), q(0), q(1), q(2));
+  if (!a.allFinite() || !last.coeffs().allFinite()) {
+    row[9] = std::numeric_limits<float>::quiet_NaN();
+    return {};
+  }
+  const Eigen::Quaterniond rotation = polar_rotation(a, last.normalized(), scale);
+  for (std::size_t k = 0; k < 4; ++k)
+    shape.rotation[k][region] = static_cast<float>(rotation.coeffs()[static_cast<Eigen::Index>(k)]);
+  return rotation;
+}
+
 ShapeInput shape_input(const VectorColumn& positions, std::size_t begin, const ShapeMatching& shape) {
   ShapeInput in{
       .regions = raw(shape.regions),
@@ -159,15 +165,16 @@ void MatchedBodies::clear() {
   large.clear();
   particles.clear();
   regions.clear();
+  time_step = 0;
 }
 
-void MatchedBodies::add(ShapeMatching& shape, std::size_t begin) {
+void MatchedBodies::add(ShapeMatching& shape, std::size_t begin, const FlowRule& rule) {
   const std::size_t rows = shape.reference.size(), owned = shape.region_weight.size();
   if (rows <= k_block) {
-    small.push_back({&shape, begin, {}});
+    small.push_back({&shape, begin, rule});
     return;
   }
-  large.push_back({&shape, begin, {}});
+  large.push_back({&shape, begin, rule});
   particles.add(rows);
   regions.add(owned);
 }
@@ -184,7 +191,7 @@ void match_small_bodies(const VectorColumn& positions, int iterations, const Exe
     body.input = shape_input(positions, body.begin, shape);
     write_particle_table(body.input, particles, lanes, shape);
     lanes.sum_regions(body.input, regions.begin, regions.end, shape.table.data(), shape.sums.data());
-    solve_block(iterations, regions, execution.level, body);
+    solve_block(iterations, regions, execution.level, matched.time_step, body);
     write_region_table(regions, lanes, shape);
     write_goals(body.input, particles, lanes, shape);
   };
@@ -226,7 +233,7 @@ void sum_regions(const VectorColumn& positions, const Execution& execution, Matc
 
 void solve_rotations(int iterations, const Execution& execution, MatchedBodies& matched) {
   parallel_for(execution.threads, matched.regions, [&](const Block& block, std::size_t) {
-    solve_block(iterations, block, execution.level, matched.large[block.range]);
+    solve_block(iterations, block, execution.level, matched.time_step, matched.large[block.range]);
   });
 }
 

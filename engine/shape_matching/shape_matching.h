@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -9,6 +10,7 @@
 #include "core/execution.h"
 #include "core/isa.h"
 #include "core/range_blocks.h"
+#include "shape_matching/plastic.h"
 #include "shape_matching/regions.h"
 #include "shape_matching/rotation_lanes.h"
 #include "shape_matching/run_tables.h"
@@ -29,6 +31,7 @@ struct ShapeMatching {
   float region_radius = 0;  ///< [m]
   int region_stride = 1;    ///< every so many particles one owns a region; >= 1
   float spacing = 0;        ///< of the particles [m]; 0: not known
+  bool flows = false;       ///< its regions have a plastic stretch
   VectorColumn reference;   ///< x̄ relative to a place in the body's middle [m]
   bool built = false;       ///< the regions belong to the reference shape
 
@@ -42,6 +45,7 @@ struct ShapeMatching {
   std::array<Column<float>, 4> rotation;  ///< R_j as x y z w
   Column<float> sums;                     ///< k_row floats a region, and k_longest_run rows of zeros
   Column<std::uint8_t> undecided;
+  PlasticColumns plastic;
   // A row a particle.
   Column<float> weight;  ///< w_i
   VectorColumn pull;     ///< g − x [m]
@@ -75,18 +79,31 @@ class MatchedBodies {
  public:
   void clear();
   /// One more body, whose particles are in the rows from `begin` on. Its regions are built, and stay as they
-  /// are until clear().
-  void add(ShapeMatching& shape, std::size_t begin);
+  /// are until clear(). rule: of a shape that flows.
+  void add(ShapeMatching& shape, std::size_t begin, const FlowRule& rule = {});
 
   struct Body {
     ShapeMatching* shape;
     std::size_t begin;
-    ShapeInput input;  ///< since the last sum_regions()
+    FlowRule rule;
+    ShapeInput input = {};  ///< since the last sum_regions()
+    /// Per region what reframed_stretch() makes of it, if asked for.
+    std::vector<Eigen::Matrix3f>* reframed = nullptr;
   };
+  float time_step = 0;  ///< in which regions flow; 0: nothing does [s]
   std::vector<Body> small, large;
   RangeBlocks particles, regions;  ///< of the large ones
   std::vector<std::array<double, 12>> partial;
 };
+
+/// R_j of the matrix in front of the sums row of a region, in double, which turns from its last rotation as
+/// little as can be. scale: see polar_rotation(). Nothing where it is not finite: the rotation stays, for a
+/// later step, and the goals will show that this one has none.
+std::optional<Eigen::Quaterniond> solve_exactly(std::size_t region, double scale, ShapeMatching& shape);
+
+/// solve_rotations() of some regions of a body that flows, in a step of `time_step`; 0: nothing flows.
+void solve_plastic_regions(const MatchedBodies::Body& body, std::size_t begin, std::size_t end,
+                           int iterations, InstructionLevel level, float time_step);
 
 /// Sums, rotations and goals of the small bodies; the phases below are those of the large ones.
 void match_small_bodies(const VectorColumn& positions, int iterations, const Execution& execution,
@@ -94,7 +111,8 @@ void match_small_bodies(const VectorColumn& positions, int iterations, const Exe
 /// First sums over the regions. [model 2]
 void sum_regions(const VectorColumn& positions, const Execution& execution, MatchedBodies& matched);
 /// R_j of every region from last step's, by at most `iterations` of Newton's method: with k_enough_iterations
-/// to single precision, with fewer as near as they come, with 0 exactly, in double. [model 2]
+/// to single precision, with fewer as near as they come, with 0 exactly, in double. [model 2] Of bodies that
+/// flow also S_j, for the next step.
 void solve_rotations(int iterations, const Execution& execution, MatchedBodies& matched);
 /// g − x of every particle. [TK eq. 7]
 void compute_goals(const Execution& execution, MatchedBodies& matched);

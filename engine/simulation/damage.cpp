@@ -61,6 +61,8 @@ std::optional<Damage> search_state(const Simulation::State& state) {
       shapes.column(Phase::reference_update, "moment of its region", moment, region);
     for (const Column<float>& rotation : shape.rotation)
       shapes.column(Phase::rotations, "rotation of its region", rotation, region);
+    for (const Column<float>& stretch : shape.plastic.stretch)
+      shapes.column(Phase::rotations, "plastic stretch of its region", stretch, region);
   }
   return shapes.found();
 }

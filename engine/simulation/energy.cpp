@@ -42,7 +42,13 @@ double match(const Simulation::State& state, const BodyState& body, std::vector<
     }
     const auto q = [&](std::size_t k) { return static_cast<double>(shape.rotation[k][j]); };
     const Eigen::Quaterniond last(q(3), q(0), q(1), q(2));
-    const Eigen::Matrix3d rotation = polar_rotation(a, last, scale).toRotationMatrix();
+    Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
+    if (shape.flows) {
+      stretch = carried_stretch(shape.plastic, j).stretch.cast<double>();
+      scale = stretched_moment(shape, j).trace();
+    }
+    const Eigen::Matrix3d rotation =
+        polar_rotation(a * stretch.transpose(), last, scale).toRotationMatrix() * stretch;
     for (const std::uint32_t i : members) {
       const Vec away = rotation * (rest(i) - rest_center) + center - x(i);
       sum += 0.5 * static_cast<double>(shape.weight[i]) * away.squaredNorm();

@@ -153,6 +153,7 @@ BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name)
   body.spacing = points.spacing;
   body.shape.region_radius = material.settings.region_radius.value_or(s.config.support_radius);
   body.shape.region_stride = material.settings.region_stride;
+  body.shape.flows = material.settings.plastic_yield.has_value();
   derive_density(s.config, body);
   insert_points(s, checked_points(s, body, points), body);
   const std::uint64_t number = s.body_slots.take();

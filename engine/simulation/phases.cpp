@@ -5,6 +5,7 @@
 
 #include "colliders/pose.h"
 #include "core/parallel.h"
+#include "shape_matching/reshape.h"
 #include "simulation/damage.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
@@ -65,6 +66,15 @@ void catch_up_with_pull(Simulation::State& state, BodyState& body) {
   });
 }
 
+bool flows(const BodyState& body) {
+  return body.shape.flows && body.matches_shape() && body.shape.built;
+}
+
+FlowRule flow_rule(const Material& material) {
+  return {.yield = material.plastic_yield.value_or(0.0f),
+          .creep = material.plastic_creep.value_or(std::numeric_limits<float>::infinity())};
+}
+
 /// What became of the parts of a body, whose regions are built anew.
 void tell_parts(Simulation::State& state, const BodyState& body) {
   Parts &before = state.parts_before, &after = state.parts_after;
@@ -85,28 +95,40 @@ int update_references(Simulation::State& state) {
     BodyState& body = *moving;
     const double threshold =
         static_cast<double>(body.material->update_threshold * (1.0f - body.material->alpha));
-    const bool yields = check && body.keeps_reference() && body.mean_external() > threshold;
+    const bool yields = check && body.follows_threshold() && body.judged_external > threshold;
+    const bool reframes = check && !yields && flows(body) &&
+                          reframe_is_due(state.store.position, body.begin, body.material->settings.merge_flow,
+                                         state.execution, body.shape);
     const bool had_regions = body.matches_shape() && body.shape.built;
     const auto due = [&] { return body.matches_shape() && !body.shape.built; };
     // A reference shape outlives the step: nothing that is not finite may get into it.
-    if (yields || due()) check_damage(state);
-    if (yields) {
-      if (had_regions) {
-        find_parts(body.shape, state.parts_before);
+    if (yields || reframes || due()) check_damage(state);
+    if (yields || reframes) {
+      CarriedRegions carried;
+      if (had_regions) find_parts(body.shape, state.parts_before);
+      if (reframes)
+        carried = reframe_regions(state.store.position, body.begin, state.config.rotation_iterations,
+                                  state.execution, body.shape);
+      else if (had_regions)
         catch_up_with_pull(state, body);
-      }
       take_reference(state, body);
-      if (had_regions) sort_parts(state.region_scratch.pillars.order.span(), state.parts_before);
+      const std::span<const std::uint32_t> order = state.region_scratch.pillars.order.span();
+      if (had_regions) sort_parts(order, state.parts_before);
+      if (reframes) {
+        sort_carried(order, carried);
+        build_carried(carried, state.execution, state.region_scratch, body.shape);
+      }
       body.yielded = true;
       state.events.push_back({BodyEvent::Kind::yielded, body.id});
       ++updated;
     }
     if (due()) build_regions(state.execution, state.region_scratch, body.shape);
-    if (yields && had_regions) tell_parts(state, body);
+    if ((yields || reframes) && had_regions) tell_parts(state, body);
   }
   state.matched.clear();
   for (BodyState* body : state.awake)
-    if (body->matches_shape()) state.matched.add(body->shape, body->begin);
+    if (body->matches_shape())
+      state.matched.add(body->shape, body->begin, flow_rule(body->material->settings));
   return updated;
 }
 
@@ -239,7 +261,7 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
                   .gravity = {config.gravity[0], config.gravity[1], config.gravity[2]},
                   .least_bounce = 2.0f * config.gravity.norm() * time_step},
       .pins = state.pin_motions,
-      .measure_external = body.step_weight > 0,
+      .measure_external = body.measures_external,
       .measure_rigid = body.keeps_reference() && state.deformation_damping(body) > 0,
       .measure_speed = state.bodies_sleep(),
       .sum_touches = body.hit_impulse.has_value(),
@@ -266,7 +288,7 @@ void move_pins(Simulation::State& state, double time_step) {
 }
 
 void plan_motion(Simulation::State& state, float time_step) {
-  const double weight = external_weight(state, time_step);
+  const bool judged = is_judged(state);
   // Velocities go from the middle of the last step to the middle of this one: with the whole of this one in
   // its place, steps that a limit varies feed a stiff body. The two are the same where steps are equal.
   const auto last_step = static_cast<float>(state.last_time_step);
@@ -288,7 +310,7 @@ void plan_motion(Simulation::State& state, float time_step) {
   drive_emitters(state, state.time + static_cast<double>(time_step), static_cast<double>(time_step));
   state.moving.inputs.clear();
   for (BodyState* body : state.awake) {
-    body->step_weight = body->keeps_reference() ? weight : 0.0;
+    body->measures_external = judged && body->follows_threshold();
     state.moving.inputs.push_back(motion_of(state, *body, time_step, pull_time));
   }
 }
@@ -369,7 +391,7 @@ void finish_step(Simulation::State& state, const ChosenStep& step) {
   move_colliders(step.end, static_cast<double>(step.time_step), state.colliders);
   move_pins(state, static_cast<double>(step.time_step));
   move_emitters(state, step.end, static_cast<double>(step.time_step));
-  add_external(state);
+  add_external(state, static_cast<double>(step.time_step));
   state.time = step.end;
   state.last_time_step = static_cast<double>(step.time_step);
   ++state.step;

@@ -1,5 +1,6 @@
 #include "mallow/saved_state.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <string_view>
 
@@ -15,7 +16,7 @@ namespace mallow {
 namespace {
 
 /// Counted up whenever the chunks or what they mean change.
-constexpr std::uint32_t k_version = 8;
+constexpr std::uint32_t k_version = 9;
 static_assert(sizeof(std::size_t) == sizeof(std::uint64_t), "sizes are saved as they are");
 
 // One list of members a type, for both ways: see PackingArchive, and config/field_tables.h for those of
@@ -64,8 +65,11 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   archive(body.spacing);
   archive(body.mass);
   archive(body.rest_density);
-  archive(body.external_sum);
-  archive(body.external_weight);
+  archive(body.judged_external);
+  pass_list(archive, body.recent_external, 2 * sizeof(double), [&](auto& external) {
+    archive(external.seconds);
+    archive(external.mean);
+  });
   archive(body.grew);
   archive(body.yielded);
   for (auto* vector : {&body.rigid.center, &body.rigid.velocity, &body.rigid.spin})
@@ -136,8 +140,11 @@ void require_valid(const UnpackingArchive& archive, const Simulation::State& sta
   for (const float value : {body.spacing, body.mass, body.rest_density})
     require(std::isfinite(value) && value > 0,
             "spacing, particle mass and rest density must be finite and above 0");
-  require(std::isfinite(body.external_sum) && body.external_sum >= 0 && std::isfinite(body.external_weight) &&
-              body.external_weight >= 0,
+  const auto is_size = [](double value) { return std::isfinite(value) && value >= 0; };
+  require(is_size(body.judged_external) && std::ranges::all_of(body.recent_external,
+                                                               [&](const BodyState::External& e) {
+                                                                 return is_size(e.seconds) && is_size(e.mean);
+                                                               }),
           "mean acceleration must be finite and 0 or above");
   require(body.shape.spacing >= 0 && std::isfinite(body.shape.spacing),
           "spacing of the regions must be finite and 0 or above");
@@ -185,6 +192,7 @@ std::vector<ShapeSizes> unpack_bodies(const SavedState& saved, Simulation::State
       const Material& settings = body.material->settings;
       body.shape.region_radius = settings.region_radius.value_or(state.config.support_radius);
       body.shape.region_stride = settings.region_stride;
+      body.shape.flows = settings.plastic_yield.has_value();
     });
   });
   return sizes;
@@ -413,6 +421,28 @@ void unpack_shapes(const SavedState& saved, const std::vector<ShapeSizes>& sizes
   });
 }
 
+/// Calls pass(shape) with those that flow.
+template <class State, class Pass>
+void for_stretches(State& state, const Pass& pass) {
+  for (auto& body : state.bodies)
+    if (body.shape.built && body.shape.flows) pass(body.shape);
+}
+
+void unpack_stretches(const SavedState& saved, Simulation::State& state) {
+  unpack(saved, "stretches", [&](UnpackingArchive& archive) {
+    for_stretches(state, [&](ShapeMatching& shape) {
+      for (Column<float>& component : shape.plastic.stretch)
+        archive.array(component.data(), component.size());
+      archive.array(shape.plastic.flow.data(), shape.plastic.flow.size());
+      for (std::size_t j = 0; j < shape.plastic.flow.size(); ++j) {
+        const CarriedStretch one = carried_stretch(shape.plastic, j);
+        if (!(one.stretch.allFinite() && one.stretch.determinant() > 0 && one.flow >= 0))
+          archive.fail("region " + std::to_string(j) + " is mirrored, flat or not finite");
+      }
+    });
+  });
+}
+
 /// The order of the last neighbour search, which fluids are sorted by, and lists that are kept.
 void unpack_neighbors(const SavedState& saved, Simulation::State& state) {
   Sph& sph = state.sph;
@@ -488,6 +518,13 @@ SavedState Simulation::save() const {
       for (const Column<float>& component : body.shape.rotation)
         if (body.shape.built) archive.array(component.data(), component.size());
   }));
+  add(packed("stretches", [&](PackingArchive& archive) {
+    for_stretches(s, [&](const ShapeMatching& shape) {
+      for (const Column<float>& component : shape.plastic.stretch)
+        archive.array(component.data(), component.size());
+      archive.array(shape.plastic.flow.data(), shape.plastic.flow.size());
+    });
+  }));
   add(packed("cell_order", [&](PackingArchive& archive) {
     // An order of fewer rows than there are is never used again.
     if (grid.order.size() == s.store.size()) archive.array(grid.order.data(), grid.order.size());
@@ -537,6 +574,7 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
   unpack_events(saved, state);
   hold_sleepers(state);
   unpack_shapes(saved, sizes, state);
+  unpack_stretches(saved, state);
   if (state.scale.spacing > 0) resolve_settings(state);
   if (state.prepared) describe_bodies(state);
   unpack_neighbors(saved, state);

@@ -148,23 +148,42 @@ bool update_is_due(const Simulation::State& state) {
   return passed_periods(state, state.time) > state.passed_periods;
 }
 
-double external_weight(const Simulation::State& state, float time_step) {
-  if (counts_steps(state.config)) return (state.step + 1) % *state.config.update_interval == 0 ? 1.0 : 0.0;
-  const double start = state.time, end = start + static_cast<double>(time_step);
-  const double window = static_cast<double>(state.base_step());
-  // The check that comes next, or the last one of several in this step.
-  const double next = std::max(passed_periods(state, start) + 1, passed_periods(state, end));
-  const double check = next * update_period(state);
-  const double overlap = std::min(end, check) - std::max(start, check - window);
-  return overlap > 0.5 * k_tolerance * window ? overlap : 0.0;
+bool is_judged(const Simulation::State& state) {
+  return !counts_steps(state.config) || (state.step + 1) % *state.config.update_interval == 0;
 }
 
-void add_external(Simulation::State& state) {
+namespace {
+
+/// The mean over the last Δt0, of as much of it as there is. Steps before it are forgotten.
+double recent_mean(double window, std::vector<BodyState::External>& recent) {
+  double sum = 0, seconds = 0;
+  std::size_t k = recent.size();
+  for (; k > 0 && seconds < window * (1 - k_tolerance); --k) {
+    const double shared = std::min(recent[k - 1].seconds, window - seconds);
+    sum += shared * recent[k - 1].mean;
+    seconds += shared;
+  }
+  recent.erase(recent.begin(), recent.begin() + static_cast<std::ptrdiff_t>(k));
+  return sum / window;
+}
+
+}  // namespace
+
+void add_external(Simulation::State& state, double time_step) {
   const bool judged = update_is_due(state);
   for (BodyState& body : state.bodies) {
-    if (judged) body.external_sum = body.external_weight = 0;
-    body.external_sum += body.step_weight * body.step_external;
-    body.external_weight += body.step_weight;
+    if (judged) {
+      body.judged_external = 0;
+      body.recent_external.clear();
+    }
+    if (!body.measures_external) continue;
+    if (counts_steps(state.config)) {
+      body.judged_external = body.step_external;
+      continue;
+    }
+    body.recent_external.push_back({time_step, body.step_external});
+    body.judged_external = std::max(
+        body.judged_external, recent_mean(static_cast<double>(state.base_step()), body.recent_external));
   }
   if (!counts_steps(state.config)) state.passed_periods = passed_periods(state, state.time);
 }

@@ -34,13 +34,12 @@ float pressure_coefficient(const Simulation::State& state, const MaterialState& 
 double update_period(const Simulation::State& state);
 /// Whether the step that starts now begins with a check of the reference shapes.
 bool update_is_due(const Simulation::State& state);
-/// How much the step that starts now, and takes `time_step`, counts in the mean that the next check judges;
-/// 0: not at all. As a rule seconds that it shares with the Δt0 before the check.
-double external_weight(const Simulation::State& state, float time_step);
-
+/// Whether the next check judges what acts on bodies in the step that starts now.
+bool is_judged(const Simulation::State& state);
 /// At the end of a step, before time moves on: what it measured counts at the check that is next, and what
-/// was judged at its start no more.
-void add_external(Simulation::State& state);
+/// was judged at its start no more. The largest mean over a Δt0 that ends with a step counts; where checks
+/// are counted in steps, the step before the check. [TK 3.2]
+void add_external(Simulation::State& state, double time_step);
 
 /// Throws ConfigError where several points have no neighbours at all within the radii of their material.
 void check_neighbors(const Simulation::State& state, const Material& material, const Body& points);

@@ -35,11 +35,12 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
   timer.lap(Phase::time_step);
 
   const int iterations = s.config.rotation_iterations;
+  s.matched.time_step = step.time_step;                         // in which regions flow  [model 2, section 5]
   const VectorColumn& led = lead_positions(s);                  // x, v -> x + τ v
   match_small_bodies(led, iterations, s.execution, s.matched);  // x, x̄ -> R_j, g − x     [TK eq. 7]
   sum_regions(led, s.execution, s.matched);                     // x, x̄ -> sums over N_j
   timer.lap(Phase::region_sums);
-  solve_rotations(iterations, s.execution, s.matched);  // sums -> R_j
+  solve_rotations(iterations, s.execution, s.matched);  // sums -> R_j, and S_j of the next step
   timer.lap(Phase::rotations);
   compute_goals(s.execution, s.matched);  // R_j -> g − x       [TK eq. 7]
   timer.lap(Phase::goals);

@@ -88,7 +88,9 @@ void find_islands(Simulation::State& state) {
 void fall_asleep(Simulation::State& state, std::uint32_t island, BodyState& body) {
   if (body.island == 0) state.events.push_back({BodyEvent::Kind::slept, body.id});
   body.island = island;
-  body.external_sum = body.external_weight = body.step_weight = 0;
+  body.judged_external = 0;
+  body.recent_external.clear();
+  body.measures_external = false;
   body.mean_speed = 0;
   body.box = box_of(state, body);
   for (std::size_t a = 0; a < 3; ++a)

@@ -49,13 +49,17 @@ struct BodyState {
   float rest_density = 0;          ///< ρ0 [kg/m³]
   float viscosity = 0;             ///< μ in force [Pa s]
   std::uint32_t sph_group = 0;     ///< that of bodies which merge with this one, and its own
-  double external_sum = 0;         ///< Σ of mean |a_ext|, times external_weight(), for the next check
-  double external_weight = 0;      ///< Σ of these weights
-  double step_external = 0;        ///< mean |a_ext| in the step under way [m/s²], and its weight
-  double step_weight = 0;
-  RigidMotion rigid;     ///< kept where deformations are damped towards it
-  bool yielded = false;  ///< its reference shape was updated since it was built
-  bool enabled = true;   ///< see Simulation::enable()
+  double judged_external = 0;      ///< |a_ext| that the next check judges [m/s²]
+  /// Mean |a_ext| of the last steps since the last check: those that a time_step reaches back to.
+  struct External {
+    double seconds, mean;
+  };
+  std::vector<External> recent_external;
+  double step_external = 0;        ///< mean |a_ext| in the step under way [m/s²]
+  bool measures_external = false;  ///< in it
+  RigidMotion rigid;               ///< kept where deformations are damped towards it
+  bool yielded = false;            ///< its reference shape was updated since it was built
+  bool enabled = true;             ///< see Simulation::enable()
   std::uint64_t user_data = 0;
   std::optional<double> hit_impulse;  ///< see Simulation::report_contacts(): what says it there [N s]
   /// Those that fell asleep together share a number, that of the slot of one of them and 1, and wake
@@ -68,8 +72,10 @@ struct BodyState {
   ShapeMatching shape;    ///< empty where alpha is never below 1
 
   std::size_t size() const { return end - begin; }
-  /// Mean |a_ext| before the check that is next [m/s²].
-  double mean_external() const { return external_weight > 0 ? external_sum / external_weight : 0.0; }
+  /// The paper's rule updates its reference shape: where regions flow, only if it is asked for.
+  bool follows_threshold() const {
+    return keeps_reference() && (!shape.flows || material->settings.update_threshold.has_value());
+  }
   bool keeps_reference() const { return material->keeps_reference(); }
   bool matches_shape() const { return material->alpha < 1.0f; }
   bool moves() const { return enabled && island == 0; }
@@ -180,7 +186,7 @@ struct Simulation::State {
   // Scratch.
   RegionScratch region_scratch;
   Parts parts_before, parts_after;  ///< of a body whose reference shape is updated
-  MatchedBodies matched;  ///< those whose shape is matched in the step under way
+  MatchedBodies matched;            ///< those whose shape is matched in the step under way
   FastestInput fastest;
   MovingBodies moving;
   Column<std::uint32_t> fluid_order;

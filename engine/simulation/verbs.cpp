@@ -45,6 +45,7 @@ void follow_alpha(Simulation::State& s, BodyState& body) {
     ShapeMatching none;
     none.region_radius = shape.region_radius;
     none.region_stride = shape.region_stride;
+    none.flows = shape.flows;
     shape = std::move(none);
   } else if (shape.reference.size() != body.size()) {
     // A fluid that may turn elastic remembers the shape it has now.
@@ -58,11 +59,14 @@ void follow_regions(Simulation::State& s, BodyState& body) {
   const Material& settings = body.material->settings;
   ShapeMatching& shape = body.shape;
   const float radius = settings.region_radius.value_or(s.config.support_radius);
-  if (shape.region_radius == radius && shape.region_stride == settings.region_stride) return;
+  const bool flows = settings.plastic_yield.has_value();
+  if (shape.region_radius == radius && shape.region_stride == settings.region_stride && shape.flows == flows)
+    return;
   CarriedRegions carried;
   if (shape.built) carried = carry_regions(shape);
   shape.region_radius = radius;
   shape.region_stride = settings.region_stride;
+  shape.flows = flows;
   if (!shape.built) return;
   forget_lists(carried);
   build_carried(carried, s.execution, s.region_scratch, shape);

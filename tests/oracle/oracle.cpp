@@ -1,5 +1,6 @@
 #include "oracle/oracle.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -183,6 +184,7 @@ Step Oracle::step() {
   step.time_step = time_step(step.max_velocity);
   match_shapes();
   move(step.time_step);
+  flow(step.time_step);
   for (Obstacle& obstacle : obstacles_) {
     obstacle.moved += step.time_step * obstacle.collider.velocity.cast<double>();
   }
@@ -202,6 +204,8 @@ void Oracle::rebuild_regions(std::size_t group) {
     if (i.group != group) continue;
     i.reference = i.x;
     i.rotation = Matrix::Identity();
+    i.stretch = Matrix::Identity();
+    i.flow = 0;
     i.region.clear();
     for (std::size_t j = 0; j < particles_.size(); ++j) {
       if (particles_[j].group == group && (particles_[j].x - i.x).norm() <= radius) i.region.push_back(j);
@@ -230,27 +234,38 @@ double Oracle::passed_periods(double time) const {
   return std::floor((time + 1e-6 * dt0_) / period_);
 }
 
-// The step before, where checks are counted in steps; else the Δt0 before the last multiple of the period.
+// The step before, where checks are counted in steps; else the largest mean over a Δt0 since the last check.
 double Oracle::judged_acceleration(std::size_t group) const {
   if (counts_steps()) return groups_[group].external.back().mean;
-  const double check = passed_periods(time_) * period_;
-  double sum = 0, weight = 0;
-  for (const Group::External& e : groups_[group].external) {
-    const double shared = std::max(0.0, std::min(e.end, check) - std::max(e.start, check - dt0_));
-    sum += shared * e.mean;
-    weight += shared;
+  double largest = 0;
+  for (const Group::External& last : groups_[group].external) {
+    double sum = 0;
+    for (const Group::External& e : groups_[group].external)
+      if (e.start >= last_check_)
+        sum += std::max(0.0, std::min(e.end, last.end) - std::max(e.start, last.end - dt0_)) * e.mean;
+    largest = std::max(largest, sum / dt0_);
   }
-  return sum / weight;
+  return largest;
+}
+
+bool Oracle::check_is_due() const {
+  return counts_steps() ? steps_ > 0 && steps_ % *config_.update_interval == 0
+                        : passed_periods(time_) > passed_periods(last_start_);
 }
 
 std::vector<std::size_t> Oracle::update_references() {
   std::vector<std::size_t> updated;
-  const bool due = counts_steps() ? steps_ > 0 && steps_ % *config_.update_interval == 0
-                                  : passed_periods(time_) > passed_periods(last_start_);
-  if (!due) return updated;
+  if (!check_is_due()) return updated;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const double threshold = groups_[g].update_threshold * (1 - groups_[g].alpha);
-    if (is_always_fluid(groups_[g]) || judged_acceleration(g) <= threshold) continue;
+    const Material& material = groups_[g].material;
+    const bool follows = !material.plastic_yield || material.update_threshold;
+    if (is_always_fluid(groups_[g]) || !follows || judged_acceleration(g) <= threshold) {
+      if (!reframe_is_due(g)) continue;
+      reframe(g);
+      updated.push_back(g);
+      continue;
+    }
     // Velocities are those of half a step ago: what the old shape pulled since then is part of them.
     if (groups_[g].alpha < 1) match_shapes();
     for (Particle& p : particles_) {
@@ -260,6 +275,7 @@ std::vector<std::size_t> Oracle::update_references() {
     rebuild_regions(g);
     updated.push_back(g);
   }
+  last_check_ = time_;
   return updated;
 }
 
@@ -433,17 +449,92 @@ void Oracle::match_shapes() {
       a += weight(particles_[i]) * (particles_[i].x - c) * (particles_[i].reference - c_ref).transpose();
     }
     const double radius = groups_[j.group].material.region_radius.value_or(config_.support_radius);
-    j.rotation = polar_rotation(a, j.rotation, w * radius * radius);
+    j.rotation = polar_rotation(a * j.stretch.transpose(), j.rotation, w * radius * radius);
+    j.moment = a;
+    j.rest_moment = Matrix::Zero();
+    for (std::size_t i : j.region) {
+      const Vec r = particles_[i].reference - c_ref;
+      j.rest_moment += weight(particles_[i]) * r * r.transpose();
+    }
     centers[id] = c;
     reference_centers[id] = c_ref;
   }
   for (Particle& i : particles_) {
     Vec sum = Vec::Zero();
     for (std::size_t j : i.region) {
-      sum += particles_[j].rotation * (i.reference - reference_centers[j]) + centers[j];
+      sum += particles_[j].rotation * particles_[j].stretch * (i.reference - reference_centers[j]) + centers[j];
     }
     i.goal = sum / static_cast<double>(i.region.size());
   }
+}
+
+namespace {
+
+/// Of the stretched reference shape.
+bool is_thin(const Particle& j) {
+  const Matrix p = j.stretch * j.rest_moment * j.stretch.transpose();
+  return p.determinant() < 1e-4 * std::pow(p.trace() / 3, 3);
+}
+
+/// E of a region.
+Matrix elastic_strain(const Particle& j) {
+  const Matrix f = j.moment * j.rest_moment.inverse() * j.stretch.inverse();
+  const Matrix turned = j.rotation.transpose() * f;
+  return (turned + turned.transpose()) / 2;
+}
+
+}  // namespace
+
+// Section 5 of the second chapter.
+void Oracle::flow(double dt) {
+  for (Particle& j : particles_) {
+    const Material& material = groups_[j.group].material;
+    if (!material.plastic_yield || groups_[j.group].alpha == 1 || is_thin(j)) continue;
+    const Matrix e = elastic_strain(j);
+    if (Eigen::SelfAdjointEigenSolver<Matrix>(e).eigenvalues().minCoeff() <= 0) continue;
+    const Matrix strain = e / std::cbrt(e.determinant()) - Matrix::Identity();
+    const double yield = *material.plastic_yield;
+    if (strain.norm() <= yield) continue;
+    const double share = material.plastic_creep ? 1 - std::exp(-*material.plastic_creep * dt) : 1;
+    const double y = std::min((1 - yield / strain.norm()) * share, 0.5 / strain.norm());
+    Matrix g = Matrix::Identity() + y * strain;
+    g /= std::cbrt(g.determinant());
+    j.stretch = g * j.stretch;
+    j.flow += (g - Matrix::Identity()).norm();
+  }
+}
+
+bool Oracle::reframe_is_due(std::size_t group) const {
+  const Group& g = groups_[group];
+  if (!g.material.plastic_yield || g.alpha == 1) return false;
+  const double radius = g.material.region_radius.value_or(config_.support_radius);
+  for (const Particle& i : particles_) {
+    if (i.group != group) continue;
+    if (i.flow > 0.5) return true;
+    for (const Particle& j : particles_) {
+      if (j.group == group && std::min(i.flow, j.flow) > double{g.material.merge_flow} &&
+          (i.x - j.x).norm() < g.spacing && (i.reference - j.reference).norm() > radius)
+        return true;
+    }
+  }
+  return false;
+}
+
+// Elastic strain stays; all else is as after an update.
+void Oracle::reframe(std::size_t group) {
+  match_shapes();
+  std::vector<Matrix> stretches;
+  for (const Particle& j : particles_) {
+    stretches.push_back(Matrix::Identity());
+    if (j.group != group || is_thin(j)) continue;
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(elastic_strain(j));
+    const Vec clipped = solver.eigenvalues().cwiseMax(0.8).cwiseMin(1.25);
+    const Matrix axes = j.rotation * solver.eigenvectors();
+    stretches.back() = axes * clipped.cwiseInverse().asDiagonal() * axes.transpose();
+  }
+  rebuild_regions(group);
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    if (particles_[i].group == group) particles_[i].stretch = stretches[i];
 }
 
 // Section 4 A of the second chapter, one obstacle: its parts one after the other.

@@ -28,6 +28,8 @@ struct Particle {
   Vec reference{0, 0, 0};                ///< x̄
   std::vector<std::size_t> region = {};  ///< N, the particle itself included
   Matrix rotation = Matrix::Identity();
+  Matrix stretch = Matrix::Identity();  ///< S
+  double flow = 0;                      ///< κ
 
   // What the last step found.
   /// What a collider that is filled with like matter is to SPH.
@@ -44,6 +46,8 @@ struct Particle {
   Vec crossing{0, 0, 0};  ///< the part of `external` that is from the other groups [m/s²]
   Vec contact{0, 0, 0};   ///< change of velocity by colliders over Δt [m/s²]
   Vec goal{0, 0, 0};      ///< g
+  Matrix moment = Matrix::Zero();       ///< A of its region
+  Matrix rest_moment = Matrix::Zero();  ///< Ā
 };
 
 struct Group {
@@ -103,6 +107,9 @@ class Oracle {
   };
 
   void rebuild_regions(std::size_t group);
+  void flow(double dt);
+  bool reframe_is_due(std::size_t group) const;
+  void reframe(std::size_t group);
   void settle();
   void follow_alpha();
   double mean_external_acceleration(std::size_t group) const;
@@ -110,6 +117,7 @@ class Oracle {
   bool counts_steps() const { return config_.update_interval && config_.time_step_factor == 1; }
   double passed_periods(double time) const;
   double stiffness(const Group& group) const;
+  bool check_is_due() const;
   std::vector<std::size_t> update_references();
   void find_walls(Particle& p) const;
   Vec wall_acceleration(const Particle& p) const;
@@ -133,6 +141,7 @@ class Oracle {
   double period_ = 0;      ///< between checks, where they are not counted in steps [s]
   double last_start_ = 0;  ///< of the step before [s]
   double time_ = 0;
+  double last_check_ = 0;  ///< start of the last step that began with one [s]
   int steps_ = 0;
 };
 

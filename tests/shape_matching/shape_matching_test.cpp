@@ -509,7 +509,7 @@ struct MatrixRegions {
   void solve(InstructionLevel level) {
     const VectorColumn x(shape.reference.size());
     MatchedBodies bodies;
-    bodies.large.push_back({&shape, 0, shape_input(x, 0, shape)});
+    bodies.large.push_back({&shape, 0, {}, shape_input(x, 0, shape)});
     bodies.regions.add(shape.region_weight.size());
     solve_rotations(k_enough_iterations, {1, level}, bodies);
   }

@@ -194,7 +194,7 @@ TEST(damage, never_gets_into_a_reference_shape) {
   for (int k = 0; k < 6; ++k) s.step();
   Simulation::State& state = StateAccess::of(s);
   ASSERT_EQ(state.step % *state.config.update_interval, 0);
-  ASSERT_GT(state.bodies[1].mean_external(), 0.1) << "the next step updates the reference";
+  ASSERT_GT(state.bodies[1].judged_external, 0.1) << "the next step updates the reference";
   const std::size_t row = state.bodies[1].begin + 7;
   const float kept = std::exchange(state.store.position.y()[row], k_infinity);
   EXPECT_THROW(s.step(), StepError);

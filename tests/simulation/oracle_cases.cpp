@@ -46,6 +46,10 @@ SolverConfig with_offset(float contact_offset) {
 Material stuff(AlphaSchedule alpha) {
   return {.alpha = std::move(alpha), .update_threshold = 1.0f};
 }
+/// Flows where it is strained.
+Material dough(AlphaSchedule alpha, float yield, std::optional<float> creep = {}) {
+  return {.alpha = std::move(alpha), .plastic_yield = yield, .plastic_creep = creep};
+}
 /// Keeps its first reference shape.
 Material lasting(AlphaSchedule alpha) {
   return {.alpha = std::move(alpha), .update_threshold = 1e6f};
@@ -87,6 +91,10 @@ std::vector<Case> paper_cases() {
       {.name = "paste_on_slope", .blobs = {{stuff(0.7f), {0, 0, 4.0f}, {0, 0, -1.0f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1},
       {.name = "paste_on_ball", .blobs = {{stuff(0.7f), {0, 0, 3.8f}, {0, 0, -1.0f}}}, .colliders = {k_ball}, .solver = units(2.9f), .updates = 1},
       {.name = "cream_on_ball_and_slope", .blobs = {{stuff(0.9f), {0, 0, 3.8f}, {0, 0, -1.0f}}}, .colliders = {k_ball, {.shape = Plane{{0, 0.1f, 1}, -0.5f}, .friction = 0.3f}}, .solver = units(), .updates = 2},
+      {.name = "dough_on_slope", .blobs = {{dough(0.0f, 0.02f), {0, 0, 4.2f}, {0, 0, -1.5f}}}, .colliders = {k_slope}, .solver = units(), .flows = true, .tolerance = 1e-3},
+      {.name = "creeping_dough_on_ball", .blobs = {{dough(0.7f, 0.01f, 0.4f), {0, 0, 3.8f}, {0, 0, -1.0f}}}, .colliders = {k_ball}, .solver = units(2.9f), .flows = true, .tolerance = 1e-3},
+      {.name = "dough_hits_slope_and_is_taken_anew", .blobs = {{dough(0.0f, 0.05f), {0, 0, 4.2f}, {0, 0, -4.5f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1, .flows = true, .tolerance = 1e-3},
+      {.name = "two_lumps_of_dough_merge", .blobs = {{dough(0.4f, 0.05f), {0, 0, 3.4f}, {0, 0, -0.2f}, {5, 5, 5}}, {.center = {0.3f, 0.4f, 8.8f}, .velocity = {0, 0, -2.0f}, .count = {5, 5, 5}, .joins_the_one_before = true}}, .colliders = {k_slope}, .solver = units(), .updates = 1, .flows = true, .tolerance = 1e-3},
       {.name = "fluid_on_slope", .blobs = {{stuff(1.0f), {0, 0, 4.0f}, {0, 0, -1.0f}}}, .colliders = {k_slope}, .solver = units()},
       {.name = "syrup_on_ball", .blobs = {{{.alpha = 1.0f, .viscosity = 4}, {0, 0, 3.8f}, {0, 0, -1.0f}}}, .colliders = {k_ball}, .solver = units(), .limited = true, .tolerance = 5e-4},
       {.name = "fluid_in_tank", .blobs = {{stuff(1.0f), {0, 0, 3.6f}, {-0.8f, 0.3f, -0.5f}}}, .colliders = {k_tank}, .solver = units()},
@@ -220,7 +228,12 @@ std::vector<Case> ablations(const Case& whole) {
             [&](Case& less) { less.pins.erase(less.pins.begin() + static_cast<long>(p)); });
   }
   if (whole.wind) without("wind", [](Case& less) { less.wind = false; });
-  if (whole.updates > 0)
+  if (whole.flows)
+    without("yield", [](Case& less) {
+      for (Blob& b : less.blobs) b.material.plastic_yield = b.material.plastic_creep = {};
+      for (Blob& b : less.blobs) b.material.update_threshold = 1e6f;
+    });
+  if (whole.updates > 0 && !whole.flows)
     without("updates", [](Case& less) {
       for (Blob& b : less.blobs) b.material.update_threshold = 1e6f;
     });

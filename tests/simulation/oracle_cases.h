@@ -41,6 +41,7 @@ struct Case {
   bool wind = false;        ///< a user force that depends on time, place, velocity and id
   bool limited = false;     ///< some step must be shorter than Δt0
   int updates = 0;          ///< updates of reference shapes that must happen, at least
+  bool flows = false;       ///< what flows must matter
   double tolerance = 1e-4;  ///< what single precision may do to a position in 40 steps, in units of h
 };
 std::ostream& operator<<(std::ostream& out, const Case& c);

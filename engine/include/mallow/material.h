@@ -15,9 +15,26 @@ struct Material {
   /// Elastic solid (0) to fluid (1). [TK eq. 10]
   AlphaSchedule alpha = 0.0f;
   /// Mean external acceleration above which the reference shape is updated, at alpha 0: γ_u [m/s²], >= 0.
-  /// The threshold in force is γ_u (1 − alpha), and what is compared with it the mean over the last
-  /// time_step before the check. Left out: 40 times gravity, see default_update_threshold(). [TK eq. 14]
+  /// The threshold in force is γ_u (1 − alpha), and what is compared with it the largest mean over one
+  /// time_step since the check before; with SolverConfig::update_interval, in steps as long as time_step,
+  /// that of the one step before the check, as in the paper. Left out: 40 times gravity, see
+  /// default_update_threshold(), and with plastic_yield never. [TK eq. 14]
   std::optional<float> update_threshold = {};
+  /// Strain beyond which a region of shape matching flows where it is, >= 0: |Ê − I|, Ê its elastic stretch
+  /// without change of volume. Pulled along one axis it flows from a strain of √1.5 of this, and a stress of
+  /// √1.5 E times this; what has flowed stays when the load goes. A layer of one particle has no strain
+  /// across and does not flow. Where matter has flowed far, or was pressed together, the body takes the shape
+  /// that it has for its reference shape at the next check (SolverConfig::update_period): what touches is one
+  /// then, and what is farther apart than region_radius is not. Left out: nothing flows, only
+  /// update_threshold changes shapes. [model 2, section 5]
+  std::optional<float> plastic_yield = {};
+  /// Rate at which strain beyond plastic_yield flows [1/s], > 0: a plastic viscosity of E/(2 plastic_creep).
+  /// Left out: at once, so that no strain stays beyond it. Asks for plastic_yield.
+  std::optional<float> plastic_creep = {};
+  /// How far matter must have flowed, |G − I| summed since the reference shape was taken, on both sides of
+  /// where it touches itself, for the two sides to become one at the next check, >= 0. Less merges what
+  /// hardly touched.
+  float merge_flow = 0.1f;
   /// k [m²/s²], >= 0: pressure is k (ρ − ρ0). Left out: as stiff as a step can carry, see
   /// default_pressure_coefficient(); it then follows alpha, and between bodies, where pressure acts whatever
   /// alpha is, it is that of alpha 1. [TK eq. 1]
@@ -37,8 +54,8 @@ struct Material {
   float cohesion = 0.0f;
   /// Coulomb's μ_f where it touches other bodies, >= 0; that of a pair is √(μ μ'). Colliders have their own.
   float friction = 0.5f;
-  /// Stress up to which it sticks to other bodies that touch it [Pa], >= 0; that of a pair is √(a a'). Sticking
-  /// particles hold against friction with as much more.
+  /// Stress up to which it sticks to other bodies that touch it [Pa], >= 0; that of a pair is √(a a').
+  /// Sticking particles hold against friction with as much more.
   float adhesion = 0.0f;
   /// Damping time of elasticity, τ [s], >= 0: the pull is that at x + τ v, so that a mode of frequency ω
   /// [rad/s] has a damping ratio of ω τ/2. With the longest step Δt and a = (1 − alpha) Δt²/(time_step

@@ -52,7 +52,8 @@ struct BodyEvent {
   enum class Kind {
     slept,    ///< it is at rest and costs nothing from now on
     woke,     ///< it moves again
-    yielded,  ///< its reference shape was updated [TK 3.2]
+    yielded,  ///< its reference shape was updated [TK 3.2], or taken anew as it had flowed [model 2, section
+              ///< 5]
     torn,     ///< that left it in more parts than it had
     merged,   ///< that left it in fewer
     touched,  ///< it touches what it did not; this and the next two where report_contacts() asks for it

@@ -1,0 +1,147 @@
+#include "shape_matching/plastic.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "core/bounds.h"
+#include "core/execution.h"
+#include "neighbors/neighbor_lists.h"
+#include "shape_matching/plastic_lanes.h"
+#include "shape_matching/shape_matching.h"
+
+namespace mallow {
+namespace {
+
+/// How far the elastic strain of a region may be from none to survive a new frame whole. [model 2, section 5]
+constexpr double k_least_strain = 0.8, k_most_strain = 1.25;
+
+/// The matrix in front of a sums row.
+Eigen::Matrix3d front_matrix(const ShapeMatching& shape, std::size_t region) {
+  const float* const row = shape.sums.data() + region * k_row;
+  return Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(row).cast<double>();
+}
+
+Eigen::Matrix3d rotation_of(const ShapeMatching& shape, std::size_t region) {
+  const auto q = [&](std::size_t k) { return static_cast<double>(shape.rotation[k][region]); };
+  return Eigen::Quaterniond(q(3), q(0), q(1), q(2)).toRotationMatrix();
+}
+
+/// A particle of which the region has flowed.
+struct Flowed {
+  std::size_t particle;
+  Vec3 position, rest;
+};
+
+std::vector<Flowed> flowed_particles(const VectorColumn& positions, std::size_t begin, float least,
+                                     const ShapeMatching& shape) {
+  std::vector<Flowed> found;
+  for (std::size_t i = 0; i < shape.reference.size(); ++i)
+    if (shape.plastic.flow[shape.first_region(i)] > least)
+      found.push_back({i, positions.get(begin + i), shape.reference.get(i)});
+  return found;
+}
+
+}  // namespace
+
+std::size_t PlasticColumns::bytes() const {
+  std::size_t sum = flow.bytes();
+  for (const Column<float>& column : stretch) sum += column.bytes();
+  return sum;
+}
+
+CarriedStretch carried_stretch(const PlasticColumns& columns, std::size_t region) {
+  CarriedStretch carried{.flow = columns.flow[region]};
+  for (int k = 0; k < 9; ++k)
+    carried.stretch(k / 3, k % 3) = columns.stretch[static_cast<std::size_t>(k)][region];
+  return carried;
+}
+
+void set_stretch(const CarriedStretch& carried, std::size_t region, PlasticColumns& columns) {
+  columns.flow[region] = carried.flow;
+  for (int k = 0; k < 9; ++k)
+    columns.stretch[static_cast<std::size_t>(k)][region] = carried.stretch(k / 3, k % 3);
+}
+
+void reset_stretches(ShapeMatching& shape) {
+  PlasticColumns& columns = shape.plastic;
+  if (!shape.flows) {
+    columns = {};
+    return;
+  }
+  const std::size_t regions = shape.region_weight.size();
+  for (std::size_t k = 0; k < 9; ++k) {
+    columns.stretch[k].resize_unset(regions);
+    std::ranges::fill(columns.stretch[k].span(), k % 4 == 0 ? 1.0f : 0.0f);
+  }
+  columns.flow.resize_unset(regions);
+  std::ranges::fill(columns.flow.span(), 0.0f);
+}
+
+Eigen::Matrix3d stretched_moment(const ShapeMatching& shape, std::size_t region) {
+  const auto b = [&](std::size_t k) { return static_cast<double>(shape.moment[k][region]); };
+  Eigen::Matrix3d moment;
+  moment << b(0), b(5), b(4), b(5), b(1), b(3), b(4), b(3), b(2);
+  const Eigen::Matrix3d stretch = carried_stretch(shape.plastic, region).stretch.cast<double>();
+  return stretch * moment * stretch.transpose();
+}
+
+Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
+                                 const Eigen::Matrix3d& moment) {
+  const double extent = moment.trace() / 3;
+  if (!(moment.determinant() > static_cast<double>(k_thin) * extent * extent * extent))
+    return Eigen::Matrix3f::Identity();
+  const Eigen::Matrix3d f = rotation.transpose() * m * moment.inverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (f + f.transpose()));
+  const Eigen::Vector3d strain = solver.eigenvalues().cwiseMax(k_least_strain).cwiseMin(k_most_strain);
+  const Eigen::Matrix3d axes = rotation * solver.eigenvectors();
+  const Eigen::Matrix3d stretch = axes * strain.cwiseInverse().asDiagonal() * axes.transpose();
+  return stretch.allFinite() ? Eigen::Matrix3f(stretch.cast<float>()) : Eigen::Matrix3f::Identity();
+}
+
+bool reframe_is_due(const VectorColumn& positions, std::size_t begin, float merge_flow,
+                    const Execution& execution, const ShapeMatching& shape) {
+  const std::span<const float> flow = shape.plastic.flow.span();
+  const float most = flow.empty() ? 0.0f : *std::ranges::max_element(flow);
+  if (most > k_far_flow) return true;
+  if (most <= merge_flow || !(shape.spacing > 0)) return false;
+  const std::vector<Flowed> flowed = flowed_particles(positions, begin, merge_flow, shape);
+  VectorColumn points(flowed.size());
+  for (std::size_t k = 0; k < flowed.size(); ++k) points.set(k, flowed[k].position);
+  CellGrid grid;
+  NeighborLists lists;
+  build_cell_grid(points, 0, points.size(), shape.spacing, execution, grid);
+  build_neighbor_lists(grid, shape.spacing, execution, lists);
+  const float apart = shape.region_radius * shape.region_radius;
+  for (std::size_t s = 0; s < points.size(); ++s)
+    for (const std::uint32_t t : lists.of(s))
+      if ((flowed[grid.order[s]].rest - flowed[grid.order[t]].rest).squaredNorm() > apart) return true;
+  return false;
+}
+
+void solve_plastic_regions(const MatchedBodies::Body& body, std::size_t begin, std::size_t end,
+                           int iterations, InstructionLevel level, float time_step) {
+  ShapeMatching& shape = *body.shape;
+  const PlasticLanes& lanes = MALLOW_SELECT(level, plastic_lanes);
+  float* rotation[4];
+  float* stretch[9];
+  for (std::size_t k = 0; k < 4; ++k) rotation[k] = shape.rotation[k].data();
+  for (std::size_t k = 0; k < 9; ++k) stretch[k] = shape.plastic.stretch[k].data();
+  lanes.solve(body.input, begin, end, iterations, stretch, shape.sums.data(), rotation,
+              shape.undecided.data());
+  for (std::size_t j = begin; j < end; ++j)
+    if (shape.undecided[j]) solve_exactly(j, stretched_moment(shape, j).trace(), shape);
+  if (body.reframed)
+    for (std::size_t j = begin; j < end; ++j)
+      (*body.reframed)[j] =
+          reframed_stretch(front_matrix(shape, j), rotation_of(shape, j), stretched_moment(shape, j));
+  // What is beyond yield flows at once where the rate is infinite: then no product with it is taken.
+  const float share = !(time_step > 0)              ? 0.0f
+                      : std::isinf(body.rule.creep) ? 1.0f
+                                                    : -std::expm1(-body.rule.creep * time_step);
+  lanes.finish(body.input, {.yield = body.rule.yield, .share = share}, begin, end, rotation,
+               shape.sums.data(), stretch, shape.plastic.flow.data());
+}
+
+}  // namespace mallow

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include <Eigen/Core>
+
+#include "core/column.h"
+#include "core/execution.h"
+
+/// Yield and creep where the strain is: every region has a plastic stretch of its own. [model 2, section 5;
+/// Mueller 2005, kept local] What flows in a step is in plastic_lanes.h; this is what is seldom done.
+namespace mallow {
+
+struct ShapeMatching;
+
+/// When and how fast regions flow.
+struct FlowRule {
+  float yield = 0;  ///< strain |Ê − I| beyond which they do
+  float creep = 0;  ///< rate at which what is beyond goes into S [1/s]; infinite: at once
+};
+
+/// κ of a region from which the body gets a new frame: S would take it too far from its reference shape.
+inline constexpr float k_far_flow = 0.5f;
+
+/// A row a region; empty where nothing flows.
+struct PlasticColumns {
+  std::array<Column<float>, 9> stretch;  ///< S_j, row by row; what flows keeps its determinant
+  Column<float> flow;                    ///< κ_j since the reference shape was taken
+
+  std::size_t bytes() const;
+};
+
+/// S_j and κ_j of one region, as particles carry them along.
+struct CarriedStretch {
+  Eigen::Matrix3f stretch = Eigen::Matrix3f::Identity();
+  float flow = 0;
+};
+CarriedStretch carried_stretch(const PlasticColumns& columns, std::size_t region);
+void set_stretch(const CarriedStretch& carried, std::size_t region, PlasticColumns& columns);
+/// Room for the regions of a shape, with S = I and κ = 0; none where it does not flow.
+void reset_stretches(ShapeMatching& shape);
+/// S B Sᵀ of a region.
+Eigen::Matrix3d stretched_moment(const ShapeMatching& shape, std::size_t region);
+
+/// S of a region whose frame becomes where its particles are: R E⁻¹ Rᵀ, so that the elastic strain E that it
+/// has stays, as far as its eigenvalues are between 0.8 and 1.25. I where the region is thin. m: M of
+/// plastic_lanes.h, moment: S B Sᵀ.
+Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
+                                 const Eigen::Matrix3d& moment);
+/// Whether the positions of a body, from row `begin` on, should become its reference shape: a region has
+/// flowed by more than k_far_flow, or two particles that are not in each other's region are nearer than a
+/// spacing, and the regions of both have flowed by more than `merge_flow`.
+bool reframe_is_due(const VectorColumn& positions, std::size_t begin, float merge_flow,
+                    const Execution& execution, const ShapeMatching& shape);
+
+}  // namespace mallow

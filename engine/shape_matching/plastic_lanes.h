@@ -1,0 +1,40 @@
+#pragma once
+
+#include "shape_matching/shape_lanes.h"
+
+namespace mallow {
+
+/// det P over (tr P/3)³ of regions that are too thin to flow: a layer of particles has no strain across. It
+/// bounds S as well.
+inline constexpr float k_thin = 1e-4f;
+
+/// Regions with a plastic stretch S_j: R_j S_j stands where RotationLanes has R_j, and S_j flows.
+/// [model 2, section 5; Mueller 2005, kept local]
+///
+/// symbol | where         | meaning
+/// S      | stretch       | plastic stretch; 9 columns, row by row
+/// κ      | flow          | Σ |G − I| since the last frame
+/// M      | sums row      | A Sᵀ, whose polar factor R is
+/// P      | of a step     | S B Sᵀ, the moment of the stretched reference shape
+/// E      | of a step     | sym(Rᵀ M P⁻¹), the elastic strain: with F = A B⁻¹ S⁻¹ this is sym(Rᵀ F), and no
+/// S⁻¹ is needed Ê, e   | of a step     | E/det(E)^⅓, |Ê − I| G      | of a step     | I + y (Ê − I), scaled
+/// to det 1; y = (1 − yield/e) share
+struct FlowInput {
+  /// Strain from which a region flows. One number for all; where it is to differ, a column beside it.
+  float yield;
+  float share;  ///< of what is beyond, that flows in this step: 1 − exp(−creep Δt); 0: nothing flows
+};
+struct PlasticLanes {
+  /// As RotationLanes::solve, of M_j, which goes in front of every sums row; the last three sums stay.
+  void (*solve)(const ShapeInput&, std::size_t begin, std::size_t end, int iterations,
+                const float* const* stretch, float* sums, float* const* rotation,
+                std::uint8_t* undecided) noexcept;
+  /// Of the rows that solve() left, and rotations: replaces them by R S − R_g (row by row) and u of the
+  /// centre − (R S − R_g) c̄, then lets S and κ flow, for the next step. What is thin (k_thin), mirrored or
+  /// not finite does not flow.
+  void (*finish)(const ShapeInput&, const FlowInput&, std::size_t begin, std::size_t end,
+                 const float* const* rotation, float* sums, float* const* stretch, float* flow) noexcept;
+};
+MALLOW_DECLARE_LEVELS(PlasticLanes, plastic_lanes)
+
+}  // namespace mallow
