@@ -16,7 +16,10 @@ struct ParticleStore {
   VectorColumn velocity;  ///< [m/s]
   Column<ParticleId> id;
   Column<std::uint16_t> pin;  ///< 0: free, else 1 + index of the pin; empty where nothing is pinned
-  Slots slots;                ///< id -> row
+  // What some body has by particle; empty where none has, else bodies without hold their material's.
+  Column<float> alpha;      ///< α, in [0, 1]
+  Column<float> stiffness;  ///< factor on the modulus, >= 0
+  Slots slots;              ///< id -> row
 
   // Where a step writes before it is known to be good; scratch of sorts in between.
   VectorColumn next_position;
@@ -31,6 +34,8 @@ struct ParticleStore {
     visit(store.velocity);
     visit(store.id);
     visit(store.pin);
+    visit(store.alpha);
+    visit(store.stiffness);
   }
 
   std::size_t size() const { return id.size(); }

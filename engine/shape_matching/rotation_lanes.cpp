@@ -122,7 +122,7 @@ void region_matrices(const float* g, const Lanes* sums, const LaneVec3& center, 
 // k_width regions from j on; rows: their sums. Where Newton does not decide, the last rotation stays.
 LaneBytes solve_lanes(const ShapeInput& in, std::size_t j, int iterations, float* rows,
                       float* const* rotation) {
-  Lanes sums[12], a[12], moment[6], q[4], r[9];
+  Lanes sums[12], a[k_row], moment[6], q[4], r[9];
   load_transposed(rows, k_row, 12, sums);
   const LaneVec3 center = get(WholeRows{j}, in.center);
   for (int k = 0; k < 6; ++k) moment[k] = load(in.moment[k] + j);
@@ -143,7 +143,13 @@ LaneBytes solve_lanes(const ShapeInput& in, std::size_t j, int iterations, float
     a[3 * i + 2] = good ? z : a[3 * i + 2];
     a[9 + i] = good ? shift : sums[9 + i];
   }
-  store_transposed(a, 12, k_row, rows);
+  if (in.elasticity) {
+    const Lanes e = load(in.elasticity + j);
+    for (std::size_t k = 0; k < k_row_sums; ++k) a[k] = good ? e * a[k] : a[k];
+    a[k_row_sums] = e;
+    for (std::size_t k = k_row_sums + 1; k < k_row; ++k) a[k] = Lanes{};
+  }
+  store_transposed(a, in.elasticity ? k_row : k_row_sums, k_row, rows);
   return bytes(~good);
 }
 

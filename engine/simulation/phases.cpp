@@ -21,16 +21,18 @@ constexpr std::int64_t k_sort_interval = 60;
 bool Simulation::State::needs_sph() const {
   const bool presses = bodies.size() > 1 && !sph.apart;
   return std::ranges::any_of(
-      bodies, [&](const BodyState& body) { return body.moves() && (presses || body.material->alpha > 0); });
+      bodies, [&](const BodyState& body) { return body.moves() && (presses || body.most_alpha() > 0); });
 }
 
 void read_alphas(Simulation::State& state) {
   for (MaterialState& material : state.materials) {
     const float before = std::exchange(material.alpha, material.settings.alpha.at(state.time));
     if (material.alpha == before) continue;
+    state.blend_changed = true;
     for (BodyState& body : state.bodies)
       if (body.material == &material) wake_island(state, body);
   }
+  blend_bodies(state);
   resolve_pressures(state);
 }
 
@@ -45,16 +47,15 @@ void take_reference(Simulation::State& state, BodyState& body) {
   state.held = false;
 }
 
-namespace {
-
 /// Velocities are those of half a step ago. What the old shape pulled since then goes into them before it is
 /// gone: then an update takes energy and never gives any. Without, a body that yields every few steps and is
 /// as stiff as its step gained energy at each update that met it swinging back.
-void catch_up_with_pull(Simulation::State& state, BodyState& body) {
+void kick_by_pull(Simulation::State& state, BodyState& body, float share) {
   MatchedBodies matched;
+  weigh_regions(state.store, body);
   matched.add(body.shape, body.begin);
   match_shapes(state.store.position, state.config.rotation_iterations, state.execution, matched);
-  const float kick = 0.5f * static_cast<float>(state.last_time_step) * state.stiffness(*body.material);
+  const float kick = share * static_cast<float>(state.last_time_step) * state.stiffness(body);
   ParticleStore& store = state.store;
   parallel_for(state.execution.threads, body.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -64,6 +65,8 @@ void catch_up_with_pull(Simulation::State& state, BodyState& body) {
     }
   });
 }
+
+namespace {
 
 /// What became of the parts of a body, whose regions are built anew.
 void tell_parts(Simulation::State& state, const BodyState& body) {
@@ -84,19 +87,19 @@ int update_references(Simulation::State& state) {
   for (BodyState* moving : state.awake) {
     BodyState& body = *moving;
     const double threshold =
-        static_cast<double>(body.material->update_threshold * (1.0f - body.material->alpha));
+        static_cast<double>(body.material->update_threshold * (1.0f - body.most_alpha()));
     const bool yields = check && body.keeps_reference() && body.mean_external() > threshold;
     const bool had_regions = body.matches_shape() && body.shape.built;
     const auto due = [&] { return body.matches_shape() && !body.shape.built; };
     // A reference shape outlives the step: nothing that is not finite may get into it.
     if (yields || due()) check_damage(state);
     if (yields) {
-      if (had_regions) {
-        find_parts(body.shape, state.parts_before);
-        catch_up_with_pull(state, body);
+      if (had_regions) find_parts(body.shape, state.parts_before);
+      if (!had_regions || !update_part(state, body)) {
+        if (had_regions) kick_by_pull(state, body, 0.5f);
+        take_reference(state, body);
+        if (had_regions) sort_parts(state.region_scratch.pillars.order.span(), state.parts_before);
       }
-      take_reference(state, body);
-      if (had_regions) sort_parts(state.region_scratch.pillars.order.span(), state.parts_before);
       body.yielded = true;
       state.events.push_back({BodyEvent::Kind::yielded, body.id});
       ++updated;
@@ -132,7 +135,7 @@ void find_walls(Simulation::State& state) {
       !state.colliders.empty()) {
     for (const BodyState* moving : state.awake) {
       const BodyState& body = *moving;
-      if (!(body.material->alpha > 0)) continue;
+      if (!(body.most_alpha() > 0)) continue;
       walls.bodies.push_back(
           {.begin = body.begin,
            .end = body.end,
@@ -160,6 +163,7 @@ void press_walls(Simulation::State& state) {
   press_walls({.position = store.position,
                .density = sph.density_by_row,
                .sph_acceleration = sph.acceleration,
+               .alpha = state.is_painted() ? store.alpha.data() : nullptr,
                .pin = store.pin.empty() ? nullptr : store.pin.data(),
                .all_loads = state.reports_contacts()},
               state.placed_colliders, state.execution, sph.walls);
@@ -224,10 +228,13 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
       .begin = body.begin,
       .end = body.end,
       .time_step = time_step,
-      .alpha = body.material->alpha,
-      .elastic_factor = pull_time * state.stiffness(*body.material),
+      // Where particles differ, a^SPH and the pull are blended already.
+      .alpha = state.is_painted() ? 1.0f : body.material->alpha,
+      .elastic_factor = pull_time * state.stiffness(body),
       .gravity = config.gravity,
-      .sph_acceleration = state.sph_ran && body.material->alpha > 0 ? &state.sph.acceleration : nullptr,
+      .sph_acceleration = state.sph_ran && (state.is_painted() || body.material->alpha > 0)
+                              ? &state.sph.acceleration
+                              : nullptr,
       .cross_group = state.cross_group(),
       .walls = state.walls(),
       .user = state.user(),

@@ -15,7 +15,7 @@ namespace mallow {
 namespace {
 
 /// Counted up whenever the chunks or what they mean change.
-constexpr std::uint32_t k_version = 8;
+constexpr std::uint32_t k_version = 9;
 static_assert(sizeof(std::size_t) == sizeof(std::uint64_t), "sizes are saved as they are");
 
 // One list of members a type, for both ways: see PackingArchive, and config/field_tables.h for those of
@@ -68,6 +68,8 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   archive(body.external_weight);
   archive(body.grew);
   archive(body.yielded);
+  archive(body.paints_alpha);
+  archive(body.paints_stiffness);
   for (auto* vector : {&body.rigid.center, &body.rigid.velocity, &body.rigid.spin})
     archive.array(vector->data(), 3);
   archive(body.rigid.deformation_speed);
@@ -372,6 +374,17 @@ void unpack_obstacles(const SavedState& saved, Simulation::State& state) {
   unpack_pin_slots(saved, state);
 }
 
+/// A number in a range for each particle, or none.
+void unpack_painted(const SavedState& saved, const char* name, std::size_t n, const Range& range,
+                    Column<float>& column) {
+  unpack(saved, name, [&](UnpackingArchive& archive) {
+    unpack_column(archive, column);
+    if (!column.empty() && column.size() != n) archive.fail("there must be one for each particle, or none");
+    for (const float value : column)
+      if (!range.holds(value) || !std::isfinite(value)) archive.fail("a number must be" + range_text(range));
+  });
+}
+
 void unpack_particles(const SavedState& saved, Simulation::State& state) {
   ParticleStore& store = state.store;
   const std::size_t n = state.bodies.empty() ? 0 : state.bodies.back().end;
@@ -389,6 +402,11 @@ void unpack_particles(const SavedState& saved, Simulation::State& state) {
     for (const std::uint16_t pin : store.pin)
       if (pin > state.pins.size()) archive.fail("there is no pin " + std::to_string(pin - 1));
   });
+  unpack_painted(saved, "alphas", n, range_of(&Material::alpha), store.alpha);
+  unpack_painted(saved, "stiffnesses", n, k_not_negative, store.stiffness);
+  const bool painted = std::ranges::any_of(state.bodies, &BodyState::is_painted);
+  if (store.alpha.size() != store.stiffness.size() || (painted && store.alpha.empty()))
+    throw ConfigError("saved state, chunk 'alphas'", "there must be as many as stiffnesses, and some");
   store.next_position.resize(n);
   store.next_velocity.resize(n);
 }
@@ -480,6 +498,8 @@ SavedState Simulation::save() const {
   add(packed_columns("positions", s.store.position));
   add(packed_columns("velocities", s.store.velocity));
   add(packed_column("pinned", s.store.pin));
+  add(packed_column("alphas", s.store.alpha));
+  add(packed_column("stiffnesses", s.store.stiffness));
   add(packed("references", [&](PackingArchive& archive) {
     for (const BodyState& body : s.bodies) archive.columns(body.shape.reference);
   }));
@@ -539,6 +559,7 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
   unpack_shapes(saved, sizes, state);
   if (state.scale.spacing > 0) resolve_settings(state);
   if (state.prepared) describe_bodies(state);
+  blend_bodies(state);
   unpack_neighbors(saved, state);
   return simulation;
 }

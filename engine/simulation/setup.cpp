@@ -159,6 +159,7 @@ void Simulation::prepare() {
     checks.problem("body", "no particles: a simulation needs at least one");
   checks.finish();
   resolve_settings(s);
+  check_elasticities(s);
   check_memory(s);
 
   s.sph.kept.forget();

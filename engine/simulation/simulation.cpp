@@ -25,8 +25,9 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
     find_walls(s);                      // x, colliders -> share of walls
     compute_density(s.execution, sph);  // lists, x, share -> ρ, p      [TK eq. 3]
     timer.lap(Phase::density);
-    compute_accelerations(s.store.velocity, s.execution, sph);  // ρ, p, x, v -> a^SPH   [TK eq. 1, 2, 4]
-    press_walls(s);                                             // ρ, a^SPH -> a^wall
+    compute_accelerations(s.store.velocity, s.store.alpha, s.execution,
+                          sph);  // ρ, p, x, v -> a^SPH   [TK eq. 1, 2, 4]
+    press_walls(s);              // ρ, a^SPH -> a^wall
     timer.lap(Phase::accelerations);
   }
 
@@ -36,6 +37,7 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
 
   const int iterations = s.config.rotation_iterations;
   const VectorColumn& led = lead_positions(s);                  // x, v -> x + τ v
+  weigh_regions(s);                                             // alpha, stiffness -> e_j
   match_small_bodies(led, iterations, s.execution, s.matched);  // x, x̄ -> R_j, g − x     [TK eq. 7]
   sum_regions(led, s.execution, s.matched);                     // x, x̄ -> sums over N_j
   timer.lap(Phase::region_sums);

@@ -24,6 +24,8 @@ struct Particle {
   Vec v{0, 0, 0};
   bool pinned = false;
   Vec pin_velocity{0, 0, 0};
+  double own_alpha = -1;  ///< in place of its group's where it is not below 0
+  double stiffness = 1;   ///< factor on the elastic modulus
 
   Vec reference{0, 0, 0};                ///< x̄
   std::vector<std::size_t> region = {};  ///< N, the particle itself included
@@ -40,10 +42,12 @@ struct Particle {
   double density = 0;
   double pressure = 0;
   Vec sph{0, 0, 0};       ///< a^SPH of the same group [m/s²]
+  Vec blended{0, 0, 0};   ///< the same, each pair times the mean alpha of its two
   Vec external{0, 0, 0};  ///< gravity, user force, walls and the other groups [m/s²]
   Vec crossing{0, 0, 0};  ///< the part of `external` that is from the other groups [m/s²]
   Vec contact{0, 0, 0};   ///< change of velocity by colliders over Δt [m/s²]
   Vec goal{0, 0, 0};      ///< g
+  Vec pull{0, 0, 0};      ///< mean of goal_ij − x_i over its regions, each times (1 − alpha) stiffness of its own
 };
 
 struct Group {
@@ -54,6 +58,7 @@ struct Group {
   double update_threshold = 0;      ///< γ_u
   double viscosity = 0;             ///< μ
   double alpha = 0;                 ///< of the last step
+  double most_alpha = 0, most_elasticity = 0;  ///< of its particles
   double pressure_coefficient = 0;  ///< k of the last step
   double contact_share = 1;         ///< of its pressure that acts between groups
   double cohesion = 0;              ///< share of its negative pressure
@@ -85,6 +90,11 @@ class Oracle {
   void add_collider(const Collider& collider) { obstacles_.push_back({collider, Vec::Zero()}); }
   void pin(const Aabb& box, const Vec& velocity);
   void set_force(Force force) { force_ = std::move(force); }
+  /// A particle has these of its own; alpha below 0: its group's.
+  void paint(std::size_t id, double alpha, double stiffness) {
+    particles_[id].own_alpha = alpha;
+    particles_[id].stiffness = stiffness;
+  }
   /// Moves the particles away from their reference shape.
   void set_positions(const std::vector<Vec>& positions);
 
@@ -103,12 +113,17 @@ class Oracle {
   };
 
   void rebuild_regions(std::size_t group);
+  void list_regions(std::size_t group);
+  void rest_anew(std::size_t group, double mean);
+  void kick_by_pull(std::size_t group, double share);
   void settle();
   void follow_alpha();
   double mean_external_acceleration(std::size_t group) const;
   double judged_acceleration(std::size_t group) const;
   bool counts_steps() const { return config_.update_interval && config_.time_step_factor == 1; }
   double passed_periods(double time) const;
+  double alpha_of(const Particle& p) const;
+  bool is_painted() const;
   double stiffness(const Group& group) const;
   std::vector<std::size_t> update_references();
   void find_walls(Particle& p) const;
