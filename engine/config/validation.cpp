@@ -32,6 +32,11 @@ void check(const AlphaSchedule& alpha, Checks& checks) {
 
 void check(const Material& material, Checks& checks) {
   check_fields("material.", material, checks);
+  const bool melts = material.solidus && material.liquidus && *material.liquidus > *material.solidus;
+  if (material.latent_heat > 0 && !melts)
+    checks.problem("material.latent_heat", "needs a solidus, and a liquidus above it");
+  if (!material.temperature && (material.alpha_by_temperature || material.viscosity_by_temperature))
+    checks.problem("material.temperature", "is missing: something follows it");
 }
 
 namespace {
@@ -160,6 +165,7 @@ void check(const Body& body, Checks& checks) {
   };
   check_column("body.alpha", body.alpha, range_of(&Material::alpha));
   check_column("body.stiffness", body.stiffness, k_not_negative);
+  check_column("body.temperature", body.temperature, k_finite);
   const auto reach = [](const Vec3& x) { return x.cwiseAbs().maxCoeff(); };
   const auto farthest = std::max_element(body.positions.begin(), body.positions.end(),
                                          [&](const Vec3& a, const Vec3& b) { return reach(a) < reach(b); });

@@ -19,6 +19,8 @@ struct ParticleStore {
   // What some body has by particle; empty where none has, else bodies without hold their material's.
   Column<float> alpha;      ///< α, in [0, 1]
   Column<float> stiffness;  ///< factor on the modulus, >= 0
+  Column<float> temperature;      ///< T [K]; empty where nothing carries heat
+  Column<float> temperature_rest;  ///< what that leaves out of a double [K]
   Slots slots;              ///< id -> row
 
   // Where a step writes before it is known to be good; scratch of sorts in between.
@@ -36,6 +38,8 @@ struct ParticleStore {
     visit(store.pin);
     visit(store.alpha);
     visit(store.stiffness);
+    visit(store.temperature);
+    visit(store.temperature_rest);
   }
 
   std::size_t size() const { return id.size(); }

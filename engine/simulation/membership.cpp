@@ -59,6 +59,7 @@ void insert_points(Simulation::State& s, const Points& points, const Body& given
   const std::size_t begin = body.end;
   body.end += points.positions.size();
   paint_rows(s, body, begin, given);
+  warm_rows(s, body, begin, given);
   s.rows_changed();
 }
 
@@ -156,6 +157,7 @@ BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name)
   body.shape.region_stride = material.settings.region_stride;
   derive_density(s.config, body);
   check_elasticity(s, body, points);
+  refuse_temperatures(body, points);
   insert_points(s, checked_points(s, body, points), points, body);
   const std::uint64_t number = s.body_slots.take();
   s.body_slots.place(s.bodies.size(), {&number, 1});
@@ -194,6 +196,7 @@ void Simulation::extend_body(BodyId id, const Body& points) {
   checks.finish();
   checked_points(s, body, points);
   check_elasticity(s, body, points);
+  refuse_temperatures(body, points);
   extend(s, body, points);
 }
 

@@ -72,7 +72,8 @@ std::vector<Pairs> pairs_of(const Simulation::State& state) {
   for (const BodyState& body : state.bodies) {
     if (body.keeps_reference())
       add(region_field(body.material->settings), body.shape.region_radius, body, body.size());
-    if (state.bodies.size() > 1 || body.paints_alpha || body.material->settings.alpha.highest() > 0)
+    if (state.bodies.size() > 1 || body.paints_alpha || body.material->carries_heat() ||
+        body.material->settings.alpha.highest() > 0)
       add("solver.support_radius", state.config.support_radius, body, state.store.size());
   }
   return all;

@@ -27,7 +27,9 @@ void make_columns(Simulation::State& s) {
 
 /// The least alpha that a row may have: that of a schedule changes.
 float least_alpha(const Simulation::State& s, const BodyState& body, std::size_t row) {
-  return body.paints_alpha ? s.store.alpha[row] : body.material->settings.alpha.lowest();
+  const Material& settings = body.material->settings;
+  if (settings.alpha_by_temperature) return settings.alpha_by_temperature->lowest();
+  return body.paints_alpha ? s.store.alpha[row] : settings.alpha.lowest();
 }
 
 void check_elasticity(const Simulation::State& s, const BodyState& body, Checks& checks) {
@@ -43,9 +45,12 @@ void paint(Simulation::State& s, std::span<const ParticleId> ids, float value, c
   s.refuse_in_callback();
   Checks checks;
   check_value(field, value, range, checks);
+  const bool is_alpha = column == &ParticleStore::alpha;
   for (const ParticleId id : ids) {
-    if (s.store.slots.find(id)) continue;
-    checks.problem("particle", why_unknown(s.store, id));
+    const std::optional<std::size_t> row = s.store.slots.find(id);
+    if (row && !(is_alpha && s.body_of(*row).material->settings.alpha_by_temperature)) continue;
+    if (!row) checks.problem("particle", why_unknown(s.store, id));
+    if (row) checks.problem(field, "is not allowed where alpha follows temperature: see set_temperature()");
     break;
   }
   checks.finish();
@@ -83,7 +88,7 @@ void paint(Simulation::State& s, std::span<const ParticleId> ids, float value, c
 }  // namespace
 
 void paint_rows(Simulation::State& s, BodyState& body, std::size_t begin, const Body& points) {
-  if (!points.alpha.empty()) body.paints_alpha = true;
+  if (!points.alpha.empty() || body.material->settings.alpha_by_temperature) body.paints_alpha = true;
   if (!points.stiffness.empty()) body.paints_stiffness = true;
   if (body.is_painted()) make_columns(s);
   if (!s.is_painted()) return;
@@ -129,11 +134,13 @@ void blend_bodies(Simulation::State& s) {
 }
 
 void check_elasticity(const Simulation::State& s, const BodyState& body, const Body& points) {
-  if (points.alpha.empty() && points.stiffness.empty()) return;
-  const float alpha = body.material->settings.alpha.lowest();
+  const Material& settings = body.material->settings;
+  if (points.alpha.empty() && points.stiffness.empty() && !settings.alpha_by_temperature) return;
+  const bool own = !points.alpha.empty() && !settings.alpha_by_temperature;
+  const float alpha = settings.alpha_by_temperature.value_or(settings.alpha).lowest();
   float most = 0;
   for (std::size_t k = 0; k < points.positions.size(); ++k)
-    most = std::max(most, (1 - (points.alpha.empty() ? alpha : points.alpha[k])) *
+    most = std::max(most, (1 - (own ? points.alpha[k] : alpha)) *
                               (points.stiffness.empty() ? 1.0f : points.stiffness[k]));
   Checks checks;
   check_elasticity(s.config, body.material->settings, most, checks);

@@ -21,7 +21,7 @@ constexpr std::int64_t k_sort_interval = 60;
 bool Simulation::State::needs_sph() const {
   const bool presses = bodies.size() > 1 && !sph.apart;
   return std::ranges::any_of(
-      bodies, [&](const BodyState& body) { return body.moves() && (presses || body.most_alpha() > 0); });
+      bodies, [&](const BodyState& body) { return body.moves() && (presses || body.is_heated || body.most_alpha() > 0); });
 }
 
 void read_alphas(Simulation::State& state) {
@@ -32,6 +32,7 @@ void read_alphas(Simulation::State& state) {
     for (BodyState& body : state.bodies)
       if (body.material == &material) wake_island(state, body);
   }
+  follow_temperatures(state);
   blend_bodies(state);
   resolve_pressures(state);
 }

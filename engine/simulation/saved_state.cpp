@@ -70,6 +70,7 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   archive(body.yielded);
   archive(body.paints_alpha);
   archive(body.paints_stiffness);
+  archive(body.is_heated);
   for (auto* vector : {&body.rigid.center, &body.rigid.velocity, &body.rigid.spin})
     archive.array(vector->data(), 3);
   archive(body.rigid.deformation_speed);
@@ -404,6 +405,11 @@ void unpack_particles(const SavedState& saved, Simulation::State& state) {
   });
   unpack_painted(saved, "alphas", n, range_of(&Material::alpha), store.alpha);
   unpack_painted(saved, "stiffnesses", n, k_not_negative, store.stiffness);
+  unpack_painted(saved, "temperatures", n, k_finite, store.temperature);
+  unpack_painted(saved, "temperature_rests", n, k_finite, store.temperature_rest);
+  const bool heated = std::ranges::any_of(state.bodies, &BodyState::is_heated);
+  if (store.temperature.size() != store.temperature_rest.size() || (heated && store.temperature.empty()))
+    throw ConfigError("saved state, chunk 'temperatures'", "there must be as many as rests, and some");
   const bool painted = std::ranges::any_of(state.bodies, &BodyState::is_painted);
   if (store.alpha.size() != store.stiffness.size() || (painted && store.alpha.empty()))
     throw ConfigError("saved state, chunk 'alphas'", "there must be as many as stiffnesses, and some");
@@ -500,6 +506,8 @@ SavedState Simulation::save() const {
   add(packed_column("pinned", s.store.pin));
   add(packed_column("alphas", s.store.alpha));
   add(packed_column("stiffnesses", s.store.stiffness));
+  add(packed_column("temperatures", s.store.temperature));
+  add(packed_column("temperature_rests", s.store.temperature_rest));
   add(packed("references", [&](PackingArchive& archive) {
     for (const BodyState& body : s.bodies) archive.columns(body.shape.reference);
   }));
@@ -559,6 +567,7 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
   unpack_shapes(saved, sizes, state);
   if (state.scale.spacing > 0) resolve_settings(state);
   if (state.prepared) describe_bodies(state);
+  if (state.prepared) prepare_heat(state);
   blend_bodies(state);
   unpack_neighbors(saved, state);
   return simulation;

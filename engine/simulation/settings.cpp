@@ -103,7 +103,10 @@ void resolve_settings(Simulation::State& state) {
   for (MaterialState& material : state.materials)
     material.update_threshold = material.settings.update_threshold.value_or(threshold);
   for (BodyState& body : state.bodies)
-    body.viscosity =
+    if (const auto& thins = body.material->settings.viscosity_by_temperature)
+      body.viscosity = thins->highest();
+    else
+      body.viscosity =
         body.material->settings.viscosity.value_or(default_viscosity(state.scale, state.base_step(), body));
 }
 

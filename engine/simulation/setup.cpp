@@ -164,6 +164,7 @@ void Simulation::prepare() {
 
   s.sph.kept.forget();
   describe_bodies(s);
+  prepare_heat(s);
   for (BodyState& body : s.bodies) {
     if (body.grew && body.keeps_reference()) {
       take_reference(s, body);

@@ -12,6 +12,7 @@
 #include "core/disjoint_sets.h"
 #include "core/execution.h"
 #include "core/slots.h"
+#include "heat/heat.h"
 #include "mallow/simulation.h"
 #include "motion/motion.h"
 #include "motion/time_step.h"
@@ -36,6 +37,7 @@ struct MaterialState {
   float most_alpha = 0, most_elasticity = 1;
   float update_threshold = 0;  ///< γ_u in force [m/s²]
 
+  bool carries_heat() const { return settings.temperature.has_value(); }
   bool keeps_reference() const { return settings.alpha.lowest() < 1.0f; }
 };
 
@@ -73,6 +75,7 @@ struct BodyState {
   double mean_speed = 0;  ///< of its particles, after the last step [m/s]
   Aabb box = {};          ///< around its particles while it sleeps [m]
   bool paints_alpha = false, paints_stiffness = false;  ///< its particles have their own
+  bool is_heated = false;  ///< its particles have a temperature
   BlendRange blend;                                     ///< of one that paints
   bool grew = true;       ///< has particles that prepare() has not seen
   ShapeMatching shape;    ///< empty where alpha is never below 1
@@ -179,6 +182,8 @@ struct Simulation::State {
   Contacts contacts;
   ForceCallback force;
   Sph sph;
+  Heat heat;
+  Column<float> viscosity;         ///< μ by row, where it follows temperatures; else empty [Pa s]
   VectorColumn user_acceleration;  ///< empty without a force callback
 
   /// Positions as the user sees them, of step `far_step`; empty where the origin is 0.
@@ -287,6 +292,18 @@ std::string why_unknown(const ParticleStore& store, ParticleId id);
 
 /// time -> alpha of every material, and k where that follows it; what particles have of their own.
 void read_alphas(Simulation::State& state);
+/// temperatures -> alpha of what follows them.
+void follow_temperatures(Simulation::State& state);
+/// temperatures -> viscosity of what follows them.
+void thin_by_heat(Simulation::State& state);
+/// lists of SPH, colliders, air -> temperatures. [Cleary & Monaghan 1999; model 2, section 7] Throws StepError.
+void conduct_heat(Simulation::State& state, float time_step);
+/// Temperatures of particles that have none yet; what follows from the materials of heated bodies.
+void prepare_heat(Simulation::State& state);
+/// Throws ConfigError where points have temperatures and their body carries no heat.
+void refuse_temperatures(const BodyState& body, const Body& points);
+/// Rows [begin, end) of a body, its last ones, are as warm as points say.
+void warm_rows(Simulation::State& state, BodyState& body, std::size_t begin, const Body& points);
 /// alpha, stiffness of particles -> e_j of the regions of bodies that paint. [model 2, section 7]
 void weigh_regions(Simulation::State& state);
 /// mean |a_ext| -> reference shapes that give way, their rows sorted; regions that are due; the bodies whose

@@ -173,6 +173,7 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
       touching_pressure[i - first] = pressures[i] * group.contact_share;
     }
   }
+  if (blended && in.viscosity) own_viscosity = load(in.viscosity + first);
   // Where there are few neighbours, viscosity takes the rest density for the density: with its own a thin
   // place would be the stiffer the thinner it is, beyond what the limit on the step knows of.
   const Floats own_volume = load(volumes + first);
@@ -181,6 +182,7 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
     const int number = grouped ? static_cast<int>(in.group[j]) : 0;
     const SphGroup& group = in.groups[number];
     Sides sides{own_pressure, pressures[j], volumes[j], own_viscosity + group.viscosity, {}, {}};
+    if (blended && in.viscosity) sides.viscosity = own_viscosity + in.viscosity[j];
     if (viscous) sides.velocity = difference(in.velocity, j, v);
     if (viscous && Formula::central)
       sides.viscous_volume = own_share * (volumes[j] < group.rest_volume ? volumes[j] : group.rest_volume);

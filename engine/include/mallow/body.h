@@ -26,6 +26,9 @@ struct Body {
   /// is bounded as Material::elastic_time_step says. Empty, where it is 1 everywhere, or as long as
   /// `positions`.
   std::vector<float> stiffness = {};
+  /// Of each point at the start [K], finite, where the material carries heat; empty: the material's. Else as long
+  /// as `positions`.
+  std::vector<float> temperature = {};
   /// Acts on other bodies of its material that merge, and of its spacing, as on itself: two puddles become
   /// one. Bodies that do not merge touch.
   bool merges = false;

@@ -3,12 +3,14 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <variant>
 #include <vector>
 
 #include "mallow/export.h"
+#include "mallow/schedule.h"
 #include "mallow/vec3.h"
 
 namespace mallow {
@@ -137,6 +139,11 @@ struct Collider {
   /// Where given, it moves through these poses, with the velocities that follow: evenly from one to the next,
   /// turning the shorter way round. Before the first and after the last it stands still.
   std::vector<PoseKeyframe> keyframes = {};
+  /// Of its surface, over time [K]: particles that touch it take heat from it or give it, see
+  /// Material::temperature. Left out: no heat passes.
+  std::optional<Schedule> temperature = {};
+  /// Of what lies between it and what touches it [W/(m² K)], > 0; left out: nothing does.
+  std::optional<float> heat_transfer = {};
 };
 
 /// What particles gave a collider in one step.
