@@ -48,6 +48,8 @@ struct FieldTable<SolverConfig> {
           "what is slower for sleep_time, with all that it touches, sleeps until something wakes it; 0: none",
           "0.005 spacings in a time_step"},
       Field{"sleep_time", &Config::sleep_time, k_positive, "s", "see sleep_speed", "60 time_step"},
+      Field{"air_temperature", &Config::air_temperature, k_finite, "K",
+            "of the air, or keyframes of it over time; see material.heat_transfer"},
       Field{
           "rotation_iterations", &Config::rotation_iterations, between(0, 8), "",
           "most iterations for a region's rotation in a step; it stops when converged; 0 is exact and slow"},
@@ -102,6 +104,20 @@ struct FieldTable<Material> {
             "radius of the shape matching regions", "solver.support_radius"},
       Field{"region_stride", &Material::region_stride, at_least(1), "particles",
             "one region for this many particles; more is faster and coarser"},
+      Field{"temperature", &Material::temperature, k_finite, "K", "of its particles at the start",
+            "it carries no heat"},
+      Field{"conductivity", &Material::conductivity, k_not_negative, "W/(m K)", "of heat, κ"},
+      Field{"specific_heat", &Material::specific_heat, k_positive, "J/(kg K)", "heat that warms it"},
+      Field{"latent_heat", &Material::latent_heat, k_not_negative, "J/kg",
+            "heat that melting takes, evenly from solidus to liquidus"},
+      Field{"solidus", &Material::solidus, k_finite, "K", "it is solid below", "where latent_heat is 0"},
+      Field{"liquidus", &Material::liquidus, k_finite, "K", "it is liquid above", "where latent_heat is 0"},
+      Field{"heat_transfer", &Material::heat_transfer, k_not_negative, "W/(m² K)",
+            "from its surface to the air"},
+      Field{"alpha_by_temperature", &Material::alpha_by_temperature, between(0, 1), "",
+            "alpha by temperature, [[temperature, alpha], ...]", "alpha"},
+      Field{"viscosity_by_temperature", &Material::viscosity_by_temperature, k_not_negative, "Pa s",
+            "viscosity by temperature, [[temperature, viscosity], ...]", "viscosity"},
   };
 };
 
@@ -153,6 +169,11 @@ struct FieldTable<Collider> {
       Field{"restitution", &Collider::restitution, between(0, 1), "",
             "share of the normal velocity that bounces back, e"},
       Field{"friction", &Collider::friction, k_not_negative, "", "Coulomb's μ_f"},
+      Field{"temperature", &Collider::temperature, k_finite, "K",
+            "of its surface, or keyframes of it over time: it heats or cools what touches it",
+            "no heat passes"},
+      Field{"heat_transfer", &Collider::heat_transfer, k_positive, "W/(m² K)",
+            "of what lies between it and what touches it", "nothing lies between"},
       Field{"measure_load", &Collider::measure_load, k_any, "", "sum up what particles do to it", "",
             Written::in_states},
   };

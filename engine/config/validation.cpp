@@ -35,6 +35,11 @@ void check(const Material& material, Checks& checks) {
   if (material.plastic_creep && !material.plastic_yield)
     checks.problem("material.plastic_creep",
                    "is not allowed without plastic_yield: give the strain beyond which it flows, 0 or above");
+  const bool melts = material.solidus && material.liquidus && *material.liquidus > *material.solidus;
+  if (material.latent_heat > 0 && !melts)
+    checks.problem("material.latent_heat", "needs a solidus, and a liquidus above it");
+  if (!material.temperature && (material.alpha_by_temperature || material.viscosity_by_temperature))
+    checks.problem("material.temperature", "is missing: something follows it");
 }
 
 namespace {
@@ -93,6 +98,25 @@ void check_stiffness(const SolverConfig& config, const Material& material, Check
   checks.problem("material.elastic_time_step", text.str());
 }
 
+void check_elasticity(const SolverConfig& config, const Material& material, float share, Checks& checks) {
+  if (!config.time_step) return;
+  const double base = static_cast<double>(*config.time_step);
+  const double step = static_cast<double>(config.time_step_factor) * base;
+  const double elastic_step = static_cast<double>(material.elastic_time_step.value_or(*config.time_step));
+  const double damped = 1 + 2 * static_cast<double>(material.damping_time) / step;
+  const double rate = static_cast<double>(material.deformation_damping.value_or(0.0f));
+  constexpr double k_linear = 0.9, k_rounding = 1e-5;
+  const double most_pull =
+      std::min(static_cast<double>(k_stiffest), 2 * k_linear * (2 + std::expm1(-rate * step))) / damped;
+  const double most = most_pull * base * elastic_step / (step * step);
+  if (static_cast<double>(share) <= most * (1 + k_rounding)) return;
+  std::ostringstream text;
+  text << "makes (1 - alpha) times stiffness " << share << " at some particle: at most " << most
+       << " is allowed, as a stiffer body would gain energy; lower solver.time_step (now " << base
+       << "), or raise material.elastic_time_step";
+  checks.problem("body.stiffness", text.str());
+}
+
 void check(const Emitter& emitter, Checks& checks) {
   check_fields("emitter.", emitter, checks);
   const bool corners = emitter.width || emitter.height;
@@ -133,6 +157,18 @@ void check(const Body& body, Checks& checks) {
   };
   first_bad("body.positions", body.positions);
   first_bad("body.velocities", body.velocities);
+  const auto check_column = [&](const std::string& field, const std::vector<float>& values,
+                                const Range& range) {
+    if (!values.empty() && values.size() != body.positions.size())
+      checks.problem(field, std::to_string(values.size()) + " numbers for " +
+                                std::to_string(body.positions.size()) + " positions: none or as many");
+    const auto bad = [&](float value) { return !range.holds(value) || !std::isfinite(value); };
+    if (const auto first = std::ranges::find_if(values, bad); first != values.end())
+      check_value(field + '[' + std::to_string(first - values.begin()) + ']', *first, range, checks);
+  };
+  check_column("body.alpha", body.alpha, range_of(&Material::alpha));
+  check_column("body.stiffness", body.stiffness, k_not_negative);
+  check_column("body.temperature", body.temperature, k_finite);
   const auto reach = [](const Vec3& x) { return x.cwiseAbs().maxCoeff(); };
   const auto farthest = std::max_element(body.positions.begin(), body.positions.end(),
                                          [&](const Vec3& a, const Vec3& b) { return reach(a) < reach(b); });

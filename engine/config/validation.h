@@ -20,6 +20,8 @@ void check(const Material& material, Checks& checks);
 /// at 2.5. [model 2, section 4 B]
 inline constexpr float k_stiffest = 2.5f;
 /// Whether steps of this solver are short enough for the material's springs.
+/// The same where the stiffest particle of a body has this share of the material's modulus.
+void check_elasticity(const SolverConfig& config, const Material& material, float share, Checks& checks);
 void check_stiffness(const SolverConfig& config, const Material& material, Checks& checks);
 MALLOW_EXPORT void check(const Emitter& emitter, Checks& checks);
 void check(const Body& body, Checks& checks);

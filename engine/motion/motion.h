@@ -26,8 +26,8 @@ struct PinMotion {
 struct MotionInput {
   std::size_t begin, end;                ///< rows of the body
   float time_step;                       ///< Δt [s]
-  float alpha;                           ///< α
-  float elastic_factor;                  ///< (1 − α) Δt/(Δt0 Δt_SM) [1/s]
+  float alpha;                           ///< α; 1 where a^SPH is blended already
+  float elastic_factor;                  ///< (1 − α) Δt/(Δt0 Δt_SM), without (1 − α) likewise [1/s]
   Vec3 gravity;                          ///< [m/s²]
   const VectorColumn* sph_acceleration;  ///< by row of the store [m/s²]
   const VectorColumn* cross_group;       ///< by row of the store [m/s²]

@@ -70,6 +70,8 @@ void ParticleStore::permute(std::size_t begin, std::span<const std::uint32_t> or
     if constexpr (std::is_same_v<decltype(column), VectorColumn&>) {
       for (std::size_t a = 0; a < 3; ++a)
         gather(threads, begin, order, column.axis(a), next_position.axis(a) + begin);
+    } else if constexpr (std::is_same_v<decltype(column), Column<float>&>) {
+      gather(threads, begin, order, column.data(), next_position.axis(0) + begin);
     } else {
       words.resize(size());
       gather(threads, begin, order, column.data(), words.data() + begin);

@@ -1,7 +1,8 @@
 #pragma once
 
-// Newton's method for rotations, for the files of lanes that solve them: rotation_lanes.h says what it finds
-// and has its symbols. In an anonymous namespace of the level, as core/lanes.h. [Kugelstadt et al. 2018]
+// Newton's method for rotations, and rows of regions, for the files of lanes that solve them:
+// rotation_lanes.h says what it finds and has its symbols. In an anonymous namespace of the level, as
+// core/lanes.h. [Kugelstadt et al. 2018]
 #include "core/lanes.h"
 #include "shape_matching/rotation_lanes.h"
 
@@ -118,6 +119,18 @@ inline void region_matrices(const float* g, const Lanes* sums, const LaneVec3& c
     a[3 * i + 1] = gx * xy + gy * yy + gz * yz + (sums[3 * i + 1] - sums[9 + i] * center.y);
     a[3 * i + 2] = gx * xz + gy * yz + gz * zz + (sums[3 * i + 2] - sums[9 + i] * center.z);
   }
+}
+
+// Rows a of k_width regions from j on, each e_j times where regions differ, with e_j itself as their
+// thirteenth number; what is left undecided is not weighed yet. a: k_row lanes.
+inline void weigh_and_store(const ShapeInput& in, std::size_t j, const LaneMask& good, Lanes* a,
+                            float* rows) {
+  if (!in.elasticity) return store_transposed(a, k_row_sums, k_row, rows);
+  const Lanes e = load(in.elasticity + j);
+  for (std::size_t k = 0; k < k_row_sums; ++k) a[k] = good ? e * a[k] : a[k];
+  a[k_row_sums] = e;
+  for (std::size_t k = k_row_sums + 1; k < k_row; ++k) a[k] = Lanes{};
+  store_transposed(a, k_row, k_row, rows);
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ void flow_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, cons
 
 void finish_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, const float* const* rotation,
                   float* rows, float* const* stretch, float* flow) {
-  Lanes sums[12], s[9], q[4], r[9], turned[12];
+  Lanes sums[12], s[9], q[4], r[9], turned[k_row];
   load_transposed(rows, k_row, 12, sums);
   const LaneVec3 center = get(WholeRows{j}, in.center);
   for (int k = 0; k < 4; ++k) q[k] = load(rotation[k] + j);
@@ -154,7 +154,7 @@ void finish_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, co
     for (int k = 0; k < 3; ++k) row[k] = row[k] - g[k];
     turned[9 + i] = sums[9 + i] * inverse - (row[0] * center.x + row[1] * center.y + row[2] * center.z);
   }
-  store_transposed(turned, 12, k_row, rows);
+  weigh_and_store(in, j, ~LaneMask{}, turned, rows);
   if (rule.share > 0) flow_lanes(in, rule, j, sums, r, s, stretch, flow);
 }
 

@@ -167,7 +167,7 @@ bool is_drawn(std::uint32_t row, std::uint32_t stride) {
 std::size_t ShapeMatching::bytes() const {
   std::size_t sum = reference.bytes() + regions.bytes() + memberships.bytes() + weight.bytes() +
                     region_weight.bytes() + center.bytes() + table.bytes() + sums.bytes() +
-                    undecided.bytes() + plastic.bytes() + pull.bytes();
+                    undecided.bytes() + plastic.bytes() + pull.bytes() + elasticity.bytes() + owners.bytes();
   for (const Column<float>& column : moment) sum += column.bytes();
   for (const Column<float>& column : rotation) sum += column.bytes();
   return sum;
@@ -227,6 +227,8 @@ void list_regions(const Execution& execution, RegionScratch& scratch, ShapeMatch
   scratch.owners.resize(0);
   if (!every) choose_owners(static_cast<std::uint32_t>(shape.region_stride), execution.threads, scratch);
   const std::size_t regions = every ? n : scratch.owners.size();
+  shape.owners.resize_unset(scratch.owners.size());
+  std::copy(scratch.owners.begin(), scratch.owners.end(), shape.owners.begin());
   encode(scratch.near, scratch.owners.span(), n, execution.threads, shape.regions);
   shape.weight.resize_unset(n);
   shape.average_neighbors =

@@ -80,6 +80,83 @@ std::vector<std::optional<std::size_t>> nearest_of_body(const VectorColumn& posi
   return nearest;
 }
 
+/// Puts particles beside others that are in place already.
+class RestBeside {
+ public:
+  RestBeside(const VectorColumn& positions, std::size_t begin, std::span<const std::uint8_t> yields,
+             const Execution& execution, CarriedRegions& carried, ShapeMatching& shape)
+      : x_(positions), begin_(begin), carried_(carried), shape_(shape), placed_(yields.size()) {
+    build_cell_grid(positions, begin, begin + yields.size(), shape.region_radius, execution, grid_);
+    build_neighbor_lists(grid_, shape.region_radius, execution, lists_);
+    for (std::size_t s = 0; s < yields.size(); ++s) {
+      placed_[grid_.order[s]] = yields[grid_.order[s]] == 0;
+      if (yields[grid_.order[s]] != 0) left_.push_back(static_cast<std::uint32_t>(s));
+    }
+  }
+
+  /// Goes outwards from those in place, as far as lists reach in one round; what nothing reaches starts from
+  /// the nearest of all.
+  void run() {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+    while (!left_.empty()) {
+      found.clear();
+      for (const std::uint32_t s : left_)
+        if (const std::uint32_t beside = nearest(grid_.order[s], lists_.of(s)); beside != UINT32_MAX)
+          found.emplace_back(grid_.order[s], beside);
+      if (found.empty()) found.emplace_back(grid_.order[left_[0]], nearest_of_all(grid_.order[left_[0]]));
+      for (const auto& [i, beside] : found) put(i, beside);
+      std::erase_if(left_, [&](std::uint32_t s) { return placed_[grid_.order[s]]; });
+    }
+  }
+
+ private:
+  float squared_distance(std::uint32_t i, std::uint32_t k) const {
+    return (x_.get(begin_ + i) - x_.get(begin_ + k)).squaredNorm();
+  }
+  /// Of several as near the first.
+  void take_nearer(std::uint32_t i, std::uint32_t k, std::uint32_t& best, float& least) const {
+    if (!placed_[k]) return;
+    const float distance = squared_distance(i, k);
+    if (distance > least || (distance == least && k > best)) return;
+    least = distance;
+    best = k;
+  }
+  std::uint32_t nearest(std::uint32_t i, std::span<const std::uint32_t> list) const {
+    std::uint32_t best = UINT32_MAX;
+    float least = std::numeric_limits<float>::infinity();
+    for (const std::uint32_t t : list) take_nearer(i, grid_.order[t], best, least);
+    return best;
+  }
+  std::uint32_t nearest_of_all(std::uint32_t i) const {
+    std::uint32_t best = UINT32_MAX;
+    float least = std::numeric_limits<float>::infinity();
+    for (std::uint32_t k = 0; k < placed_.size(); ++k) take_nearer(i, k, best, least);
+    return best;
+  }
+  void put(std::uint32_t i, std::uint32_t beside) {
+    const Eigen::Vector4f rotation = carried_.rotations[beside];
+    Vec3 arm = turn(rotation).conjugate() * (x_.get(begin_ + i) - x_.get(begin_ + beside));
+    if (shape_.flows) {
+      carried_.stretches[i] = {.stretch = carried_.stretches[beside].stretch};
+      arm = carried_.stretches[i].stretch.inverse() * arm;
+    }
+    shape_.reference.set(i, shape_.reference.get(beside) + arm);
+    carried_.rotations[i] = rotation;
+    carried_.former[i] = FormerLists::k_none;
+    carried_.news = box_around(carried_.news, box_around(shape_.reference, i, i + 1));
+    placed_[i] = true;
+  }
+
+  const VectorColumn& x_;
+  const std::size_t begin_;
+  CarriedRegions& carried_;
+  ShapeMatching& shape_;
+  CellGrid grid_;
+  NeighborLists lists_;
+  std::vector<bool> placed_;
+  std::vector<std::uint32_t> left_;  ///< sorted places of those that are not in place yet
+};
+
 }  // namespace
 
 CarriedRegions carry_regions(const ShapeMatching& shape) {
@@ -162,6 +239,12 @@ void erase_from_reference(std::span<const std::uint32_t> places, CarriedRegions&
     if (!carried.stretches.empty()) erase(carried.stretches);
     erase(carried.former);
   }
+  center_reference(carried, shape);
+}
+
+void rest_anew(const VectorColumn& positions, std::size_t begin, std::span<const std::uint8_t> yields,
+               const Execution& execution, CarriedRegions& carried, ShapeMatching& shape) {
+  RestBeside(positions, begin, yields, execution, carried, shape).run();
   center_reference(carried, shape);
 }
 

@@ -38,6 +38,11 @@ void build_carried(const CarriedRegions& carried, const Execution& execution, Re
 /// Regions are due to be built.
 void erase_from_reference(std::span<const std::uint32_t> places, CarriedRegions& carried,
                           ShapeMatching& shape);
+/// Particles of which `yields` is not 0, some but not all, rest anew: beside one that does not, as its region
+/// is turned, or beside one that rests beside such a one. All others keep where they rest.
+/// positions: of the body, from row `begin` on. Regions are due to be built.
+void rest_anew(const VectorColumn& positions, std::size_t begin, std::span<const std::uint8_t> yields,
+               const Execution& execution, CarriedRegions& carried, ShapeMatching& shape);
 /// Adds particles at `added` where they would rest: beside the particle that is nearest, as its region is
 /// turned; what has none within the region radius goes with the body as a whole.
 /// positions: of the body, from row `begin` on. Regions are due to be built.

@@ -10,7 +10,7 @@ namespace {
 // k_width regions from j on; rows: their sums. Where Newton does not decide, the last rotation stays.
 LaneBytes solve_lanes(const ShapeInput& in, std::size_t j, int iterations, float* rows,
                       float* const* rotation) {
-  Lanes sums[12], a[12], moment[6], q[4], r[9];
+  Lanes sums[12], a[k_row], moment[6], q[4], r[9];
   load_transposed(rows, k_row, 12, sums);
   const LaneVec3 center = get(WholeRows{j}, in.center);
   for (int k = 0; k < 6; ++k) moment[k] = load(in.moment[k] + j);
@@ -31,7 +31,7 @@ LaneBytes solve_lanes(const ShapeInput& in, std::size_t j, int iterations, float
     a[3 * i + 2] = good ? z : a[3 * i + 2];
     a[9 + i] = good ? shift : sums[9 + i];
   }
-  store_transposed(a, 12, k_row, rows);
+  weigh_and_store(in, j, good, a, rows);
   return bytes(~good);
 }
 

@@ -95,14 +95,15 @@ void goals(const ShapeInput& in, std::size_t begin, std::size_t end, const float
   for_rows(begin, end, [&](const auto& part) {
     for (std::size_t l = 0; l < part.count; ++l)
       sum_rows(table, in.memberships, part.row + l, rows + l * k_row);
-    Lanes s[k_row_sums];
-    load_transposed(rows, k_row, k_row_sums, s);
+    Lanes s[k_row];
+    load_transposed(rows, k_row, in.elasticity ? k_row : k_row_sums, s);
     const LaneVec3 reference = get(part, in.reference);
     const LaneVec3 u = displacement(in, get(part, in.position), reference);
     const Lanes x = reference.x, y = reference.y, z = reference.z;
     const LaneVec3 sum = {s[0] * x + s[1] * y + s[2] * z + s[9], s[3] * x + s[4] * y + s[5] * z + s[10],
                           s[6] * x + s[7] * y + s[8] * z + s[11]};
-    put(part, part.get(in.weight) * sum - u, pull);
+    const Lanes w = part.get(in.weight);
+    put(part, in.elasticity ? w * (sum - s[k_row_sums] * u) : w * sum - u, pull);
   });
 }
 

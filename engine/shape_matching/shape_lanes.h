@@ -5,7 +5,8 @@
 
 namespace mallow {
 
-/// Floats of a row: twelve sums and padding, one cache line, so that a neighbour costs one load and one add.
+/// Floats of a row: twelve sums, Σ e_j where regions differ, and padding, one cache line, so that a neighbour
+/// costs one load and one add.
 inline constexpr std::size_t k_row = 16;
 inline constexpr std::size_t k_row_sums = 12;
 /// Consecutive rows.
@@ -48,6 +49,10 @@ struct RegionLists {
 /// c̄_j     | center        | m    | Σ w x̄ / W
 /// B_j     | moment        | m²   | Σ w x̄ x̄ᵀ − W c̄ c̄ᵀ: xx yy zz yz xz xy
 /// R_j     | rotation      | 1    | quaternion x y z w, last step's where a step starts
+/// e_j     | elasticity    | 1    | (1 − α_j) times the stiffness factor of region j's owner, where some
+/// differ:
+///         |               |      | the goal of region j counts e_j times. Momentum is kept, as what a region
+///         |               |      | does to its particles sums up to nothing. [model 2, section 7]
 struct ShapeInput {
   RegionLists regions;      ///< per region: its particles
   RegionLists memberships;  ///< per particle: its regions; the same lists where every particle owns a region
@@ -57,6 +62,7 @@ struct ShapeInput {
   const float* region_weight;
   ConstVectors center;
   const float* moment[6];
+  const float* elasticity;     ///< null: 1 for all
   float frame_rotation[9];     ///< R_g, row by row
   float frame_translation[3];  ///< t
 };
@@ -71,7 +77,8 @@ struct ShapeLanes {
   /// sums row j, of region j: Σ_{i∈N_j} of rows, by a table of them.
   void (*sum_regions)(const ShapeInput&, std::size_t begin, std::size_t end, const float* table,
                       float* sums) noexcept;
-  /// g_i − x_i = w_i (Σ (R_j − R_g) x̄_i + Σ (...)) − u_i, by a table of the rows of sums. [TK eq. 7]
+  /// g_i − x_i = w_i (Σ (R_j − R_g) x̄_i + Σ (...)) − u_i, by a table of the rows of sums. [TK eq. 7] Where
+  /// regions differ, w_i Σ e_j (goal_ij − x_i).
   void (*goals)(const ShapeInput&, std::size_t begin, std::size_t end, const float* table,
                 Vectors pull) noexcept;
 };

@@ -67,6 +67,8 @@ void solve_undecided(const ShapeInput& in, std::size_t begin, std::size_t end, S
       }
       row[9 + i] = row[9 + i] / weight + (weight - weight) - difference.dot(center);
     }
+    if (in.elasticity)
+      for (std::size_t k = 0; k < k_row_sums; ++k) row[k] *= in.elasticity[j];
   }
 }
 
@@ -148,6 +150,7 @@ ShapeInput shape_input(const VectorColumn& positions, std::size_t begin, const S
       .region_weight = shape.region_weight.data(),
       .center = raw(shape.center),
       .moment = {},
+      .elasticity = shape.elasticity.empty() ? nullptr : shape.elasticity.data(),
       .frame_rotation = {},
       .frame_translation = {},
   };

@@ -43,6 +43,8 @@ struct ShapeMatching {
   VectorColumn center;                    ///< c̄_j [m]
   std::array<Column<float>, 6> moment;    ///< B_j [m²]
   std::array<Column<float>, 4> rotation;  ///< R_j as x y z w
+  Column<float> elasticity;               ///< e_j; empty where it is the same for all
+  Column<std::uint32_t> owners;           ///< particle of each region; empty with a stride of 1
   Column<float> sums;                     ///< k_row floats a region, and k_longest_run rows of zeros
   Column<std::uint8_t> undecided;
   PlasticColumns plastic;
@@ -56,6 +58,8 @@ struct ShapeMatching {
   double total_moment = 0;        ///< trace of Σ (x̄ − mean) (x̄ − mean)ᵀ / n [m²]
   RigidFrame frame;
 
+  /// The particle whose region it is.
+  std::size_t owner(std::size_t region) const { return region_stride == 1 ? region : owners[region]; }
   /// A particle of region j: the owner, or with a stride above 1 the first that the region's list names.
   std::size_t first_row(std::size_t region) const {
     return region_stride == 1 ? region : regions.entries[regions.begin[region]] % regions.rows;

@@ -49,10 +49,14 @@ double match(const Simulation::State& state, const BodyState& body, std::vector<
     }
     const Eigen::Matrix3d rotation =
         polar_rotation(a * stretch.transpose(), last, scale).toRotationMatrix() * stretch;
+    const std::size_t owner = body.begin + shape.owner(j);
+    const double share =
+        body.is_painted() ? static_cast<double>((1 - state.store.alpha[owner]) * state.store.stiffness[owner])
+                          : 1.0;
     for (const std::uint32_t i : members) {
       const Vec away = rotation * (rest(i) - rest_center) + center - x(i);
-      sum += 0.5 * static_cast<double>(shape.weight[i]) * away.squaredNorm();
-      pull[i] += away;
+      sum += 0.5 * share * static_cast<double>(shape.weight[i]) * away.squaredNorm();
+      pull[i] += share * away;
       regions[i] += 1;
     }
   }
@@ -64,7 +68,7 @@ double match(const Simulation::State& state, const BodyState& body, std::vector<
 void add_energy(const Simulation::State& s, const BodyState& body, std::vector<Vec>& pull, Energy& energy) {
   const Vec gravity = s.config.gravity.cast<double>();
   const double mass = static_cast<double>(body.mass);
-  const double stiffness = static_cast<double>(s.stiffness(*body.material));
+  const double stiffness = static_cast<double>(s.stiffness(body));
   const bool is_elastic = body.matches_shape() && body.shape.built;
   if (is_elastic) energy.elastic += stiffness * mass * match(s, body, pull);
   for (std::size_t row = body.begin; row < body.end; ++row) {

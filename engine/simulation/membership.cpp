@@ -53,23 +53,14 @@ Points checked_points(const Simulation::State& s, const BodyState& body, const B
 }
 
 /// Puts points behind the last row of a body.
-void insert_points(Simulation::State& s, const Points& points, BodyState& body) {
+void insert_points(Simulation::State& s, const Points& points, const Body& given, BodyState& body) {
   if (s.store.size() == 0) s.origin = points.origin;
   s.store.insert(body.end, points.positions, points.velocities);
+  const std::size_t begin = body.end;
   body.end += points.positions.size();
+  paint_rows(s, body, begin, given);
+  warm_rows(s, body, begin, given);
   s.rows_changed();
-}
-
-/// The reference shape of a body has changed: its rows are sorted for it, and its regions built of what their
-/// particles carried along.
-void rebuild_shape(Simulation::State& s, BodyState& body, CarriedRegions& carried) {
-  PillarOrder& pillars = s.region_scratch.pillars;
-  sort_reference(s.execution, pillars, body.shape);
-  s.store.permute(body.begin, pillars.order.span(), s.execution.threads);
-  sort_carried(pillars.order.span(), carried);
-  build_carried(carried, s.execution, s.region_scratch, body.shape);
-  measure_rigid(s, body);
-  s.held = false;
 }
 
 std::vector<std::uint32_t> rows_of(const Simulation::State& s, std::span<const ParticleId> ids) {
@@ -129,12 +120,23 @@ void remove_rows(Simulation::State& s, BodyState& body, std::span<const std::uin
 
 }  // namespace
 
+void rebuild_shape(Simulation::State& s, BodyState& body, CarriedRegions& carried) {
+  PillarOrder& pillars = s.region_scratch.pillars;
+  sort_reference(s.execution, pillars, body.shape);
+  s.store.permute(body.begin, pillars.order.span(), s.execution.threads);
+  sort_carried(pillars.order.span(), carried);
+  build_carried(carried, s.execution, s.region_scratch, body.shape);
+  measure_rigid(s, body);
+  s.held = false;
+}
+
 void Simulation::State::rows_changed() {
   rows_moved();
   sph.grid.order.resize(0);
   sph_ran = false;
   prepared = false;
   held = false;
+  blend_changed = true;
 }
 
 BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name) {
@@ -155,7 +157,9 @@ BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name)
   body.shape.region_stride = material.settings.region_stride;
   body.shape.flows = material.settings.plastic_yield.has_value();
   derive_density(s.config, body);
-  insert_points(s, checked_points(s, body, points), body);
+  check_elasticity(s, body, points);
+  refuse_temperatures(body, points);
+  insert_points(s, checked_points(s, body, points), points, body);
   const std::uint64_t number = s.body_slots.take();
   s.body_slots.place(s.bodies.size(), {&number, 1});
   body.id = BodyId{number};
@@ -192,6 +196,8 @@ void Simulation::extend_body(BodyId id, const Body& points) {
   }
   checks.finish();
   checked_points(s, body, points);
+  check_elasticity(s, body, points);
+  refuse_temperatures(body, points);
   extend(s, body, points);
 }
 
@@ -203,13 +209,14 @@ std::vector<ParticleId> extend(Simulation::State& s, BodyState& body, const Body
   if (remembers) {
     // As they are now, not as they were when the last step began.
     MatchedBodies matched;
+    weigh_regions(s.store, body);
     matched.add(body.shape, body.begin);
     match_shapes(s.store.position, s.config.rotation_iterations, s.execution, matched);
     carried = carry_regions(body.shape);
     append_to_reference(s.store.position, body.begin, added.positions, s.execution, carried, body.shape);
   }
   const std::size_t old_end = body.end;
-  insert_points(s, added, body);
+  insert_points(s, added, points, body);
   shift_rows(s, body, old_end);
   std::vector<ParticleId> ids(s.store.id.begin() + old_end, s.store.id.begin() + body.end);
   if (remembers)

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "shape_matching/reshape.h"
 #include "simulation/state.h"
 
 /// What of coming and going more than applications do.
@@ -10,6 +11,9 @@ namespace mallow {
 
 /// As Simulation::extend_body(), unchecked. Returns the ids of the new particles, in their order.
 std::vector<ParticleId> extend(Simulation::State& state, BodyState& body, const Body& points);
+/// The reference shape of a body has changed: its rows are sorted for it, and its regions built of what their
+/// particles carried along.
+void rebuild_shape(Simulation::State& state, BodyState& body, CarriedRegions& carried);
 /// As Simulation::remove_particles(); ids: different, and there.
 void erase_particles(Simulation::State& state, std::span<const ParticleId> ids);
 /// As Simulation::unpin().

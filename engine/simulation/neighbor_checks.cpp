@@ -72,7 +72,8 @@ std::vector<Pairs> pairs_of(const Simulation::State& state) {
   for (const BodyState& body : state.bodies) {
     if (body.keeps_reference())
       add(region_field(body.material->settings), body.shape.region_radius, body, body.size());
-    if (state.bodies.size() > 1 || body.material->settings.alpha.highest() > 0)
+    if (state.bodies.size() > 1 || body.paints_alpha || body.material->carries_heat() ||
+        body.material->settings.alpha.highest() > 0)
       add("solver.support_radius", state.config.support_radius, body, state.store.size());
   }
   return all;
@@ -83,8 +84,11 @@ std::vector<Pairs> pairs_of(const Simulation::State& state) {
 void check_neighbors(const Simulation::State& state, const Material& material, const Body& points) {
   if (points.positions.size() == 1) return;
   const float support_radius = state.config.support_radius;
-  if (material.alpha.highest() > 0) check_radius(state, "solver.support_radius", support_radius, points);
-  if (material.alpha.lowest() < 1)
+  const auto flows = [](float alpha) { return alpha > 0; };
+  const auto holds = [](float alpha) { return alpha < 1; };
+  if (points.alpha.empty() ? material.alpha.highest() > 0 : std::ranges::any_of(points.alpha, flows))
+    check_radius(state, "solver.support_radius", support_radius, points);
+  if (points.alpha.empty() ? material.alpha.lowest() < 1 : std::ranges::any_of(points.alpha, holds))
     check_radius(state, region_field(material), material.region_radius.value_or(support_radius), points);
 }
 

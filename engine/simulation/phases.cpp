@@ -21,17 +21,21 @@ constexpr std::int64_t k_sort_interval = 60;
 
 bool Simulation::State::needs_sph() const {
   const bool presses = bodies.size() > 1 && !sph.apart;
-  return std::ranges::any_of(
-      bodies, [&](const BodyState& body) { return body.moves() && (presses || body.material->alpha > 0); });
+  return std::ranges::any_of(bodies, [&](const BodyState& body) {
+    return body.moves() && (presses || body.is_heated || body.most_alpha() > 0);
+  });
 }
 
 void read_alphas(Simulation::State& state) {
   for (MaterialState& material : state.materials) {
     const float before = std::exchange(material.alpha, material.settings.alpha.at(state.time));
     if (material.alpha == before) continue;
+    state.blend_changed = true;
     for (BodyState& body : state.bodies)
       if (body.material == &material) wake_island(state, body);
   }
+  follow_temperatures(state);
+  blend_bodies(state);
   resolve_pressures(state);
 }
 
@@ -46,16 +50,15 @@ void take_reference(Simulation::State& state, BodyState& body) {
   state.held = false;
 }
 
-namespace {
-
 /// Velocities are those of half a step ago. What the old shape pulled since then goes into them before it is
 /// gone: then an update takes energy and never gives any. Without, a body that yields every few steps and is
 /// as stiff as its step gained energy at each update that met it swinging back.
-void catch_up_with_pull(Simulation::State& state, BodyState& body) {
+void kick_by_pull(Simulation::State& state, BodyState& body, float share) {
   MatchedBodies matched;
+  weigh_regions(state.store, body);
   matched.add(body.shape, body.begin);
   match_shapes(state.store.position, state.config.rotation_iterations, state.execution, matched);
-  const float kick = 0.5f * static_cast<float>(state.last_time_step) * state.stiffness(*body.material);
+  const float kick = share * static_cast<float>(state.last_time_step) * state.stiffness(body);
   ParticleStore& store = state.store;
   parallel_for(state.execution.threads, body.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -66,6 +69,8 @@ void catch_up_with_pull(Simulation::State& state, BodyState& body) {
   });
 }
 
+namespace {
+
 bool flows(const BodyState& body) {
   return body.shape.flows && body.matches_shape() && body.shape.built;
 }
@@ -73,6 +78,17 @@ bool flows(const BodyState& body) {
 FlowRule flow_rule(const Material& material) {
   return {.yield = material.plastic_yield.value_or(0.0f),
           .creep = material.plastic_creep.value_or(std::numeric_limits<float>::infinity())};
+}
+
+/// Where a body is becomes its reference shape, whose regions keep the elastic strain that they have.
+void reframe(Simulation::State& state, BodyState& body) {
+  CarriedRegions carried = reframe_regions(state.store.position, body.begin, state.config.rotation_iterations,
+                                           state.execution, body.shape);
+  take_reference(state, body);
+  const std::span<const std::uint32_t> order = state.region_scratch.pillars.order.span();
+  sort_parts(order, state.parts_before);
+  sort_carried(order, carried);
+  build_carried(carried, state.execution, state.region_scratch, body.shape);
 }
 
 /// What became of the parts of a body, whose regions are built anew.
@@ -94,7 +110,7 @@ int update_references(Simulation::State& state) {
   for (BodyState* moving : state.awake) {
     BodyState& body = *moving;
     const double threshold =
-        static_cast<double>(body.material->update_threshold * (1.0f - body.material->alpha));
+        static_cast<double>(body.material->update_threshold * (1.0f - body.most_alpha()));
     const bool yields = check && body.follows_threshold() && body.judged_external > threshold;
     const bool reframes = check && !yields && flows(body) &&
                           reframe_is_due(state.store.position, body.begin, body.material->settings.merge_flow,
@@ -104,19 +120,13 @@ int update_references(Simulation::State& state) {
     // A reference shape outlives the step: nothing that is not finite may get into it.
     if (yields || reframes || due()) check_damage(state);
     if (yields || reframes) {
-      CarriedRegions carried;
       if (had_regions) find_parts(body.shape, state.parts_before);
-      if (reframes)
-        carried = reframe_regions(state.store.position, body.begin, state.config.rotation_iterations,
-                                  state.execution, body.shape);
-      else if (had_regions)
-        catch_up_with_pull(state, body);
-      take_reference(state, body);
-      const std::span<const std::uint32_t> order = state.region_scratch.pillars.order.span();
-      if (had_regions) sort_parts(order, state.parts_before);
       if (reframes) {
-        sort_carried(order, carried);
-        build_carried(carried, state.execution, state.region_scratch, body.shape);
+        reframe(state, body);
+      } else if (!had_regions || !update_part(state, body)) {
+        if (had_regions) kick_by_pull(state, body, 0.5f);
+        take_reference(state, body);
+        if (had_regions) sort_parts(state.region_scratch.pillars.order.span(), state.parts_before);
       }
       body.yielded = true;
       state.events.push_back({BodyEvent::Kind::yielded, body.id});
@@ -154,7 +164,7 @@ void find_walls(Simulation::State& state) {
       !state.colliders.empty()) {
     for (const BodyState* moving : state.awake) {
       const BodyState& body = *moving;
-      if (!(body.material->alpha > 0)) continue;
+      if (!(body.most_alpha() > 0)) continue;
       walls.bodies.push_back(
           {.begin = body.begin,
            .end = body.end,
@@ -182,6 +192,7 @@ void press_walls(Simulation::State& state) {
   press_walls({.position = store.position,
                .density = sph.density_by_row,
                .sph_acceleration = sph.acceleration,
+               .alpha = state.is_painted() ? store.alpha.data() : nullptr,
                .pin = store.pin.empty() ? nullptr : store.pin.data(),
                .all_loads = state.reports_contacts()},
               state.placed_colliders, state.execution, sph.walls);
@@ -246,10 +257,13 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
       .begin = body.begin,
       .end = body.end,
       .time_step = time_step,
-      .alpha = body.material->alpha,
-      .elastic_factor = pull_time * state.stiffness(*body.material),
+      // Where particles differ, a^SPH and the pull are blended already.
+      .alpha = state.is_painted() ? 1.0f : body.material->alpha,
+      .elastic_factor = pull_time * state.stiffness(body),
       .gravity = config.gravity,
-      .sph_acceleration = state.sph_ran && body.material->alpha > 0 ? &state.sph.acceleration : nullptr,
+      .sph_acceleration = state.sph_ran && (state.is_painted() || body.material->alpha > 0)
+                              ? &state.sph.acceleration
+                              : nullptr,
       .cross_group = state.cross_group(),
       .walls = state.walls(),
       .user = state.user(),

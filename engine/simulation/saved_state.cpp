@@ -72,6 +72,9 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   });
   archive(body.grew);
   archive(body.yielded);
+  archive(body.paints_alpha);
+  archive(body.paints_stiffness);
+  archive(body.is_heated);
   for (auto* vector : {&body.rigid.center, &body.rigid.velocity, &body.rigid.spin})
     archive.array(vector->data(), 3);
   archive(body.rigid.deformation_speed);
@@ -380,6 +383,17 @@ void unpack_obstacles(const SavedState& saved, Simulation::State& state) {
   unpack_pin_slots(saved, state);
 }
 
+/// A number in a range for each particle, or none.
+void unpack_painted(const SavedState& saved, const char* name, std::size_t n, const Range& range,
+                    Column<float>& column) {
+  unpack(saved, name, [&](UnpackingArchive& archive) {
+    unpack_column(archive, column);
+    if (!column.empty() && column.size() != n) archive.fail("there must be one for each particle, or none");
+    for (const float value : column)
+      if (!range.holds(value) || !std::isfinite(value)) archive.fail("a number must be" + range_text(range));
+  });
+}
+
 void unpack_particles(const SavedState& saved, Simulation::State& state) {
   ParticleStore& store = state.store;
   const std::size_t n = state.bodies.empty() ? 0 : state.bodies.back().end;
@@ -397,6 +411,16 @@ void unpack_particles(const SavedState& saved, Simulation::State& state) {
     for (const std::uint16_t pin : store.pin)
       if (pin > state.pins.size()) archive.fail("there is no pin " + std::to_string(pin - 1));
   });
+  unpack_painted(saved, "alphas", n, range_of(&Material::alpha), store.alpha);
+  unpack_painted(saved, "stiffnesses", n, k_not_negative, store.stiffness);
+  unpack_painted(saved, "temperatures", n, k_finite, store.temperature);
+  unpack_painted(saved, "temperature_rests", n, k_finite, store.temperature_rest);
+  const bool heated = std::ranges::any_of(state.bodies, &BodyState::is_heated);
+  if (store.temperature.size() != store.temperature_rest.size() || (heated && store.temperature.empty()))
+    throw ConfigError("saved state, chunk 'temperatures'", "there must be as many as rests, and some");
+  const bool painted = std::ranges::any_of(state.bodies, &BodyState::is_painted);
+  if (store.alpha.size() != store.stiffness.size() || (painted && store.alpha.empty()))
+    throw ConfigError("saved state, chunk 'alphas'", "there must be as many as stiffnesses, and some");
   store.next_position.resize(n);
   store.next_velocity.resize(n);
 }
@@ -510,6 +534,10 @@ SavedState Simulation::save() const {
   add(packed_columns("positions", s.store.position));
   add(packed_columns("velocities", s.store.velocity));
   add(packed_column("pinned", s.store.pin));
+  add(packed_column("alphas", s.store.alpha));
+  add(packed_column("stiffnesses", s.store.stiffness));
+  add(packed_column("temperatures", s.store.temperature));
+  add(packed_column("temperature_rests", s.store.temperature_rest));
   add(packed("references", [&](PackingArchive& archive) {
     for (const BodyState& body : s.bodies) archive.columns(body.shape.reference);
   }));
@@ -577,6 +605,8 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
   unpack_stretches(saved, state);
   if (state.scale.spacing > 0) resolve_settings(state);
   if (state.prepared) describe_bodies(state);
+  if (state.prepared) prepare_heat(state);
+  blend_bodies(state);
   unpack_neighbors(saved, state);
   return simulation;
 }

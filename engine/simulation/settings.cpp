@@ -103,15 +103,18 @@ void resolve_settings(Simulation::State& state) {
   for (MaterialState& material : state.materials)
     material.update_threshold = material.settings.update_threshold.value_or(threshold);
   for (BodyState& body : state.bodies)
-    body.viscosity =
-        body.material->settings.viscosity.value_or(default_viscosity(state.scale, state.base_step(), body));
+    if (const auto& thins = body.material->settings.viscosity_by_temperature)
+      body.viscosity = thins->highest();
+    else
+      body.viscosity =
+          body.material->settings.viscosity.value_or(default_viscosity(state.scale, state.base_step(), body));
 }
 
 float pressure_coefficient(const Simulation::State& state, const MaterialState& material) {
   if (material.settings.pressure_coefficient) return *material.settings.pressure_coefficient;
   const float time_step = pressed_step(state);
-  return default_pressure_coefficient(state.config.support_radius, material.alpha,
-                                      state.stiffness(material) * time_step * time_step, time_step);
+  const float pull = state.stiffness(material, material.most_elasticity) * time_step * time_step;
+  return default_pressure_coefficient(state.config.support_radius, material.most_alpha, pull, time_step);
 }
 
 void resolve_pressures(Simulation::State& state) {
@@ -122,7 +125,7 @@ void resolve_pressures(Simulation::State& state) {
     sums.contact_share = 1;
     sums.cohesion = material.settings.cohesion;
     if (material.settings.pressure_coefficient) continue;
-    sums.contact_share = contact_share(material.alpha);
+    sums.contact_share = contact_share(material.most_alpha);
     sums.cohesion *=
         cohesive_share(state.config.support_radius, sums.pressure_coefficient, pressed_step(state));
   }

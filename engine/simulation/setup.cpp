@@ -159,10 +159,12 @@ void Simulation::prepare() {
     checks.problem("body", "no particles: a simulation needs at least one");
   checks.finish();
   resolve_settings(s);
+  check_elasticities(s);
   check_memory(s);
 
   s.sph.kept.forget();
   describe_bodies(s);
+  prepare_heat(s);
   for (BodyState& body : s.bodies) {
     if (body.grew && body.keeps_reference()) {
       take_reference(s, body);

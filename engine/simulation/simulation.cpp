@@ -12,7 +12,7 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
   StepReport report;
   PhaseTimer timer(report.seconds, after_phase);
 
-  read_alphas(s);                                    // time -> alpha
+  read_alphas(s);                                    // time, T -> alpha
   wake_bodies(s);                                    // what moves or changed -> bodies that move
   report.updated_references = update_references(s);  // |a_ext| -> x̄, regions       [TK 3.2, eq. 14]
   sort_fluids(s);                                    // rows of fluids -> cell order
@@ -25,8 +25,10 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
     find_walls(s);                      // x, colliders -> share of walls
     compute_density(s.execution, sph);  // lists, x, share -> ρ, p      [TK eq. 3]
     timer.lap(Phase::density);
-    compute_accelerations(s.store.velocity, s.execution, sph);  // ρ, p, x, v -> a^SPH   [TK eq. 1, 2, 4]
-    press_walls(s);                                             // ρ, a^SPH -> a^wall
+    thin_by_heat(s);  // T -> μ
+    compute_accelerations(s.store.velocity, {s.store.alpha, s.viscosity}, s.execution,
+                          sph);  // ρ, p, x, v -> a^SPH   [TK eq. 1, 2, 4]
+    press_walls(s);              // ρ, a^SPH -> a^wall
     timer.lap(Phase::accelerations);
   }
 
@@ -37,6 +39,7 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
   const int iterations = s.config.rotation_iterations;
   s.matched.time_step = step.time_step;                         // in which regions flow  [model 2, section 5]
   const VectorColumn& led = lead_positions(s);                  // x, v -> x + τ v
+  weigh_regions(s);                                             // alpha, stiffness -> e_j
   match_small_bodies(led, iterations, s.execution, s.matched);  // x, x̄ -> R_j, g − x     [TK eq. 7]
   sum_regions(led, s.execution, s.matched);                     // x, x̄ -> sums over N_j
   timer.lap(Phase::region_sums);
@@ -55,6 +58,7 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
   } else {
     move_bodies(s, step.time_step, {.predict = true, .collide = true, .advance = true});
   }
+  conduct_heat(s, step.time_step);  // x, T, colliders -> T
   report.awake_bodies = s.awake.size();
   tell_contacts(s, step.time_step);  // impulses -> events of contacts
   finish_step(s, step);              // v', x' -> v, x; c ← c + 1

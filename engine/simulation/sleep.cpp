@@ -177,7 +177,7 @@ void rest_bodies(Simulation::State& state, float time_step) {
   bool any_ready = false;
   for (BodyState* body : state.awake) {
     const double speed = sleep_speed(state, *body);
-    const bool slow = body->mean_speed < speed;
+    const bool slow = body->mean_speed < speed && !body->is_heated;
     body->slow_time = slow ? body->slow_time + static_cast<double>(time_step) : 0;
     if (!(body->slow_time >= sleep_time(state))) continue;
     if (is_kept_awake(state, *body))

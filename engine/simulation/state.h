@@ -12,6 +12,7 @@
 #include "core/disjoint_sets.h"
 #include "core/execution.h"
 #include "core/slots.h"
+#include "heat/heat.h"
 #include "mallow/simulation.h"
 #include "motion/motion.h"
 #include "motion/time_step.h"
@@ -31,10 +32,19 @@ struct MaterialState {
   std::string name;
   std::uint32_t number = 0;  ///< its MaterialId
   Material settings;
-  float alpha = 0;             ///< at the present time
+  float alpha = 0;  ///< at the present time
+  /// Of all particles of its bodies, where some have their own: that k suits.
+  float most_alpha = 0, most_elasticity = 1;
   float update_threshold = 0;  ///< γ_u in force [m/s²]
 
+  bool carries_heat() const { return settings.temperature.has_value(); }
   bool keeps_reference() const { return settings.alpha.lowest() < 1.0f; }
+};
+
+/// What the particles of a body span that differ.
+struct BlendRange {
+  float least_alpha = 0, most_alpha = 0;
+  float most_elasticity = 1;  ///< largest (1 − α) times stiffness
 };
 
 /// A range of rows and its reference shape.
@@ -68,16 +78,21 @@ struct BodyState {
   double slow_time = 0;   ///< for how long it has been slower than what may sleep [s]
   double mean_speed = 0;  ///< of its particles, after the last step [m/s]
   Aabb box = {};          ///< around its particles while it sleeps [m]
-  bool grew = true;       ///< has particles that prepare() has not seen
-  ShapeMatching shape;    ///< empty where alpha is never below 1
+  bool paints_alpha = false, paints_stiffness = false;  ///< its particles have their own
+  bool is_heated = false;                               ///< its particles have a temperature
+  BlendRange blend;                                     ///< of one that paints
+  bool grew = true;                                     ///< has particles that prepare() has not seen
+  ShapeMatching shape;                                  ///< empty where alpha is never below 1
 
   std::size_t size() const { return end - begin; }
+  bool is_painted() const { return paints_alpha || paints_stiffness; }
+  float most_alpha() const { return is_painted() ? blend.most_alpha : material->alpha; }
+  bool keeps_reference() const { return paints_alpha || material->keeps_reference(); }
+  bool matches_shape() const { return (is_painted() ? blend.least_alpha : material->alpha) < 1.0f; }
   /// The paper's rule updates its reference shape: where regions flow, only if it is asked for.
   bool follows_threshold() const {
     return keeps_reference() && (!shape.flows || material->settings.update_threshold.has_value());
   }
-  bool keeps_reference() const { return material->keeps_reference(); }
-  bool matches_shape() const { return material->alpha < 1.0f; }
   bool moves() const { return enabled && island == 0; }
 };
 
@@ -173,6 +188,8 @@ struct Simulation::State {
   Contacts contacts;
   ForceCallback force;
   Sph sph;
+  Heat heat;
+  Column<float> viscosity;         ///< μ by row, where it follows temperatures; else empty [Pa s]
   VectorColumn user_acceleration;  ///< empty without a force callback
 
   /// Positions as the user sees them, of step `far_step`; empty where the origin is 0.
@@ -180,6 +197,7 @@ struct Simulation::State {
   std::int64_t far_step = -1;
 
   bool prepared = false;
+  bool blend_changed = true;      ///< α or stiffness of some particles, or whose they are
   bool held = true;               ///< those that do not move lie where they are in both sets of columns
   bool sph_ran = false;           ///< in the last step
   std::vector<BodyState*> awake;  ///< bodies that move in the step under way
@@ -244,11 +262,22 @@ struct Simulation::State {
   bool reports_contacts() const {
     return std::ranges::any_of(bodies, [](const BodyState& body) { return body.hit_impulse.has_value(); });
   }
-  /// Of the pull towards goals, (1 − α)/(Δt0 Δt_SM) [1/s²]. [TK eq. 13]
-  float stiffness(const MaterialState& material) const {
+  /// Of the pull towards goals, (1 − α)/(Δt0 Δt_SM) [1/s²], where (1 − α) is `share`. [TK eq. 13]
+  float stiffness(const MaterialState& material, float share) const {
     const float elastic_step = material.settings.elastic_time_step.value_or(base_step());
-    return (1.0f - material.alpha) / (base_step() * elastic_step);
+    return share / (base_step() * elastic_step);
   }
+  /// Of a body, whose regions may have their own share already.
+  float stiffness(const BodyState& body) const {
+    return stiffness(*body.material, body.is_painted() ? 1.0f : 1.0f - body.material->alpha);
+  }
+  /// Of the stiffest region of a body.
+  float most_stiffness(const BodyState& body) const {
+    return stiffness(*body.material,
+                     body.is_painted() ? body.blend.most_elasticity : 1.0f - body.material->alpha);
+  }
+  /// Some particles have their own alpha or stiffness: SPH blends pair by pair.
+  bool is_painted() const { return !store.alpha.empty(); }
   /// Rate at which deformations are damped, ζ [1/s].
   float deformation_damping(const BodyState& body) const;
   const VectorColumn* cross_group() const {
@@ -267,8 +296,23 @@ std::string why_unknown(const ParticleStore& store, ParticleId id);
 
 // The phases of step(), in its order. Each says what it reads -> what it writes.
 
-/// time -> alpha of every material, and k where that follows it.
+/// time -> alpha of every material, and k where that follows it; what particles have of their own.
 void read_alphas(Simulation::State& state);
+/// temperatures -> alpha of what follows them.
+void follow_temperatures(Simulation::State& state);
+/// temperatures -> viscosity of what follows them.
+void thin_by_heat(Simulation::State& state);
+/// lists of SPH, colliders, air -> temperatures. [Cleary & Monaghan 1999; model 2, section 7] Throws
+/// StepError.
+void conduct_heat(Simulation::State& state, float time_step);
+/// Temperatures of particles that have none yet; what follows from the materials of heated bodies.
+void prepare_heat(Simulation::State& state);
+/// Throws ConfigError where points have temperatures and their body carries no heat.
+void refuse_temperatures(const BodyState& body, const Body& points);
+/// Rows [begin, end) of a body, its last ones, are as warm as points say.
+void warm_rows(Simulation::State& state, BodyState& body, std::size_t begin, const Body& points);
+/// alpha, stiffness of particles -> e_j of the regions of bodies that paint. [model 2, section 7]
+void weigh_regions(Simulation::State& state);
 /// mean |a_ext| -> reference shapes that give way, their rows sorted; regions that are due; the bodies whose
 /// shapes are matched in this step. Returns how many gave way. [TK 3.2, model 6]
 int update_references(Simulation::State& state);
@@ -344,6 +388,22 @@ void describe_bodies(Simulation::State& state);
 using PhaseHook = std::function<void(Phase)>;
 /// One step of a prepared simulation: Simulation::step_towards().
 StepReport take_step(Simulation::State& state, double end, const PhaseHook& after_phase = {});
+
+/// One body's, for whoever matches its shape outside of a step.
+void weigh_regions(const ParticleStore& store, BodyState& body);
+/// alpha of materials, what changed -> alpha of rows that follow them; what bodies and materials span.
+void blend_bodies(Simulation::State& state);
+/// Rows [begin, end) of a body, its last ones, get what points say of them.
+void paint_rows(Simulation::State& state, BodyState& body, std::size_t begin, const Body& points);
+/// Throws ConfigError where points make a body too stiff.
+void check_elasticity(const Simulation::State& state, const BodyState& body, const Body& points);
+/// Throws ConfigError where a body is stiffer than its steps carry.
+void check_elasticities(const Simulation::State& state);
+/// positions -> pull; that of `share` of the last step goes into the velocities of a body.
+void kick_by_pull(Simulation::State& state, BodyState& body, float share);
+/// Updates the reference shape of a body where its particles yield, and leaves it where others hold. Returns
+/// false where all yield: then the whole is to be taken. [model 2, section 7]
+bool update_part(Simulation::State& state, BodyState& body);
 
 /// Writes the wall time between laps into a report.
 class PhaseTimer {

@@ -25,12 +25,13 @@ TimeStepLimits::Pressure acting_pressure(const Simulation::State& state, const B
   // Other bodies feel the whole pressure, whatever this one's alpha, unless it follows alpha.
   const bool follows = !body.material->settings.pressure_coefficient;
   const bool presses = state.bodies.size() > 1 && !state.sph.apart;
-  const float push = presses ? (follows ? contact_share(body.material->alpha) : 1.0f) : body.material->alpha;
-  const float drag = presses ? 1.0f : body.material->alpha;
+  const float push =
+      presses ? (follows ? contact_share(body.material->most_alpha) : 1.0f) : body.most_alpha();
+  const float drag = presses ? 1.0f : body.most_alpha();
   const float coefficient = push * pressure_coefficient(state, *body.material);
   return {.coefficient = coefficient,
           .kinematic_viscosity = drag * body.viscosity / body.rest_density,
-          .stiffness = state.stiffness(*body.material),
+          .stiffness = state.most_stiffness(body),
           .pull = follows ? 0.0f : body.material->settings.cohesion * coefficient,
           .damping_time = body.material->settings.damping_time,
           .damping_rate = body.material->settings.deformation_damping.value_or(0.0f)};
@@ -89,7 +90,9 @@ Fastest find_fastest(Simulation::State& state) {
     const BodyState& body = *moving;
     // The paper's bound takes the whole acceleration, of which alpha acts. A k that is left out grows as
     // alpha falls: steps would be shortened, and varied, by what does not act.
-    const float share = body.material->settings.pressure_coefficient ? 1.0f : body.material->alpha;
+    // Where particles differ it is blended already.
+    const bool whole = body.material->settings.pressure_coefficient || state.is_painted();
+    const float share = whole ? 1.0f : body.material->alpha;
     input.bodies.push_back({body.begin, body.end, share});
   }
   return fastest_particle(state.store, state.execution, input);

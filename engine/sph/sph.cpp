@@ -23,6 +23,8 @@ SphInput input(const Sph& sph) {
       .wall_share = sph.walls.any ? sph.walls.share.data() : nullptr,
       .position = raw(sph.grid.sorted),
       .velocity = sph.viscous ? raw(sph.velocity) : ConstVectors{},
+      .alpha = sph.alpha.empty() ? nullptr : sph.alpha.data(),
+      .viscosity = sph.viscosity.empty() ? nullptr : sph.viscosity.data(),
       .radius = sph.support_radius,
       .inverse_radius = 1.0f / sph.support_radius,
       .density_factor = sph.factors.density,
@@ -35,8 +37,8 @@ SphInput input(const Sph& sph) {
 
 std::size_t Sph::bytes() const {
   return grid.bytes() + lists.bytes() + kept.bytes() + rows.bytes() + positions.bytes() + group.bytes() +
-         velocity.bytes() + density.bytes() + pressure.bytes() + volume.bytes() + density_by_row.bytes() +
-         acceleration.bytes() + cross_group.bytes() + walls.bytes();
+         velocity.bytes() + alpha.bytes() + viscosity.bytes() + density.bytes() + pressure.bytes() +
+         volume.bytes() + density_by_row.bytes() + acceleration.bytes() + cross_group.bytes() + walls.bytes();
 }
 
 bool find_neighbors(const VectorColumn& positions, const Execution& execution, Sph& sph) {
@@ -90,7 +92,8 @@ void compute_density(const Execution& execution, Sph& sph) {
       k_cluster_block);
 }
 
-void compute_accelerations(const VectorColumn& velocities, const Execution& execution, Sph& sph) {
+void compute_accelerations(const VectorColumn& velocities, const ByParticle& own, const Execution& execution,
+                           Sph& sph) {
   const std::size_t n = sph.grid.order.size();
   sph.acceleration.resize(sph.store_rows);
   if (sph.groups.size() > 1 && !sph.apart) sph.cross_group.resize(sph.store_rows);
@@ -104,6 +107,15 @@ void compute_accelerations(const VectorColumn& velocities, const Execution& exec
       }
     });
   }
+  const auto sort = [&](const Column<float>& by_row, Column<float>& sorted) {
+    sorted.resize(by_row.empty() ? 0 : n);
+    if (by_row.empty()) return;
+    parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) sorted[i] = by_row[sph.grid.order[i]];
+    });
+  };
+  sort(own.alpha, sph.alpha);
+  sort(own.viscosity, sph.viscosity);
   const SphInput in = input(sph);
   const SphLanes& lanes = MALLOW_SELECT(execution.level, sph_lanes);
   const auto accelerate = sph.formulation == Formulation::printed ? lanes.printed : lanes.conservative;

@@ -41,8 +41,9 @@ struct Sph {
   KeptLists kept;       ///< empty without slack
   Walls walls;
   // Sorted order.
-  Column<std::uint32_t> group;  ///< empty where there is one group
-  VectorColumn velocity;        ///< empty without viscosity
+  Column<std::uint32_t> group;     ///< empty where there is one group
+  VectorColumn velocity;           ///< empty without viscosity
+  Column<float> alpha, viscosity;  ///< see ByParticle
   Column<float> density, pressure, volume;
   // By row of the particle store; of those that take part.
   std::size_t store_rows = 0;
@@ -64,7 +65,13 @@ bool find_neighbors(const VectorColumn& positions, const Execution& execution, S
 /// Density and pressure from the lists, which keep only who is nearer than σ unless they are kept for later
 /// steps. [TK eq. 3, model 1]
 void compute_density(const Execution& execution, Sph& sph);
-/// Pressure and viscosity accelerations. [TK eq. 1, 2, 4, model 1]
-void compute_accelerations(const VectorColumn& velocities, const Execution& execution, Sph& sph);
+/// What particles have of their own, by row.
+struct ByParticle {
+  const Column<float>& alpha;      ///< empty: sums within a body are those of alpha 1, else blended by pair
+  const Column<float>& viscosity;  ///< empty: that of their groups [Pa s]; only beside alpha
+};
+/// Pressure and viscosity accelerations. [TK eq. 1, 2, 4, model 1] [model 2, section 7]
+void compute_accelerations(const VectorColumn& velocities, const ByParticle& own, const Execution& execution,
+                           Sph& sph);
 
 }  // namespace mallow

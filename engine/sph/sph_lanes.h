@@ -26,6 +26,7 @@ struct SphGroup {
 /// ρ_i    | density       | kg/m³   | model 1, [TK eq. 3]
 /// p_i    | pressure      | Pa      | model 1
 /// V_j    | volume, m_j/ρ_j | m³    |
+/// α_i    | alpha         | 1       | where particles of a body differ in it; model 2, section 7
 struct SphInput {
   const std::uint32_t* cluster_start;  ///< first particle of each cluster
   const std::uint32_t* list_begin;     ///< per cluster
@@ -34,13 +35,15 @@ struct SphInput {
   const std::uint32_t* row_of;  ///< sorted place -> row of the particle store
   const std::uint32_t* group;   ///< null: all in group 0
   const SphGroup* groups;
-  bool apart;  ///< pairs of two groups add nothing: contact between bodies is not by pressure
+  bool apart;               ///< pairs of two groups add nothing: contact between bodies is not by pressure
   const float* wall_share;  ///< of the volume around a particle, by row; null: no wall is near any
   ConstVectors position;
-  ConstVectors velocity;  ///< accelerations only; null without viscosity
-  float radius;           ///< σ [m]
-  float inverse_radius;   ///< 1/σ
-  float density_factor;   ///< KernelFactors
+  ConstVectors velocity;   ///< accelerations only; null without viscosity
+  const float* alpha;      ///< α_i, accelerations only; null: sums of one group are not blended
+  const float* viscosity;  ///< μ_i [Pa s], beside alpha; null: that of their groups
+  float radius;            ///< σ [m]
+  float inverse_radius;    ///< 1/σ
+  float density_factor;    ///< KernelFactors
   float spiky_gradient;
   float poly6_gradient;
 };
@@ -61,7 +64,8 @@ struct SphLanes {
   /// a_i = (1/ρ_i) Σ_j V_j [ (p_i + p_j)/2 |∇W_spiky| r̂ + 5 μ ((v_j − v_i)·r̂) r̂ ∇²W_visc ], by row: pairs of
   /// one group into `same`, pairs of two groups, μ the mean of theirs and pressures times their
   /// contact_share, into `cross` (null where there is one group, or where groups are apart). In the viscous
-  /// term ρ is at least ρ0. [model 1; model 2, section 0]
+  /// term ρ is at least ρ0. [model 1; model 2, section 0] With `alpha` each pair of one group counts
+  /// (α_i + α_j)/2 times, which is as much for both: momentum is kept. [model 2, section 7]
   void (*conservative)(const SphInput&, std::size_t begin, std::size_t end, const float* density,
                        const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept;
   /// [TK eq. 1, 2] to the letter: a_i = (1/ρ_i) Σ_j V_j [ −p_j ∇W_poly6 + μ v_j ∇²W_poly6 ], j = i included.

@@ -66,6 +66,7 @@ struct WallInput {
   const VectorColumn& position;
   const Column<float>& density;          ///< ρ [kg/m³]
   const VectorColumn& sph_acceleration;  ///< a^SPH [m/s²]
+  const float* alpha;                    ///< null: that of each body, and a^SPH is not blended yet
   const std::uint16_t* pin;              ///< rows whose pin is not 0 give no load; null: all do
   bool all_loads;                        ///< of colliders that do not measure theirs too
 };

@@ -163,10 +163,16 @@ void Oracle::settle() {
 void Oracle::follow_alpha() {
   for (Group& group : groups_) {
     group.alpha = alpha_at(group.material.alpha, time_);
+    group.most_alpha = group.most_elasticity = 0;
+    for (const Particle& p : particles_) {
+      if (&groups_[p.group] != &group) continue;
+      group.most_alpha = std::max(group.most_alpha, alpha_of(p));
+      group.most_elasticity = std::max(group.most_elasticity, (1 - alpha_of(p)) * p.stiffness);
+    }
     const std::optional<float>& given = group.material.pressure_coefficient;
-    group.contact_share = given ? 1 : std::max(group.alpha, 0.2);
+    group.contact_share = given ? 1 : std::max(group.most_alpha, 0.2);
     const double dt = std::max(dt0_, longest_), speed = config_.support_radius / dt;
-    const double x = std::min(1.0, (2.6 - stiffness(group) * dt * dt) / 2);
+    const double x = std::min(1.0, (2.6 - group.most_elasticity * stiffness(group) * dt * dt) / 2);
     group.pressure_coefficient = given ? double{*given} : x * speed * speed / group.contact_share;
     const double soft = given ? 1 : std::min(1.0, 0.08 * speed * speed / group.pressure_coefficient);
     group.cohesion = soft * group.material.cohesion;
@@ -199,18 +205,63 @@ Step Oracle::step() {
 
 // Section 6: x̄ ← x, and N from it.
 void Oracle::rebuild_regions(std::size_t group) {
-  const double radius = groups_[group].material.region_radius.value_or(config_.support_radius);
   for (Particle& i : particles_) {
     if (i.group != group) continue;
     i.reference = i.x;
     i.rotation = Matrix::Identity();
     i.stretch = Matrix::Identity();
     i.flow = 0;
+  }
+  list_regions(group);
+}
+
+void Oracle::list_regions(std::size_t group) {
+  const double radius = groups_[group].material.region_radius.value_or(config_.support_radius);
+  for (Particle& i : particles_) {
+    if (i.group != group) continue;
     i.region.clear();
     for (std::size_t j = 0; j < particles_.size(); ++j) {
-      if (particles_[j].group == group && (particles_[j].x - i.x).norm() <= radius) i.region.push_back(j);
+      if (particles_[j].group == group && (particles_[j].reference - i.reference).norm() <= radius)
+        i.region.push_back(j);
     }
   }
+}
+
+// Section 7 of the second chapter: those whose own threshold is exceeded rest beside the nearest that holds,
+// or that rests beside such a one.
+void Oracle::rest_anew(std::size_t group, double mean) {
+  const double radius = groups_[group].material.region_radius.value_or(config_.support_radius);
+  std::vector<Particle*> placed, left;
+  for (Particle& p : particles_)
+    if (p.group == group)
+      (mean > groups_[group].update_threshold * (1 - alpha_of(p)) ? left : placed).push_back(&p);
+  if (placed.empty()) return rebuild_regions(group);
+  while (!left.empty()) {
+    std::vector<std::pair<Particle*, Particle*>> found;
+    for (Particle* p : left) {
+      const auto nearer = [&](const Particle* a, const Particle* b) {
+        return (a->x - p->x).norm() < (b->x - p->x).norm();
+      };
+      Particle* const beside = *std::min_element(placed.begin(), placed.end(), nearer);
+      if ((beside->x - p->x).norm() <= radius) found.emplace_back(p, beside);
+    }
+    if (found.empty()) throw std::runtime_error("some particle is near none that holds");
+    for (const auto& [p, beside] : found) {
+      p->reference = beside->reference + beside->rotation.transpose() * (p->x - beside->x);
+      p->rotation = beside->rotation;
+      placed.push_back(p);
+      std::erase(left, p);
+    }
+  }
+  list_regions(group);
+}
+
+// Velocities are those of half a step ago: what the old shape pulled since then is part of them.
+void Oracle::kick_by_pull(std::size_t group, double share) {
+  match_shapes();
+  for (Particle& p : particles_)
+    if (p.group == group && !p.pinned)
+      p.v += share * (time_ - last_start_) * stiffness(groups_[group]) * p.pull;
 }
 
 double Oracle::mean_external_acceleration(std::size_t group) const {
@@ -227,7 +278,16 @@ double Oracle::mean_external_acceleration(std::size_t group) const {
 // Of the pull [TK eq. 13].
 double Oracle::stiffness(const Group& group) const {
   const std::optional<float>& given = group.material.elastic_time_step;
-  return (1 - group.alpha) / (dt0_ * (given ? double{*given} : dt0_));
+  return 1 / (dt0_ * (given ? double{*given} : dt0_));
+}
+
+double Oracle::alpha_of(const Particle& p) const {
+  return p.own_alpha < 0 ? groups_[p.group].alpha : p.own_alpha;
+}
+
+bool Oracle::is_painted() const {
+  return std::any_of(particles_.begin(), particles_.end(),
+                     [](const Particle& p) { return p.own_alpha >= 0 || p.stiffness != 1; });
 }
 
 double Oracle::passed_periods(double time) const {
@@ -257,7 +317,7 @@ std::vector<std::size_t> Oracle::update_references() {
   std::vector<std::size_t> updated;
   if (!check_is_due()) return updated;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const double threshold = groups_[g].update_threshold * (1 - groups_[g].alpha);
+    const double threshold = groups_[g].update_threshold * (1 - groups_[g].most_alpha);
     const Material& material = groups_[g].material;
     const bool follows = !material.plastic_yield || material.update_threshold;
     if (is_always_fluid(groups_[g]) || !follows || judged_acceleration(g) <= threshold) {
@@ -266,13 +326,9 @@ std::vector<std::size_t> Oracle::update_references() {
       updated.push_back(g);
       continue;
     }
-    // Velocities are those of half a step ago: what the old shape pulled since then is part of them.
-    if (groups_[g].alpha < 1) match_shapes();
-    for (Particle& p : particles_) {
-      if (p.group == g && !p.pinned && groups_[g].alpha < 1)
-        p.v += (time_ - last_start_) / 2 * stiffness(groups_[g]) * (p.goal - p.x);
-    }
-    rebuild_regions(g);
+    kick_by_pull(g, 0.5);
+    rest_anew(g, judged_acceleration(g));
+    kick_by_pull(g, -0.5);
     updated.push_back(g);
   }
   last_check_ = time_;
@@ -296,7 +352,7 @@ void Oracle::find_walls(Particle& p) const {
   p.walls.clear();
   p.wall_share = 0;
   const Group& group = groups_[p.group];
-  if (!config_.wall_pressure || config_.formulation == Formulation::printed || group.alpha == 0) return;
+  if (!config_.wall_pressure || config_.formulation == Formulation::printed || group.most_alpha == 0) return;
   const double sigma = config_.support_radius;
   const double offset = config_.contact_offset.value_or(group.spacing / 2);
   for (const Obstacle& obstacle : obstacles_) {
@@ -326,9 +382,10 @@ Vec Oracle::wall_acceleration(const Particle& p) const {
   const double pressure = group.pressure_coefficient * std::max(0.0, p.density - group.rest_density);
   Vec sum = Vec::Zero();
   for (const Particle::Wall& wall : p.walls)
-    sum += pressure / p.density * wall.gradient * wall.normal +
-           wall.share / std::max(0.5, 1 - p.wall_share) * (p.sph - p.sph.dot(wall.normal) * wall.normal);
-  return group.alpha * sum;
+    sum +=
+        alpha_of(p) * pressure / p.density * wall.gradient * wall.normal +
+        wall.share / std::max(0.5, 1 - p.wall_share) * (p.blended - p.blended.dot(wall.normal) * wall.normal);
+  return sum;
 }
 
 // Section 1: densities and pressures.
@@ -377,11 +434,13 @@ Vec Oracle::pair_acceleration(const Particle& i, const Particle& j) const {
 void Oracle::sum_accelerations() {
   for (std::size_t id = 0; id < particles_.size(); ++id) {
     Particle& i = particles_[id];
-    i.sph = Vec::Zero();
+    i.sph = i.blended = Vec::Zero();
     i.crossing = Vec::Zero();
     for (const Particle& j : particles_) {
       if ((i.x - j.x).norm() > config_.support_radius) continue;
-      (j.group == i.group ? i.sph : i.crossing) += pair_acceleration(i, j);
+      const Vec a = pair_acceleration(i, j);
+      (j.group == i.group ? i.sph : i.crossing) += a;
+      if (j.group == i.group) i.blended += (alpha_of(i) + alpha_of(j)) / 2 * a;
     }
     i.external = config_.gravity.cast<double>() + i.crossing + wall_acceleration(i);
     if (force_) i.external += force_(time_, id, i.x, i.v);
@@ -390,15 +449,15 @@ void Oracle::sum_accelerations() {
 
 // Section 3.
 bool Oracle::sph_acts() const {
-  return groups_.size() > 1 || groups_.front().alpha > 0;
+  return groups_.size() > 1 || groups_.front().most_alpha > 0;
 }
 
 double Oracle::max_velocity() const {
   double max = 0;
   for (const Particle& p : particles_) {
     const Group& group = groups_[p.group];
-    const double share = group.material.pressure_coefficient ? 1 : group.alpha;
-    if (!p.pinned) max = std::max(max, (p.v + longest_ * (share * p.sph + p.external)).norm());
+    const bool whole = group.material.pressure_coefficient && !is_painted();
+    if (!p.pinned) max = std::max(max, (p.v + longest_ * ((whole ? p.sph : p.blended) + p.external)).norm());
   }
   return max;
 }
@@ -412,10 +471,10 @@ double Oracle::time_step(double max_velocity) const {
     for (const Group& group : groups_) {
       dt = std::min(dt, sigma * sigma * group.rest_density / (25 * group.viscosity));
       const bool alone = groups_.size() == 1;
-      const double push = alone ? group.alpha : group.contact_share, drag = alone ? group.alpha : 1;
+      const double push = alone ? group.most_alpha : group.contact_share, drag = alone ? group.most_alpha : 1;
       const double a = push * group.pressure_coefficient / (sigma * sigma);
       const double b = 800 * drag * group.viscosity / group.rest_density / (sigma * sigma);
-      const double pull = stiffness(group);
+      const double pull = group.most_elasticity * stiffness(group);
       if (a > 0)
         dt = std::min({dt, (b + std::sqrt(b * b + 0.2 * a)) / (2 * a), std::sqrt(1.4 / a),
                        std::sqrt(3.4 / (2 * a + pull))});
@@ -460,11 +519,14 @@ void Oracle::match_shapes() {
     reference_centers[id] = c_ref;
   }
   for (Particle& i : particles_) {
-    Vec sum = Vec::Zero();
+    const auto count = static_cast<double>(i.region.size());
+    i.goal = i.pull = Vec::Zero();
     for (std::size_t j : i.region) {
-      sum += particles_[j].rotation * particles_[j].stretch * (i.reference - reference_centers[j]) + centers[j];
+      const Vec goal =
+          particles_[j].rotation * particles_[j].stretch * (i.reference - reference_centers[j]) + centers[j];
+      i.goal += goal / count;
+      i.pull += (1 - alpha_of(particles_[j])) * particles_[j].stiffness * (goal - i.x) / count;
     }
-    i.goal = sum / static_cast<double>(i.region.size());
   }
 }
 
@@ -579,8 +641,8 @@ void Oracle::move(double dt) {
       p.v = p.pin_velocity;
     } else {
       const Vec before = p.v;
-      p.v += dt * p.external + group.alpha * dt * p.sph;
-      if (!is_always_fluid(group)) p.v += pull_time * stiffness(group) * (p.goal - p.x);
+      p.v += dt * p.external + dt * p.blended;
+      if (!is_always_fluid(group)) p.v += pull_time * stiffness(group) * p.pull;
       const Vec blended = p.v;
       for (const Obstacle& obstacle : obstacles_) touch(obstacle, p, before, dt, p.v);
       p.contact = (p.v - blended) / dt;

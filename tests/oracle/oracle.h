@@ -24,6 +24,8 @@ struct Particle {
   Vec v{0, 0, 0};
   bool pinned = false;
   Vec pin_velocity{0, 0, 0};
+  double own_alpha = -1;  ///< in place of its group's where it is not below 0
+  double stiffness = 1;   ///< factor on the elastic modulus
 
   Vec reference{0, 0, 0};                ///< x̄
   std::vector<std::size_t> region = {};  ///< N, the particle itself included
@@ -41,13 +43,15 @@ struct Particle {
   double wall_share = 0;  ///< of the kernel's volume, of all walls
   double density = 0;
   double pressure = 0;
-  Vec sph{0, 0, 0};       ///< a^SPH of the same group [m/s²]
-  Vec external{0, 0, 0};  ///< gravity, user force, walls and the other groups [m/s²]
-  Vec crossing{0, 0, 0};  ///< the part of `external` that is from the other groups [m/s²]
-  Vec contact{0, 0, 0};   ///< change of velocity by colliders over Δt [m/s²]
-  Vec goal{0, 0, 0};      ///< g
+  Vec sph{0, 0, 0};                     ///< a^SPH of the same group [m/s²]
+  Vec blended{0, 0, 0};                 ///< the same, each pair times the mean alpha of its two
+  Vec external{0, 0, 0};                ///< gravity, user force, walls and the other groups [m/s²]
+  Vec crossing{0, 0, 0};                ///< the part of `external` that is from the other groups [m/s²]
+  Vec contact{0, 0, 0};                 ///< change of velocity by colliders over Δt [m/s²]
+  Vec goal{0, 0, 0};                    ///< g
   Matrix moment = Matrix::Zero();       ///< A of its region
   Matrix rest_moment = Matrix::Zero();  ///< Ā
+  Vec pull{0, 0, 0};  ///< mean of goal_ij − x_i over its regions, each times (1 − alpha) stiffness of its own
 };
 
 struct Group {
@@ -55,12 +59,13 @@ struct Group {
   double spacing = 0;
   double mass = 0;
   double rest_density = 0;
-  double update_threshold = 0;      ///< γ_u
-  double viscosity = 0;             ///< μ
-  double alpha = 0;                 ///< of the last step
-  double pressure_coefficient = 0;  ///< k of the last step
-  double contact_share = 1;         ///< of its pressure that acts between groups
-  double cohesion = 0;              ///< share of its negative pressure
+  double update_threshold = 0;                 ///< γ_u
+  double viscosity = 0;                        ///< μ
+  double alpha = 0;                            ///< of the last step
+  double most_alpha = 0, most_elasticity = 0;  ///< of its particles
+  double pressure_coefficient = 0;             ///< k of the last step
+  double contact_share = 1;                    ///< of its pressure that acts between groups
+  double cohesion = 0;                         ///< share of its negative pressure
   /// Mean |a_ext| over the unpinned, from the start to the end of every step.
   struct External {
     double start, end, mean;
@@ -89,6 +94,11 @@ class Oracle {
   void add_collider(const Collider& collider) { obstacles_.push_back({collider, Vec::Zero()}); }
   void pin(const Aabb& box, const Vec& velocity);
   void set_force(Force force) { force_ = std::move(force); }
+  /// A particle has these of its own; alpha below 0: its group's.
+  void paint(std::size_t id, double alpha, double stiffness) {
+    particles_[id].own_alpha = alpha;
+    particles_[id].stiffness = stiffness;
+  }
   /// Moves the particles away from their reference shape.
   void set_positions(const std::vector<Vec>& positions);
 
@@ -110,12 +120,17 @@ class Oracle {
   void flow(double dt);
   bool reframe_is_due(std::size_t group) const;
   void reframe(std::size_t group);
+  void list_regions(std::size_t group);
+  void rest_anew(std::size_t group, double mean);
+  void kick_by_pull(std::size_t group, double share);
   void settle();
   void follow_alpha();
   double mean_external_acceleration(std::size_t group) const;
   double judged_acceleration(std::size_t group) const;
   bool counts_steps() const { return config_.update_interval && config_.time_step_factor == 1; }
   double passed_periods(double time) const;
+  double alpha_of(const Particle& p) const;
+  bool is_painted() const;
   double stiffness(const Group& group) const;
   bool check_is_due() const;
   std::vector<std::size_t> update_references();

@@ -126,6 +126,9 @@ std::vector<Case> paper_cases() {
       {.name = "walled_moving_slope", .blobs = {{stuff(0.7f), {0, 0, 4.0f}}}, .colliders = {{.shape = k_tilted, .velocity = {0.5f, 0, 0.6f}, .friction = 0.5f}}, .solver = walled(), .updates = 1},
       {.name = "fast_fall", .blobs = {{stuff(0.7f), {0, 0, 14}, {2, 0, -16}}}, .solver = without_acoustic_limit(), .limited = true},
       {.name = "slow_spring_small_regions", .blobs = {{{.alpha = 0.3f, .update_threshold = 1.0f, .elastic_time_step = 0.3f, .region_radius = 1.6f}, {0, 0, 4.2f}, {0, 0, -1.5f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1},
+      {.name = "painted_on_slope", .blobs = {{.material = stuff(0.0f), .center = {0, 0, 4.2f}, .velocity = {0, 0, -1.5f}, .painted = true}}, .colliders = {k_slope}, .solver = units(), .updates = 1, .tolerance = 1e-3},
+      {.name = "painted_in_tank", .blobs = {{.material = stuff(0.0f), .center = {0, 0, 3.6f}, .velocity = {-0.8f, 0.3f, -0.5f}, .painted = true}}, .colliders = {k_tank}, .solver = walled(), .updates = 1, .tolerance = 1e-3},
+      {.name = "painted_pair", .blobs = {{.material = stuff(0.3f), .center = {0, 0, 0}, .velocity = {0, 0, 0.6f}, .count = {5, 5, 4}, .painted = true}, {lasting(0.4f), {0.6f, 0.2f, 4.6f}, {0, 0, -0.6f}, {5, 5, 4}}}, .solver = units(), .updates = 1, .tolerance = 1e-3},
       // Of the loose points three make an almost straight line. The engine lets its last rotation decide there from 1e-4
       // of the region's size on, the oracle from 1e-12 on.
       {.name = "flat_sheet_and_loose_points", .blobs = {{lasting(0.0f), {0, 0, 3}, {0, 0, 0}, {9, 9, 1}, 1, 0}, {.center = {0, 0, 9}, .velocity = {0, 0, -1.5f}, .count = {1, 1, 1}, .joins_the_one_before = true}, {.center = {9, 0, 7}, .velocity = {0, 0, -1}, .count = {3, 1, 1}, .joins_the_one_before = true}}, .colliders = {k_ball, k_slope}, .solver = units(), .tolerance = 1e-3},
@@ -237,7 +240,10 @@ std::vector<Case> ablations(const Case& whole) {
     without("updates", [](Case& less) {
       for (Blob& b : less.blobs) b.material.update_threshold = 1e6f;
     });
-  const bool sph_acts = whole.blobs.front().material.alpha.keys().back().value > 0 ||
+  for (std::size_t b = 0; b < whole.blobs.size(); ++b)
+    if (whole.blobs[b].painted) without("paint", [&](Case& less) { less.blobs[b].painted = false; });
+  const bool sph_acts = whole.blobs.front().painted ||
+                        whole.blobs.front().material.alpha.keys().back().value > 0 ||
                         std::any_of(whole.blobs.begin() + 1, whole.blobs.end(),
                                     [](const Blob& b) { return !b.joins_the_one_before; });
   if (sph_acts)
@@ -263,6 +269,30 @@ std::vector<Vec3> points_of(const Blob& blob) {
   return oracle::lattice_points(blob.count, blob.spacing, blob.center, blob.jitter);
 }
 
+namespace {
+
+/// From `first` to `last` along an axis.
+std::vector<float> graded(const Blob& blob, int axis, float first, float last) {
+  std::vector<float> values;
+  if (!blob.painted) return values;
+  const std::vector<Vec3> points = points_of(blob);
+  const auto along = [&](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
+  const auto [low, high] = std::minmax_element(points.begin(), points.end(), along);
+  for (const Vec3& x : points)
+    values.push_back(first + (last - first) * (x[axis] - (*low)[axis]) / ((*high)[axis] - (*low)[axis]));
+  return values;
+}
+
+}  // namespace
+
+std::vector<float> alphas_of(const Blob& blob) {
+  return graded(blob, 0, 0.0f, 1.0f);
+}
+
+std::vector<float> stiffnesses_of(const Blob& blob) {
+  return graded(blob, 1, 0.4f, 1.6f);
+}
+
 oracle::Oracle oracle_of(const Case& scene) {
   oracle::Oracle oracle(scene.solver);
   std::size_t group = 0;
@@ -271,7 +301,11 @@ oracle::Oracle oracle_of(const Case& scene) {
     std::vector<oracle::Vec> positions;
     for (const Vec3& x : points_of(blob)) positions.push_back(x.cast<double>());
     const std::vector<oracle::Vec> velocities(positions.size(), blob.velocity.cast<double>());
+    const std::size_t first = oracle.particles().size();
     oracle.add_body(positions, velocities, blob.spacing, group);
+    const std::vector<float> alphas = alphas_of(blob), stiffnesses = stiffnesses_of(blob);
+    for (std::size_t k = 0; k < alphas.size(); ++k)
+      oracle.paint(first + k, double{alphas[k]}, double{stiffnesses[k]});
   }
   for (const Collider& collider : scene.colliders) oracle.add_collider(collider);
   for (const Pinned& pin : scene.pins) oracle.pin(pin.box, pin.velocity.cast<double>());

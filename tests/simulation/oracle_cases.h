@@ -24,6 +24,7 @@ struct Blob {
   float spacing = 1.0f;
   float jitter = 0.2f;
   bool joins_the_one_before = false;  ///< into one group with it
+  bool painted = false;               ///< see alphas_of() and stiffnesses_of()
 };
 
 struct Pinned {
@@ -55,6 +56,9 @@ std::vector<Case> ablations(const Case& whole);
 
 /// The points of a blob; the same for all who run the case.
 std::vector<Vec3> points_of(const Blob& blob);
+/// From 0 to 1 along x, and from 0.4 to 1.6 along y, of a blob that is painted; else none.
+std::vector<float> alphas_of(const Blob& blob);
+std::vector<float> stiffnesses_of(const Blob& blob);
 /// A gust that turns, tears and drags; the same formula for both precisions.
 template <class Scalar>
 Eigen::Matrix<Scalar, 3, 1> wind(double time, std::size_t id, const Eigen::Matrix<Scalar, 3, 1>& x,

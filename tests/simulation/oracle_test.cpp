@@ -30,7 +30,11 @@ Simulation engine_of(const Case& scene) {
   Simulation engine(solver);
   BodyId last{};
   for (const Blob& blob : scene.blobs) {
-    const Body points{.positions = points_of(blob), .spacing = blob.spacing, .velocity = blob.velocity};
+    const Body points{.positions = points_of(blob),
+                      .spacing = blob.spacing,
+                      .velocity = blob.velocity,
+                      .alpha = alphas_of(blob),
+                      .stiffness = stiffnesses_of(blob)};
     if (blob.joins_the_one_before)
       engine.extend_body(last, points);
     else

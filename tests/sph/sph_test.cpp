@@ -74,7 +74,7 @@ struct World {
   void run(int threads, InstructionLevel level) {
     find_neighbors(x, {threads, level}, sph);
     compute_density({threads, level}, sph);
-    compute_accelerations(v, {threads, level}, sph);
+    compute_accelerations(v, {{}, {}}, {threads, level}, sph);
   }
   double mass(std::size_t row) const {
     return static_cast<double>(sph.groups[row < sph.bodies[0].end ? 0 : 1].mass);

@@ -3,12 +3,14 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <variant>
 #include <vector>
 
 #include "mallow/export.h"
+#include "mallow/schedule.h"
 #include "mallow/vec3.h"
 
 namespace mallow {
@@ -131,12 +133,17 @@ struct Collider {
   /// By which the surface itself moves along, as a conveyor's belt does, while the shape stays [m/s]: what of
   /// it is along the normal counts nowhere.
   Vec3 surface_velocity{0, 0, 0};
-  float restitution = 0.0f;        ///< e in [0, 1]
-  float friction = 0.0f;           ///< μ_f >= 0
-  bool measure_load = false;       ///< sum up what particles do to it, see Simulation::load()
+  float restitution = 0.0f;   ///< e in [0, 1]
+  float friction = 0.0f;      ///< μ_f >= 0
+  bool measure_load = false;  ///< sum up what particles do to it, see Simulation::load()
   /// Where given, it moves through these poses, with the velocities that follow: evenly from one to the next,
   /// turning the shorter way round. Before the first and after the last it stands still.
   std::vector<PoseKeyframe> keyframes = {};
+  /// Of its surface, over time [K]: particles that touch it take heat from it or give it, see
+  /// Material::temperature. Left out: no heat passes.
+  std::optional<Schedule> temperature = {};
+  /// Of what lies between it and what touches it [W/(m² K)], > 0; left out: nothing does.
+  std::optional<float> heat_transfer = {};
 };
 
 /// What particles gave a collider in one step.

@@ -75,6 +75,29 @@ struct Material {
   /// kept and a rigid motion meets no force whatever it is; best a small share of the average number of
   /// neighbours. [model 2 with |N_i| regions; the idea of Steinemann et al. 2008]
   int region_stride = 1;
+  /// Of its particles at the start [K], or in any unit that starts anywhere; left out: it carries no heat.
+  /// Heat is conducted over the neighbours of SPH, which then are found in every step, and a body that
+  /// carries heat does not sleep. [Cleary & Monaghan 1999; model 2, section 7]
+  std::optional<float> temperature = {};
+  /// κ [W/(m K)], >= 0. Steps are cut into as many parts as it takes to be stable, 200 at most.
+  float conductivity = 0.0f;
+  /// c [J/(kg K)], > 0.
+  float specific_heat = 1000.0f;
+  /// Heat that melting takes [J/kg], >= 0, evenly from solidus to liquidus.
+  float latent_heat = 0.0f;
+  /// It is solid below and liquid above [K], liquidus > solidus; needed where latent_heat is above 0.
+  std::optional<float> solidus = {};
+  /// @copydoc solidus
+  std::optional<float> liquidus = {};
+  /// To the air, of SolverConfig::air_temperature, where a surface touches no heated collider [W/(m² K)], >=
+  /// 0.
+  float heat_transfer = 0.0f;
+  /// Alpha by temperature, in place of alpha over time: keys of (temperature [K], alpha). Particles of a body
+  /// then differ in it, as with Body::alpha; where it is high they take on where they are as what they rest
+  /// in, so that what has melted sets in its new shape.
+  std::optional<Schedule> alpha_by_temperature = {};
+  /// μ by temperature [Pa s], likewise, in place of viscosity.
+  std::optional<Schedule> viscosity_by_temperature = {};
 };
 
 }  // namespace mallow

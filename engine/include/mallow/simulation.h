@@ -185,8 +185,19 @@ class MALLOW_EXPORT Simulation {
   void set_material(MaterialId material, const Material& settings);
   /// As set last.
   const Material& material_settings(MaterialId material) const;
-  /// Alpha of a material alone.
+  /// Alpha of a material alone; particles that have their own keep it.
   void set_alpha(MaterialId material, const AlphaSchedule& alpha);
+  /// Alpha of particles from now on, in [0, 1], in place of their material's. All of their bodies keep what
+  /// they have now, as if Body::alpha had said it. Throws ConfigError, and changes nothing, where a number is
+  /// out of range, an id is not one, or a body would be too stiff for its steps.
+  void set_alpha(std::span<const ParticleId> ids, float alpha);
+  /// Factor on the modulus of particles from now on, see Body::stiffness. Throws as set_alpha() does.
+  void set_stiffness(std::span<const ParticleId> ids, float stiffness);
+  /// Temperature of particles now [K], finite. Throws ConfigError, and changes nothing, where an id is not
+  /// one or its body carries no heat.
+  void set_temperature(std::span<const ParticleId> ids, float temperature);
+  /// Temperature of a collider from now on, over time [K]; nullopt: no heat passes.
+  void set_temperature(ColliderId collider, const std::optional<Schedule>& temperature);
   /// The velocity of a collider from now on [m/s], finite. It has no keyframes then.
   void set_velocity(ColliderId collider, const Vec3& velocity);
   /// [m/s], and [rad/s] about its pose's translation.
@@ -292,6 +303,13 @@ class MALLOW_EXPORT Simulation {
   VectorView velocities() const;  ///< [m/s]
   /// ρ [kg/m³] of the last step; empty where no SPH ran.
   std::span<const float> densities() const;
+  /// Alpha of every row as it acts; empty where no body has its own by particle (Body::alpha,
+  /// Body::stiffness, set_alpha()). As prepare() and the last step left it.
+  std::span<const float> alphas() const;
+  /// Factor on the modulus of every row; empty as alphas() is.
+  std::span<const float> stiffnesses() const;
+  /// T of every row [K], 0 of bodies that carry no heat; empty where none does.
+  std::span<const float> temperatures() const;
   /// The rows of a body in every view.
   struct Rows {
     std::size_t begin, end;
@@ -305,6 +323,11 @@ class MALLOW_EXPORT Simulation {
 
   /// The row of a particle in every view. Throws ConfigError where there is none of this id, or no longer.
   std::size_t row(ParticleId id) const;
+  /// Heat of a body [J], above that of it solid at its solidus, or at 0 K where it has none; 0 where it
+  /// carries none. Summed in double.
+  double heat(BodyId body) const;
+  /// Alpha of a particle now. Throws ConfigError as row() does.
+  float alpha(ParticleId id) const;
   /// x̄ of a particle [m], relative to a place in the middle of its body's: their mean, until particles come
   /// or go. Throws ConfigError as row() does, and where the body keeps no reference shape. [TK eq. 7]
   Vec3 rest_position(ParticleId id) const;

@@ -5,6 +5,7 @@
 
 #include "mallow/executor.h"
 #include "mallow/instruction_level.h"
+#include "mallow/schedule.h"
 #include "mallow/vec3.h"
 
 namespace mallow {
@@ -63,6 +64,8 @@ struct SolverConfig {
   std::optional<float> sleep_speed = {};
   /// [s], > 0. Left out: 60 time_step.
   std::optional<float> sleep_time = {};
+  /// Of the air, where materials give heat to it, over time [K].
+  Schedule air_temperature = 293.15f;
   /// Newton iterations for a region's rotation in a step, at most, in [0, 8]; each starts where the last
   /// step ended. With 8, what has not converged is solved exactly, so that every rotation is right to single
   /// precision. With fewer it goes on in the next step: where a region turned by θ rad since the last step, 1

@@ -1,0 +1,223 @@
+// Alpha and stiffness that differ by particle within a body. [model 2, section 7]
+#include <algorithm>
+#include <cmath>
+
+#include "config/field_checks.h"
+#include "config/field_tables.h"
+#include "config/validation.h"
+#include "core/parallel.h"
+#include "simulation/membership.h"
+#include "simulation/settings.h"
+#include "simulation/state.h"
+
+namespace mallow {
+namespace {
+
+/// Columns for all particles, as their materials have it.
+void make_columns(Simulation::State& s) {
+  if (s.is_painted()) return;
+  s.store.alpha.resize(s.store.size());
+  s.store.stiffness.resize(s.store.size());
+  for (const BodyState& body : s.bodies) {
+    std::fill(s.store.alpha.begin() + body.begin, s.store.alpha.begin() + body.end,
+              body.material->settings.alpha.at(s.time));
+    std::fill(s.store.stiffness.begin() + body.begin, s.store.stiffness.begin() + body.end, 1.0f);
+  }
+}
+
+/// The least alpha that a row may have: that of a schedule changes.
+float least_alpha(const Simulation::State& s, const BodyState& body, std::size_t row) {
+  const Material& settings = body.material->settings;
+  if (settings.alpha_by_temperature) return settings.alpha_by_temperature->lowest();
+  return body.paints_alpha ? s.store.alpha[row] : settings.alpha.lowest();
+}
+
+void check_elasticity(const Simulation::State& s, const BodyState& body, Checks& checks) {
+  float most = 0;
+  for (std::size_t row = body.begin; row < body.end; ++row)
+    most = std::max(most, (1 - least_alpha(s, body, row)) * s.store.stiffness[row]);
+  check_elasticity(s.config, body.material->settings, most, checks);
+}
+
+/// Bodies that have particles among these rows, and a column that they get a value in.
+void paint(Simulation::State& s, std::span<const ParticleId> ids, float value, const char* field,
+           const Range& range, bool BodyState::*paints, Column<float> ParticleStore::*column) {
+  s.refuse_in_callback();
+  Checks checks;
+  check_value(field, value, range, checks);
+  const bool is_alpha = column == &ParticleStore::alpha;
+  for (const ParticleId id : ids) {
+    const std::optional<std::size_t> row = s.store.slots.find(id);
+    if (row && !(is_alpha && s.body_of(*row).material->settings.alpha_by_temperature)) continue;
+    if (!row) checks.problem("particle", why_unknown(s.store, id));
+    if (row) checks.problem(field, "is not allowed where alpha follows temperature: see set_temperature()");
+    break;
+  }
+  checks.finish();
+  if (ids.empty()) return;
+  make_columns(s);
+  blend_bodies(s);
+  std::vector<float> former;
+  std::vector<BodyState*> changed;
+  for (const ParticleId id : ids) {
+    const std::size_t row = *s.store.slots.find(id);
+    former.push_back(std::exchange((s.store.*column)[row], value));
+    BodyState& body = s.body_of(row);
+    if (std::ranges::find(changed, &body) == changed.end()) changed.push_back(&body);
+  }
+  std::vector<bool> painted;
+  for (BodyState* body : changed) painted.push_back(std::exchange(body->*paints, true));
+  for (const BodyState* body : changed) check_elasticity(s, *body, checks);
+  try {
+    checks.finish();
+  } catch (const ConfigError&) {
+    for (std::size_t k = ids.size(); k-- > 0;) (s.store.*column)[*s.store.slots.find(ids[k])] = former[k];
+    for (std::size_t b = 0; b < changed.size(); ++b) changed[b]->*paints = painted[b];
+    throw;
+  }
+  s.blend_changed = true;
+  for (BodyState* body : changed) {
+    wake_island(s, *body);
+    if (body->keeps_reference() && body->shape.reference.size() != body->size()) {
+      body->grew = true;
+      s.prepared = false;
+    }
+  }
+}
+
+}  // namespace
+
+void paint_rows(Simulation::State& s, BodyState& body, std::size_t begin, const Body& points) {
+  if (!points.alpha.empty() || body.material->settings.alpha_by_temperature) body.paints_alpha = true;
+  if (!points.stiffness.empty()) body.paints_stiffness = true;
+  if (body.is_painted()) make_columns(s);
+  if (!s.is_painted()) return;
+  const float alpha = body.material->settings.alpha.at(s.time);
+  for (std::size_t row = begin; row < body.end; ++row) {
+    s.store.alpha[row] = points.alpha.empty() ? alpha : points.alpha[row - begin];
+    s.store.stiffness[row] = points.stiffness.empty() ? 1.0f : points.stiffness[row - begin];
+  }
+}
+
+void blend_bodies(Simulation::State& s) {
+  if (!s.blend_changed) return;
+  s.blend_changed = false;
+  if (std::ranges::none_of(s.bodies, &BodyState::is_painted)) {
+    s.store.alpha.release();
+    s.store.stiffness.release();
+  }
+  for (MaterialState& material : s.materials) {
+    material.most_alpha = material.alpha;
+    material.most_elasticity = 1.0f - material.alpha;
+  }
+  if (!s.is_painted()) return;
+  for (BodyState& body : s.bodies) body.material->most_alpha = body.material->most_elasticity = 0;
+  for (BodyState& body : s.bodies) {
+    MaterialState& material = *body.material;
+    float* const alpha = s.store.alpha.data();
+    if (!body.paints_alpha) std::fill(alpha + body.begin, alpha + body.end, material.alpha);
+    if (!body.is_painted()) {
+      material.most_alpha = std::max(material.most_alpha, material.alpha);
+      material.most_elasticity = std::max(material.most_elasticity, 1.0f - material.alpha);
+      continue;
+    }
+    BlendRange blend{.least_alpha = 1, .most_alpha = 0, .most_elasticity = 0};
+    for (std::size_t row = body.begin; row < body.end; ++row) {
+      blend.least_alpha = std::min(blend.least_alpha, alpha[row]);
+      blend.most_alpha = std::max(blend.most_alpha, alpha[row]);
+      blend.most_elasticity = std::max(blend.most_elasticity, (1.0f - alpha[row]) * s.store.stiffness[row]);
+    }
+    body.blend = blend;
+    material.most_alpha = std::max(material.most_alpha, blend.most_alpha);
+    material.most_elasticity = std::max(material.most_elasticity, blend.most_elasticity);
+  }
+}
+
+void check_elasticity(const Simulation::State& s, const BodyState& body, const Body& points) {
+  const Material& settings = body.material->settings;
+  if (points.alpha.empty() && points.stiffness.empty() && !settings.alpha_by_temperature) return;
+  const bool own = !points.alpha.empty() && !settings.alpha_by_temperature;
+  const float alpha = settings.alpha_by_temperature.value_or(settings.alpha).lowest();
+  float most = 0;
+  for (std::size_t k = 0; k < points.positions.size(); ++k)
+    most = std::max(most, (1 - (own ? points.alpha[k] : alpha)) *
+                              (points.stiffness.empty() ? 1.0f : points.stiffness[k]));
+  Checks checks;
+  check_elasticity(s.config, body.material->settings, most, checks);
+  checks.finish();
+}
+
+void check_elasticities(const Simulation::State& s) {
+  for (const BodyState& body : s.bodies) {
+    if (!body.is_painted()) continue;
+    Checks checks;
+    check_elasticity(s, body, checks);
+    try {
+      checks.finish();
+    } catch (const ConfigError& error) {
+      throw ConfigError("body '" + body.name + "'", error.what());
+    }
+  }
+}
+
+void weigh_regions(const ParticleStore& store, BodyState& body) {
+  ShapeMatching& shape = body.shape;
+  shape.elasticity.resize(body.is_painted() ? shape.region_weight.size() : 0);
+  for (std::size_t j = 0; j < shape.elasticity.size(); ++j) {
+    const std::size_t row = body.begin + shape.owner(j);
+    shape.elasticity[j] = (1.0f - store.alpha[row]) * store.stiffness[row];
+  }
+}
+
+void weigh_regions(Simulation::State& s) {
+  for (BodyState* body : s.awake)
+    if (body->matches_shape() && (body->is_painted() || !body->shape.elasticity.empty()))
+      weigh_regions(s.store, *body);
+}
+
+bool update_part(Simulation::State& s, BodyState& body) {
+  if (!body.paints_alpha) return false;
+  std::vector<std::uint8_t> yields(body.size());
+  const auto mean = static_cast<float>(body.judged_external);
+  for (std::size_t i = 0; i < yields.size(); ++i)
+    yields[i] = mean > body.material->update_threshold * (1.0f - s.store.alpha[body.begin + i]);
+  if (std::ranges::find(yields, 0) == yields.end()) return false;
+  // What the old shape pulled in half a step, less what the new one will: as where the whole is updated,
+  // where that is nothing.
+  kick_by_pull(s, body, 0.5f);
+  CarriedRegions carried = carry_regions(body.shape);
+  rest_anew(s.store.position, body.begin, yields, s.execution, carried, body.shape);
+  const std::vector<ParticleId> ids(s.store.id.begin() + body.begin, s.store.id.begin() + body.end);
+  rebuild_shape(s, body, carried);
+  std::vector<std::uint32_t> order(ids.size());
+  for (std::uint32_t i = 0; i < ids.size(); ++i) order[*s.store.slots.find(ids[i]) - body.begin] = i;
+  sort_parts(order, s.parts_before);
+  s.rows_moved();
+  kick_by_pull(s, body, -0.5f);
+  return true;
+}
+
+void Simulation::set_alpha(std::span<const ParticleId> ids, float alpha) {
+  paint(*state_, ids, alpha, "alpha", range_of(&Material::alpha), &BodyState::paints_alpha,
+        &ParticleStore::alpha);
+}
+
+void Simulation::set_stiffness(std::span<const ParticleId> ids, float stiffness) {
+  paint(*state_, ids, stiffness, "stiffness", k_not_negative, &BodyState::paints_stiffness,
+        &ParticleStore::stiffness);
+}
+
+std::span<const float> Simulation::alphas() const {
+  return state_->store.alpha.span();
+}
+
+std::span<const float> Simulation::stiffnesses() const {
+  return state_->store.stiffness.span();
+}
+
+float Simulation::alpha(ParticleId id) const {
+  const std::size_t at = row(id);
+  return state_->is_painted() ? state_->store.alpha[at] : state_->body_of(at).material->alpha;
+}
+
+}  // namespace mallow

@@ -1,0 +1,210 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "mallow/mallow.h"
+
+namespace mallow {
+namespace heat_test {
+
+constexpr double k_pi = std::numbers::pi;
+
+/// Without gravity; spacing 1.
+Simulation floating(float support_radius = 2.1f, int threads = 2) {
+  return Simulation(
+      {.time_step = 0.15f, .support_radius = support_radius, .gravity = {0, 0, 0}, .threads = threads});
+}
+Material conductor(float diffusivity) {
+  return {.temperature = 0.0f, .conductivity = 1.0f, .specific_heat = 1 / diffusivity};
+}
+Collider heated(const Plane& plane, float temperature) {
+  return {.shape = plane, .temperature = temperature};
+}
+
+/// T of a slab of length 1 that was at 0 and is held at 0 and 1, at x after the Fourier number f.
+double in_slab(double x, double f) {
+  double sum = x;
+  for (int n = 1; n < 200; ++n)
+    sum +=
+        2 / (n * k_pi) * (n % 2 == 0 ? 1 : -1) * std::sin(n * k_pi * x) * std::exp(-n * n * k_pi * k_pi * f);
+  return sum;
+}
+
+TEST(heat, of_a_slab_is_the_analytic_one_within_two_percent) {
+  for (const float support_radius : {2.1f, 2.9f})
+    for (const float jitter : {0.0f, 0.2f}) {
+      Simulation s = floating(support_radius);
+      constexpr double k_diffusivity = 0.4, k_length = 20;
+      const Body slab = sample(Lattice{.count = {20, 6, 6}, .jitter = jitter});
+      s.add_body(slab, conductor(static_cast<float>(k_diffusivity)));
+      s.add_collider(heated({{1, 0, 0}, 0}, 0));
+      s.add_collider(heated({{-1, 0, 0}, -20}, 100));
+      for (const double f : {0.02, 0.05, 0.2, 0.5}) {
+        s.advance(f * k_length * k_length / k_diffusivity - s.time());
+        double worst = 0;
+        for (std::size_t row = 0; row < s.particle_count(); ++row) {
+          const double x = static_cast<double>(s.positions()[row].x()) / k_length;
+          worst = std::max(worst, std::abs(static_cast<double>(s.temperatures()[row]) - 100 * in_slab(x, f)));
+        }
+        EXPECT_LT(worst, 2) << support_radius << ' ' << jitter << ' ' << f;
+        RecordProperty("worst", std::to_string(worst));
+        std::cout << support_radius << ' ' << jitter << ' ' << f << ' ' << worst << std::endl;
+      }
+    }
+}
+
+TEST(heat, leaves_a_half_space_as_the_error_function_says) {
+  Simulation s = floating();
+  s.add_body(sample(Lattice{.count = {60, 4, 4}}),
+             {.temperature = 100.0f, .conductivity = 1.0f, .specific_heat = 2.5f});
+  s.add_collider(heated({{1, 0, 0}, 0}, 0));
+  s.advance(100);
+  double worst = 0;
+  for (std::size_t row = 0; row < s.particle_count(); ++row) {
+    const double x = static_cast<double>(s.positions()[row].x());
+    const double exact = 100 * std::erf(x / (2 * std::sqrt(0.4 * 100)));
+    worst = std::max(worst, std::abs(static_cast<double>(s.temperatures()[row]) - exact));
+  }
+  EXPECT_LT(worst, 2);
+  std::cout << worst << std::endl;
+}
+
+TEST(heat, is_kept) {
+  Simulation s = floating();
+  Body body = sample(Lattice{.count = {8, 8, 8}, .corner = {-4, -4, -4}});
+  for (const Vec3& x : body.positions) {
+    body.temperature.push_back(300 + 50 * std::sin(x.x() + 2 * x.y()) + 30 * x.z());
+    body.velocities.push_back(Vec3(0, 0, 0.05f).cross(x));
+  }
+  const BodyId id = s.add_body(body, {.alpha = 0.5f,
+                                      .temperature = 300.0f,
+                                      .conductivity = 2.0f,
+                                      .specific_heat = 1.0f,
+                                      .latent_heat = 100.0f,
+                                      .solidus = 290.0f,
+                                      .liquidus = 320.0f});
+  // Another body of another material that it touches.
+  const BodyId other = s.add_body(sample(Lattice{.count = {8, 8, 3}, .corner = {-4, -4, 4}}),
+                                  {.temperature = 500.0f, .conductivity = 0.5f, .specific_heat = 3.0f});
+  s.prepare();
+  const double before = s.heat(id) + s.heat(other), of_other = s.heat(other);
+  s.advance(60);
+  EXPECT_NEAR((s.heat(id) + s.heat(other)) / before, 1, 1e-6);
+  EXPECT_LT(s.heat(other), 0.9 * of_other);
+  const auto [low, high] = std::minmax_element(s.temperatures().begin(), s.temperatures().end());
+  EXPECT_GT(*low, 100);
+  EXPECT_LT(*high, 500.001f);
+}
+
+TEST(heat, of_melting_moves_the_front_as_stefan_says) {
+  // Of a half space at its melting point, a side of which is held at T: the front is at 2 λ √(D t), with
+  // λ exp(λ²) erf(λ) √π = c T/L.
+  constexpr double k_stefan = 1, k_lambda = 0.6201, k_diffusivity = 0.4;
+  Simulation s = floating();
+  s.add_body(sample(Lattice{.count = {40, 4, 4}}), {.temperature = 0.0f,
+                                                    .conductivity = 1.0f,
+                                                    .specific_heat = 2.5f,
+                                                    .latent_heat = 2.5f * 100 / k_stefan,
+                                                    .solidus = 0.0f,
+                                                    .liquidus = 2.0f});
+  s.add_collider(heated({{1, 0, 0}, 0}, 100));
+  for (const double t : {100.0, 400.0}) {
+    s.advance(t - s.time());
+    // What is melted: the sum of the share of the latent heat that particles have taken up.
+    double melted = 0;
+    for (const float temperature : s.temperatures())
+      melted += std::clamp(static_cast<double>(temperature) / 2, 0.0, 1.0);
+    const double front = 2 * k_lambda * std::sqrt(k_diffusivity * t);
+    EXPECT_NEAR(melted / 16 / front, 1, 0.1) << t;
+    std::cout << t << ' ' << melted / 16 / front << std::endl;
+  }
+}
+
+TEST(heat, goes_to_the_air_by_the_area_of_the_surface) {
+  // Well conducting: all of it is as warm.
+  Simulation s({.time_step = 0.15f,
+                .support_radius = 2.1f,
+                .gravity = {0, 0, 0},
+                .air_temperature = 0.0f,
+                .threads = 2});
+  s.add_body(sample(Lattice{.count = {12, 12, 12}}),
+             {.temperature = 100.0f, .conductivity = 100.0f, .specific_heat = 100.0f, .heat_transfer = 1.0f});
+  s.advance(60);
+  const double exact = 100 * std::exp(-1.0 * 6 * 144 * 60 / (1728 * 100.0));
+  for (const float t : s.temperatures()) EXPECT_NEAR(static_cast<double>(t), exact, 0.1 * (100 - exact));
+  std::cout << s.temperatures()[700] << ' ' << exact << std::endl;
+}
+
+/// A cube on a plate that is hot and then cold.
+Simulation on_plate(int threads) {
+  Simulation s({.time_step = 0.15f,
+                .support_radius = 2.1f,
+                .gravity = {0, 0, -0.3f},
+                .update_period = 1.5f,
+                .threads = threads});
+  s.add_body(sample(Lattice{.count = {8, 8, 8}, .corner = {-4, -4, 0}}),
+             {.cohesion = 0.5f,
+              .temperature = 300.0f,
+              .conductivity = 1.0f,
+              .specific_heat = 2.0f,
+              .alpha_by_temperature = Schedule{{305, 0}, {315, 1}}});
+  s.add_collider(
+      {.shape = Plane{}, .friction = 0.5f, .temperature = Schedule{{0, 340}, {90, 340}, {91, 280}}});
+  return s;
+}
+
+struct Layers {
+  double top = 0;                        ///< mean height of the highest tenth
+  double low_alpha = 0, high_alpha = 0;  ///< mean of those below 2, and of the upper half
+  double width = 0;
+};
+Layers layers_of(const Simulation& s) {
+  std::vector<float> heights;
+  for (const Vec3& x : s.positions_by_id()) heights.push_back(x.z());
+  std::ranges::sort(heights);
+  const std::size_t n = heights.size();
+  Layers layers;
+  for (std::size_t k = n - n / 10; k < n; ++k)
+    layers.top += static_cast<double>(heights[k]) / static_cast<double>(n / 10);
+  std::size_t low = 0, high = 0;
+  for (std::size_t row = 0; row < n; ++row) {
+    const float z = s.positions()[row].z();
+    layers.width = std::max(layers.width, static_cast<double>(s.positions()[row].head<2>().norm()));
+    if (z < 1.5f) layers.low_alpha += static_cast<double>(s.alphas()[row]), ++low;
+    if (z > heights[n / 2]) layers.high_alpha += static_cast<double>(s.alphas()[row]), ++high;
+  }
+  layers.low_alpha /= static_cast<double>(low);
+  layers.high_alpha /= static_cast<double>(high);
+  return layers;
+}
+
+TEST(heat, melts_a_cube_from_below_and_sets_it_in_its_new_shape) {
+  Simulation s = on_plate(2);
+  double last = 0;
+  for (const double t : {0.15, 6.0, 15.0, 30.0, 60.0, 90.0, 150.0, 240.0}) {
+    s.advance(t - s.time());
+    const Layers l = layers_of(s);
+    std::cout << t << " top " << l.top << " low " << l.low_alpha << " high " << l.high_alpha << " width "
+              << l.width << std::endl;
+    last = l.top;
+  }
+  (void)last;
+}
+
+TEST(heat, gives_the_same_bits_for_any_thread_count_and_over_a_save) {
+  Simulation one = on_plate(1), four = on_plate(4);
+  one.advance(12);
+  four.advance(12);
+  Simulation restored = Simulation::restore(one.save(), 3);
+  for (Simulation* s : {&one, &four, &restored}) s->advance(6);
+  EXPECT_EQ(one.state_hash(), four.state_hash());
+  EXPECT_EQ(one.state_hash(), restored.state_hash());
+  EXPECT_TRUE(std::ranges::equal(one.temperatures(), four.temperatures()));
+  EXPECT_TRUE(std::ranges::equal(one.temperatures(), restored.temperatures()));
+}
+
+}  // namespace heat_test
+}  // namespace mallow
