@@ -48,10 +48,15 @@ Eigen::Matrix3d stretched_moment(const ShapeMatching& shape, std::size_t region)
 /// plastic_lanes.h, moment: S B Sᵀ.
 Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
                                  const Eigen::Matrix3d& moment);
+/// What gives a body a new frame, see Material.
+struct FrameLimits {
+  float merge_flow = 0, tear_strain = 0;
+};
 /// Whether the positions of a body, from row `begin` on, should become its reference shape: a region has
-/// flowed by more than k_far_flow, or two particles that are not in each other's region are nearer than a
-/// spacing, and the regions of both have flowed by more than `merge_flow`.
-bool reframe_is_due(const VectorColumn& positions, std::size_t begin, float merge_flow,
+/// flowed by more than k_far_flow; or two that are in one's region, and have flowed, are farther apart than
+/// 1 + tear_strain of its radius, so that they tear; or two that are not are nearer than a spacing, and both
+/// have flowed by more than merge_flow, so that they merge.
+bool reframe_is_due(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
                     const Execution& execution, const ShapeMatching& shape);
 
 }  // namespace mallow
