@@ -103,11 +103,14 @@ Eigen::Matrix3d stretched_moment(const ShapeMatching& shape, std::size_t region)
   return stretch * moment * stretch.transpose();
 }
 
+bool is_thin(const Eigen::Matrix3d& moment) {
+  const double extent = moment.trace() / 3;
+  return !(moment.determinant() > static_cast<double>(k_thin) * extent * extent * extent);
+}
+
 Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
                                  const Eigen::Matrix3d& moment) {
-  const double extent = moment.trace() / 3;
-  if (!(moment.determinant() > static_cast<double>(k_thin) * extent * extent * extent))
-    return Eigen::Matrix3f::Identity();
+  if (is_thin(moment)) return Eigen::Matrix3f::Identity();
   const Eigen::Matrix3d f = rotation.transpose() * m * moment.inverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (f + f.transpose()));
   const Eigen::Vector3d strain = solver.eigenvalues().cwiseMax(k_least_strain).cwiseMin(k_most_strain);

@@ -40,8 +40,9 @@ CarriedStretch carried_stretch(const PlasticColumns& columns, std::size_t region
 void set_stretch(const CarriedStretch& carried, std::size_t region, PlasticColumns& columns);
 /// Room for the regions of a shape, with S = I and κ = 0; none where it does not flow.
 void reset_stretches(ShapeMatching& shape);
-/// S B Sᵀ of a region.
+/// S B Sᵀ of a region, and whether that is too thin for it to flow.
 Eigen::Matrix3d stretched_moment(const ShapeMatching& shape, std::size_t region);
+bool is_thin(const Eigen::Matrix3d& moment);
 
 /// S of a region whose frame becomes where its particles are: R E⁻¹ Rᵀ, so that the elastic strain E that it
 /// has stays, as far as its eigenvalues are between 0.8 and 1.25. I where the region is thin. m: M of
