@@ -73,6 +73,7 @@ class Catalogue {
     contacts();
     elastic_limit();
     schedules();
+    flow();
     bodies_that_touch();
     damping();
     bodies_that_come_and_go();
@@ -265,6 +266,69 @@ class Catalogue {
           s.body = sample(Lattice{.count = {3, 3, 3}, .jitter = 0});
         },
         rests);
+  }
+
+  /// Matter that flows takes energy and gives none: model 2, section 5.
+  void flow() {
+    Trial trial;
+    trial.steps = 2000;
+    trial.energy_room = 0.02;
+    trial.by_conserved_energy = true;
+    const auto add_flow = [&](const std::string& name, float yield, std::optional<float> creep,
+                              const Change& change) {
+      add(
+          name, free_body(),
+          [&](Setup& s) {
+            s.config.update_interval = 10;
+            s.material.update_threshold.reset();
+            s.material.plastic_yield = yield;
+            s.material.plastic_creep = creep;
+            s.body = sample(Lattice{.count = {6, 5, 5}, .corner = {0, 0, 1}, .jitter = 0.1f});
+            change(s);
+            if (s.body.velocities.empty()) stir(s, 2.0f);
+          },
+          trial);
+    };
+    for (const float yield : {0.0f, 0.001f, 0.05f, 1.0f}) {
+      std::ostringstream name;
+      name << "flows from a strain of " << yield;
+      add_flow(name.str(), yield, {}, [](Setup&) {});
+      add_flow(name.str() + ", as stiff as is allowed", yield, {}, [](Setup& s) {
+        s.material.elastic_time_step =
+            std::max(0.01f, (1 - s.material.alpha.lowest()) * *s.config.time_step / 2.5f);
+      });
+    }
+    for (const float creep : {1e-6f, 1.0f, 1e9f}) {
+      std::ostringstream name;
+      name << "creeps at " << creep << " a second";
+      add_flow(name.str(), 0.01f, creep, [](Setup&) {});
+    }
+    add_flow("a layer that flows", 0.01f, {}, [](Setup& s) {
+      s.body = sample(Lattice{.count = {8, 8, 1}, .jitter = 0.2f});
+    });
+    add_flow("two layers that flow", 0.01f, {}, [](Setup& s) {
+      s.body = sample(Lattice{.count = {8, 8, 2}, .jitter = 0.2f});
+    });
+    add_flow("a line that flows", 0.01f, {}, [](Setup& s) {
+      s.body = sample(Lattice{.count = {20, 1, 1}, .jitter = 0.2f});
+    });
+    add_flow("flows at 20 spacings a second", 0.05f, {}, [](Setup& s) { stir(s, 20.0f); });
+    add_flow("flows, in a new frame at every step", 0.01f, {}, [](Setup& s) {
+      s.config.update_interval = 1;
+      s.material.merge_flow = 0;
+      s.material.tear_strain = 0;
+    });
+    trial.energy_room = 1e9;  // the plates do work without end
+    trial.by_conserved_energy = false;
+    add(
+        "flows between two plates that close", falling_body(),
+        [](Setup& s) {
+          s.material.plastic_yield = 0.05f;
+          s.material.update_threshold.reset();
+          s.colliders.push_back(
+              {.shape = Plane{.normal = {0, 0, -1}, .offset = -6.5f}, .velocity = {0, 0, -0.1f}});
+        },
+        trial);
   }
 
   /// Contact takes energy and adds none: model 2, section 4 C.

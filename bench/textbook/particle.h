@@ -54,9 +54,13 @@ struct Group {
   double pressure_coefficient = 0;  ///< k of the last step [m²/s²]
   double contact_share = 1;         ///< of its pressure that acts between groups
   double cohesion = 0;              ///< share of its negative pressure
-  double external_sum = 0;          ///< ∫ mean |a_ext| over the time before the next check that it judges
-  double external_time = 0;         ///< that time [s]; where checks are counted in steps, steps
-  double region_radius = 0;         ///< [m]
+  double judged_external = 0;       ///< |a_ext| that the next check judges [m/s²]
+  /// Mean |a_ext| of the steps since the last check, and how long they were [s].
+  struct External {
+    double seconds, mean;
+  };
+  std::vector<External> external = {};
+  double region_radius = 0;  ///< [m]
 
   /// A group that is fluid for ever has no reference shape.
   bool keeps_reference() const { return material.alpha.lowest() < 1; }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "mallow/errors.h"
 #include "textbook/shape_matching.h"
@@ -149,8 +150,8 @@ int Textbook::update_references() {
   int updated = 0;
   for (Group& group : groups_) {
     const double threshold = group.update_threshold * (1 - group.alpha);
-    const double judged = group.external_time > 0 ? group.external_sum / group.external_time : 0;
-    group.external_sum = group.external_time = 0;
+    const double judged = std::exchange(group.judged_external, 0);
+    group.external.clear();
     if (!group.keeps_reference() || judged <= threshold) continue;
     if (group.alpha < 1) catch_up_with_pull(group);
     take_reference(group, particles_);
@@ -185,20 +186,22 @@ bool Textbook::check_is_due() const {
   return passed_periods(time_) > passed_periods(last_start_);
 }
 
-/// What counts at the next check: the step before it, or what steps share with the Δt0 before it.
+/// What counts at the next check: the step before it, or the largest mean over a Δt0 since the last one.
 void Textbook::measure_external(double time_step) {
-  double weight = 0;
-  if (counts_steps()) {
-    weight = (steps_ + 1) % *config_.update_interval == 0 ? 1 : 0;
-  } else {
-    const double end = time_ + time_step;
-    const double check = period_ * std::max(passed_periods(time_) + 1, passed_periods(end));
-    weight = std::min(end, check) - std::max(time_, check - base_step_);
-  }
-  if (weight <= 0) return;
   for (Group& group : groups_) {
-    group.external_sum += weight * mean_external_acceleration(group);
-    group.external_time += weight;
+    if (counts_steps()) {
+      if ((steps_ + 1) % *config_.update_interval == 0)
+        group.judged_external = mean_external_acceleration(group);
+      continue;
+    }
+    group.external.push_back({time_step, mean_external_acceleration(group)});
+    double sum = 0, left = base_step_;
+    for (std::size_t k = group.external.size(); k-- > 0 && left > 0;) {
+      const double shared = std::min(group.external[k].seconds, left);
+      sum += shared * group.external[k].mean;
+      left -= shared;
+    }
+    group.judged_external = std::max(group.judged_external, sum / base_step_);
   }
 }
 

@@ -80,6 +80,8 @@ struct FieldTable<Material> {
             "rate at which strain beyond plastic_yield flows", "at once"},
       Field{"merge_flow", &Material::merge_flow, k_not_negative, "",
             "flow beyond which matter that is pressed together becomes one"},
+      Field{"tear_strain", &Material::tear_strain, k_not_negative, "",
+            "stretch of a region beyond which matter that flows tears"},
       Field{"pressure_coefficient", &Material::pressure_coefficient, k_not_negative, "m²/s²",
             "pressure by excess density, k", "as a step can carry"},
       Field{"viscosity", &Material::viscosity, k_not_negative, "Pa s", "viscosity coefficient, μ",

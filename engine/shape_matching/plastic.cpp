@@ -28,19 +28,35 @@ Eigen::Matrix3d rotation_of(const ShapeMatching& shape, std::size_t region) {
   return Eigen::Quaterniond(q(3), q(0), q(1), q(2)).toRotationMatrix();
 }
 
-/// A particle of which the region has flowed.
+/// Particles whose regions have flowed.
 struct Flowed {
-  std::size_t particle;
-  Vec3 position, rest;
+  VectorColumn position, rest;
 };
 
-std::vector<Flowed> flowed_particles(const VectorColumn& positions, std::size_t begin, float least,
-                                     const ShapeMatching& shape) {
-  std::vector<Flowed> found;
+Flowed flowed_particles(const VectorColumn& positions, std::size_t begin, float least,
+                        const ShapeMatching& shape) {
+  std::vector<std::size_t> which;
   for (std::size_t i = 0; i < shape.reference.size(); ++i)
-    if (shape.plastic.flow[shape.first_region(i)] > least)
-      found.push_back({i, positions.get(begin + i), shape.reference.get(i)});
-  return found;
+    if (shape.plastic.flow[shape.first_region(i)] > least) which.push_back(i);
+  Flowed flowed{VectorColumn(which.size()), VectorColumn(which.size())};
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    flowed.position.set(k, positions.get(begin + which[k]));
+    flowed.rest.set(k, shape.reference.get(which[k]));
+  }
+  return flowed;
+}
+
+/// Whether two are nearer than `near` in one place and farther apart than `far` in the other.
+bool any_part_ways(const VectorColumn& here, float near, const VectorColumn& there, float far,
+                   const Execution& execution) {
+  CellGrid grid;
+  NeighborLists lists;
+  build_cell_grid(here, 0, here.size(), near, execution, grid);
+  build_neighbor_lists(grid, near, execution, lists);
+  for (std::size_t s = 0; s < here.size(); ++s)
+    for (const std::uint32_t t : lists.of(s))
+      if ((there.get(grid.order[s]) - there.get(grid.order[t])).squaredNorm() > far * far) return true;
+  return false;
 }
 
 }  // namespace
@@ -87,11 +103,14 @@ Eigen::Matrix3d stretched_moment(const ShapeMatching& shape, std::size_t region)
   return stretch * moment * stretch.transpose();
 }
 
+bool is_thin(const Eigen::Matrix3d& moment) {
+  const double extent = moment.trace() / 3;
+  return !(moment.determinant() > static_cast<double>(k_thin) * extent * extent * extent);
+}
+
 Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
                                  const Eigen::Matrix3d& moment) {
-  const double extent = moment.trace() / 3;
-  if (!(moment.determinant() > static_cast<double>(k_thin) * extent * extent * extent))
-    return Eigen::Matrix3f::Identity();
+  if (is_thin(moment)) return Eigen::Matrix3f::Identity();
   const Eigen::Matrix3d f = rotation.transpose() * m * moment.inverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (f + f.transpose()));
   const Eigen::Vector3d strain = solver.eigenvalues().cwiseMax(k_least_strain).cwiseMin(k_most_strain);
@@ -100,24 +119,19 @@ Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d
   return stretch.allFinite() ? Eigen::Matrix3f(stretch.cast<float>()) : Eigen::Matrix3f::Identity();
 }
 
-bool reframe_is_due(const VectorColumn& positions, std::size_t begin, float merge_flow,
+bool reframe_is_due(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
                     const Execution& execution, const ShapeMatching& shape) {
   const std::span<const float> flow = shape.plastic.flow.span();
   const float most = flow.empty() ? 0.0f : *std::ranges::max_element(flow);
   if (most > k_far_flow) return true;
-  if (most <= merge_flow || !(shape.spacing > 0)) return false;
-  const std::vector<Flowed> flowed = flowed_particles(positions, begin, merge_flow, shape);
-  VectorColumn points(flowed.size());
-  for (std::size_t k = 0; k < flowed.size(); ++k) points.set(k, flowed[k].position);
-  CellGrid grid;
-  NeighborLists lists;
-  build_cell_grid(points, 0, points.size(), shape.spacing, execution, grid);
-  build_neighbor_lists(grid, shape.spacing, execution, lists);
-  const float apart = shape.region_radius * shape.region_radius;
-  for (std::size_t s = 0; s < points.size(); ++s)
-    for (const std::uint32_t t : lists.of(s))
-      if ((flowed[grid.order[s]].rest - flowed[grid.order[t]].rest).squaredNorm() > apart) return true;
-  return false;
+  if (most == 0 || !(shape.spacing > 0)) return false;
+  const float radius = shape.region_radius;
+  const Flowed flowed = flowed_particles(positions, begin, 0, shape);
+  if (any_part_ways(flowed.rest, radius, flowed.position, (1 + limits.tear_strain) * radius, execution))
+    return true;
+  if (most <= limits.merge_flow) return false;
+  const Flowed pressed = flowed_particles(positions, begin, limits.merge_flow, shape);
+  return any_part_ways(pressed.position, shape.spacing, pressed.rest, radius, execution);
 }
 
 void solve_plastic_regions(const MatchedBodies::Body& body, std::size_t begin, std::size_t end,

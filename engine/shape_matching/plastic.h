@@ -40,18 +40,24 @@ CarriedStretch carried_stretch(const PlasticColumns& columns, std::size_t region
 void set_stretch(const CarriedStretch& carried, std::size_t region, PlasticColumns& columns);
 /// Room for the regions of a shape, with S = I and κ = 0; none where it does not flow.
 void reset_stretches(ShapeMatching& shape);
-/// S B Sᵀ of a region.
+/// S B Sᵀ of a region, and whether that is too thin for it to flow.
 Eigen::Matrix3d stretched_moment(const ShapeMatching& shape, std::size_t region);
+bool is_thin(const Eigen::Matrix3d& moment);
 
 /// S of a region whose frame becomes where its particles are: R E⁻¹ Rᵀ, so that the elastic strain E that it
 /// has stays, as far as its eigenvalues are between 0.8 and 1.25. I where the region is thin. m: M of
 /// plastic_lanes.h, moment: S B Sᵀ.
 Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
                                  const Eigen::Matrix3d& moment);
+/// What gives a body a new frame, see Material.
+struct FrameLimits {
+  float merge_flow = 0, tear_strain = 0;
+};
 /// Whether the positions of a body, from row `begin` on, should become its reference shape: a region has
-/// flowed by more than k_far_flow, or two particles that are not in each other's region are nearer than a
-/// spacing, and the regions of both have flowed by more than `merge_flow`.
-bool reframe_is_due(const VectorColumn& positions, std::size_t begin, float merge_flow,
+/// flowed by more than k_far_flow; or two that are in one's region, and have flowed, are farther apart than
+/// 1 + tear_strain of its radius, so that they tear; or two that are not are nearer than a spacing, and both
+/// have flowed by more than merge_flow, so that they merge.
+bool reframe_is_due(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
                     const Execution& execution, const ShapeMatching& shape);
 
 }  // namespace mallow

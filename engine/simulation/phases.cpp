@@ -80,6 +80,12 @@ FlowRule flow_rule(const Material& material) {
           .creep = material.plastic_creep.value_or(std::numeric_limits<float>::infinity())};
 }
 
+bool frame_is_due(const Simulation::State& state, const BodyState& body) {
+  const Material& material = body.material->settings;
+  return reframe_is_due(state.store.position, body.begin, {material.merge_flow, material.tear_strain},
+                        state.execution, body.shape);
+}
+
 /// Where a body is becomes its reference shape, whose regions keep the elastic strain that they have.
 void reframe(Simulation::State& state, BodyState& body) {
   CarriedRegions carried = reframe_regions(state.store.position, body.begin, state.config.rotation_iterations,
@@ -112,9 +118,7 @@ int update_references(Simulation::State& state) {
     const double threshold =
         static_cast<double>(body.material->update_threshold * (1.0f - body.most_alpha()));
     const bool yields = check && body.follows_threshold() && body.judged_external > threshold;
-    const bool reframes = check && !yields && flows(body) &&
-                          reframe_is_due(state.store.position, body.begin, body.material->settings.merge_flow,
-                                         state.execution, body.shape);
+    const bool reframes = check && !yields && flows(body) && frame_is_due(state, body);
     const bool had_regions = body.matches_shape() && body.shape.built;
     const auto due = [&] { return body.matches_shape() && !body.shape.built; };
     // A reference shape outlives the step: nothing that is not finite may get into it.

@@ -30,6 +30,7 @@ class Warnings {
   std::vector<std::string> list() && {
     for (const BodyState& body : state_.bodies) {
       look_at_threshold(body);
+      look_at_flow(body);
       look_at_density(body);
       look_at_limits(body);
       look_at_neighbors(body);
@@ -60,6 +61,20 @@ class Warnings {
         " m/s2): at rest its own weight updates the reference shape, so that it sinks like clay; 40 times "
         "gravity is ",
         40 * gravity);
+  }
+
+  /// What can flow nowhere.
+  void look_at_flow(const BodyState& body) {
+    if (!body.shape.flows) return;
+    const float yield = *body.material->settings.plastic_yield;
+    if (!body.keeps_reference())
+      return add(body, "plastic_yield ", yield, " has no effect where alpha is 1: a fluid flows by itself");
+    if (!body.shape.built) return;
+    for (std::size_t j = 0; j < body.shape.region_weight.size(); ++j)
+      if (!is_thin(stretched_moment(body.shape, j))) return;
+    add(body, "plastic_yield ", yield,
+        " has no effect, as its particles are one layer, or a line: they have no strain across; two layers "
+        "do");
   }
 
   void look_at_density(const BodyState& body) {

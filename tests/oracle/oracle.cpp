@@ -535,7 +535,7 @@ namespace {
 /// Of the stretched reference shape.
 bool is_thin(const Particle& j) {
   const Matrix p = j.stretch * j.rest_moment * j.stretch.transpose();
-  return p.determinant() < 1e-4 * std::pow(p.trace() / 3, 3);
+  return !(p.determinant() > 1e-4 * std::pow(p.trace() / 3, 3));
 }
 
 /// E of a region.
@@ -574,9 +574,11 @@ bool Oracle::reframe_is_due(std::size_t group) const {
     if (i.group != group) continue;
     if (i.flow > 0.5) return true;
     for (const Particle& j : particles_) {
-      if (j.group == group && std::min(i.flow, j.flow) > double{g.material.merge_flow} &&
-          (i.x - j.x).norm() < g.spacing && (i.reference - j.reference).norm() > radius)
-        return true;
+      if (j.group != group) continue;
+      const double flow = std::min(i.flow, j.flow);
+      const double now = (i.x - j.x).norm(), rest = (i.reference - j.reference).norm();
+      if (flow > 0 && rest <= radius && now > (1 + double{g.material.tear_strain}) * radius) return true;
+      if (flow > double{g.material.merge_flow} && rest > radius && now < g.spacing) return true;
     }
   }
   return false;

@@ -34,6 +34,10 @@ instruction_level = ")" + std::string(name(InstructionLevel::baseline)) +
 name = "jelly \"red\""
 alpha = [[0.0, 0.1], [1.5, 1]]
 update_threshold = 1.5
+plastic_yield = 0.0625
+plastic_creep = 0.5
+merge_flow = 0.25
+tear_strain = 0.75
 pressure_coefficient = 2.5
 viscosity = 0.75
 elastic_time_step = 0.05
@@ -204,6 +208,10 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_EQ(material.material.alpha.keys()[1].time, 1.5f);
   EXPECT_EQ(material.material.alpha.keys()[1].value, 1.0f);
   EXPECT_EQ(material.material.update_threshold, 1.5f);
+  EXPECT_EQ(material.material.plastic_yield, 0.0625f);
+  EXPECT_EQ(material.material.plastic_creep, 0.5f);
+  EXPECT_EQ(material.material.merge_flow, 0.25f);
+  EXPECT_EQ(material.material.tear_strain, 0.75f);
   EXPECT_EQ(material.material.pressure_coefficient, 2.5f);
   EXPECT_EQ(material.material.viscosity, 0.75f);
   EXPECT_EQ(material.material.elastic_time_step, 0.05f);

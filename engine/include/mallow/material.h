@@ -35,6 +35,11 @@ struct Material {
   /// where it touches itself, for the two sides to become one at the next check, >= 0. Less merges what
   /// hardly touched.
   float merge_flow = 0.1f;
+  /// Where matter flows and a region has been stretched by more than this since the reference shape was
+  /// taken, it tears at the next check, >= 0: what is farther apart than region_radius by then is not held
+  /// together any more. So a blade cuts where the gap that it leaves is wider than (1 + tear_strain)
+  /// region_radius; less makes matter short, more of it goes into crumbs.
+  float tear_strain = 0.5f;
   /// k [m²/s²], >= 0: pressure is k (ρ − ρ0). Left out: as stiff as a step can carry, see
   /// default_pressure_coefficient(); it then follows alpha, and between bodies, where pressure acts whatever
   /// alpha is, it is that of alpha 1. [TK eq. 1]
