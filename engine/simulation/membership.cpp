@@ -133,7 +133,7 @@ void rebuild_shape(Simulation::State& s, BodyState& body, CarriedRegions& carrie
 void Simulation::State::rows_changed() {
   rows_moved();
   sph.grid.order.resize(0);
-  sph_ran = false;
+  sph_ran = density_ran = false;
   prepared = false;
   held = false;
   blend_changed = true;

@@ -7,9 +7,6 @@
 namespace mallow {
 namespace {
 
-/// Clusters that one thread handles at a time.
-constexpr std::size_t k_cluster_block = 16;
-
 SphInput input(const Sph& sph) {
   return {
       .cluster_start = sph.grid.cluster_start.data(),
@@ -92,21 +89,25 @@ void compute_density(const Execution& execution, Sph& sph) {
       k_cluster_block);
 }
 
+void gather_sorted(const VectorColumn& by_row, const Sph& sph, const Execution& execution,
+                   VectorColumn& sorted) {
+  const std::size_t n = sph.grid.order.size();
+  sorted.resize(n);
+  parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const float* from = by_row.axis(a);
+      float* to = sorted.axis(a);
+      for (std::size_t i = begin; i < end; ++i) to[i] = from[sph.grid.order[i]];
+    }
+  });
+}
+
 void compute_accelerations(const VectorColumn& velocities, const ByParticle& own, const Execution& execution,
                            Sph& sph) {
   const std::size_t n = sph.grid.order.size();
   sph.acceleration.resize(sph.store_rows);
   if (sph.groups.size() > 1 && !sph.apart) sph.cross_group.resize(sph.store_rows);
-  if (sph.viscous) {
-    sph.velocity.resize(n);
-    parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        const float* from = velocities.axis(a);
-        float* to = sph.velocity.axis(a);
-        for (std::size_t i = begin; i < end; ++i) to[i] = from[sph.grid.order[i]];
-      }
-    });
-  }
+  if (sph.viscous) gather_sorted(velocities, sph, execution, sph.velocity);
   const auto sort = [&](const Column<float>& by_row, Column<float>& sorted) {
     sorted.resize(by_row.empty() ? 0 : n);
     if (by_row.empty()) return;
