@@ -91,7 +91,11 @@ class SceneReader {
   }
 
   void read_material(const Node& node, const std::string& path) {
-    read_fields(node, path, fields(scene_.materials.emplace_back()), {}, problems_);
+    SceneMaterial& read = scene_.materials.emplace_back();
+    read_fields(node, path, fields(read), {}, problems_);
+    if (read.material.youngs_modulus && read.material.elastic_time_step)
+      problems_.add(find(node, "youngs_modulus")->place, path + ".youngs_modulus",
+                    "is not allowed beside elastic_time_step: give one of the two");
   }
 
   void read_body(const Node& node, const std::string& path) {

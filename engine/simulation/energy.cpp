@@ -58,7 +58,7 @@ double match(const Simulation::State& state, const BodyState& body, std::vector<
 void add_energy(const Simulation::State& s, const BodyState& body, std::vector<Vec>& pull, Energy& energy) {
   const Vec gravity = s.config.gravity.cast<double>();
   const double mass = static_cast<double>(body.mass);
-  const double stiffness = static_cast<double>(s.stiffness(*body.material));
+  const double stiffness = static_cast<double>(s.stiffness(body));
   const bool is_elastic = body.matches_shape() && body.shape.built;
   if (is_elastic) energy.elastic += stiffness * mass * match(s, body, pull);
   for (std::size_t row = body.begin; row < body.end; ++row) {

@@ -54,7 +54,7 @@ void catch_up_with_pull(Simulation::State& state, BodyState& body) {
   MatchedBodies matched;
   matched.add(body.shape, body.begin);
   match_shapes(state.store.position, state.config.rotation_iterations, state.execution, matched);
-  const float kick = 0.5f * static_cast<float>(state.last_time_step) * state.stiffness(*body.material);
+  const float kick = 0.5f * static_cast<float>(state.last_time_step) * state.stiffness(body);
   ParticleStore& store = state.store;
   parallel_for(state.execution.threads, body.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -225,7 +225,7 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
       .end = body.end,
       .time_step = time_step,
       .alpha = body.material->alpha,
-      .elastic_factor = pull_time * state.stiffness(*body.material),
+      .elastic_factor = pull_time * state.stiffness(body),
       .gravity = config.gravity,
       .sph_acceleration = state.sph_ran && body.material->alpha > 0 ? &state.sph.acceleration : nullptr,
       .cross_group = state.cross_group(),

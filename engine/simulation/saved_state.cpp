@@ -15,7 +15,7 @@ namespace mallow {
 namespace {
 
 /// Counted up whenever the chunks or what they mean change.
-constexpr std::uint32_t k_version = 8;
+constexpr std::uint32_t k_version = 9;
 static_assert(sizeof(std::size_t) == sizeof(std::uint64_t), "sizes are saved as they are");
 
 // One list of members a type, for both ways: see PackingArchive, and config/field_tables.h for those of
@@ -34,7 +34,7 @@ void pass_clock(Archive& archive, State& state) {
   archive(state.scale.gravity);
   archive(state.scale.speed);
   if constexpr (!Archive::k_packs) {
-    if (source > static_cast<std::uint8_t>(TimeStepSource::speed))
+    if (source > static_cast<std::uint8_t>(TimeStepSource::modulus))
       archive.fail("the time step has no such source");
     state.time_step_source = static_cast<TimeStepSource>(source);
   }
@@ -160,7 +160,7 @@ void unpack_materials(const SavedState& saved, Simulation::State& state) {
       if (!k_alpha.holds(material.alpha))
         archive.fail("material '" + material.name + "': alpha must be" + range_text(k_alpha));
       check(material.settings, checks);
-      check_stiffness(state.config, material.settings, checks);
+      check_stiffness(state.config, material.settings, material.name, checks);
     });
     checks.finish();
     for (std::size_t m = 0; m < state.materials.size(); ++m)
@@ -183,7 +183,7 @@ std::vector<ShapeSizes> unpack_bodies(const SavedState& saved, Simulation::State
       require_valid(archive, state, body, sizes.back(), rows);
       rows = body.end;
       const Material& settings = body.material->settings;
-      body.shape.region_radius = settings.region_radius.value_or(state.config.support_radius);
+      body.shape.region_radius = region_radius(state.config, settings, body.spacing);
       body.shape.region_stride = settings.region_stride;
     });
   });

@@ -21,14 +21,22 @@ float contact_share(float alpha);
 /// Share of a default k that negative pressures have before cohesion takes its own.
 float cohesive_share(float support_radius, float pressure_coefficient, float time_step);
 
+/// m [kg] and ρ0 [kg/m³]; what the material leaves out follows from ρ0 = m Σ W over the lattice. [model 1]
+struct ParticleDensity {
+  float mass, rest_density;
+};
+ParticleDensity particle_density(const SolverConfig& config, const Material& material, float spacing);
+/// Radius of the regions of a body [m].
+float region_radius(const SolverConfig& config, const Material& material, float spacing);
+
 /// Spacing and speeds -> scale, time_step and its source, if this is the first prepare(); γ_u of every
-/// material and μ of every body. Throws ConfigError where nothing says how long a step is, where steps are
+/// material, μ and Δt_SM of every body. Throws ConfigError where nothing says how long a step is, where steps are
 /// too long for a material's springs, or where a default is beyond single precision.
 void resolve_settings(Simulation::State& state);
 /// α, settings -> k of every body in the sums of SPH.
 void resolve_pressures(Simulation::State& state);
 /// k in force.
-float pressure_coefficient(const Simulation::State& state, const MaterialState& material);
+float pressure_coefficient(const Simulation::State& state, const BodyState& body);
 
 /// Time between checks of the reference shapes, where no step is shortened [s].
 double update_period(const Simulation::State& state);

@@ -48,6 +48,7 @@ struct BodyState {
   float mass = 0;                  ///< m [kg]
   float rest_density = 0;          ///< ρ0 [kg/m³]
   float viscosity = 0;             ///< μ in force [Pa s]
+  float elastic_time_step = 0;     ///< Δt_SM in force [s]
   std::uint32_t sph_group = 0;     ///< that of bodies which merge with this one, and its own
   double external_sum = 0;         ///< Σ of mean |a_ext|, times external_weight(), for the next check
   double external_weight = 0;      ///< Σ of these weights
@@ -196,6 +197,12 @@ struct Simulation::State {
   /// Δt0, and what bounds the steps that are taken. Known from the first prepare() on [s].
   float base_step() const { return *config.time_step; }
   float longest_step() const { return config.time_step_factor * *config.time_step; }
+  /// Δt0 as spacing and gravity have it, also where a modulus asks for shorter steps: what hardly moves, and
+  /// for how long, does not follow from how stiff something is [s].
+  float scene_step() const {
+    if (time_step_source != TimeStepSource::modulus) return base_step();
+    return default_time_step(scale).value_or(base_step());
+  }
   /// Throw ConfigError where there is none of this name, or no longer.
   const BodyState& body(BodyId id) const;
   BodyState& body(BodyId id) { return const_cast<BodyState&>(std::as_const(*this).body(id)); }
@@ -239,9 +246,8 @@ struct Simulation::State {
     return std::ranges::any_of(bodies, [](const BodyState& body) { return body.hit_impulse.has_value(); });
   }
   /// Of the pull towards goals, (1 − α)/(Δt0 Δt_SM) [1/s²]. [TK eq. 13]
-  float stiffness(const MaterialState& material) const {
-    const float elastic_step = material.settings.elastic_time_step.value_or(base_step());
-    return (1.0f - material.alpha) / (base_step() * elastic_step);
+  float stiffness(const BodyState& body) const {
+    return (1.0f - body.material->alpha) / (base_step() * body.elastic_time_step);
   }
   /// Rate at which deformations are damped, ζ [1/s].
   float deformation_damping(const BodyState& body) const;
@@ -325,7 +331,7 @@ void measure_rigid(const Simulation::State& state, BodyState& body);
 
 /// Throws ConfigError where an id names none of a kind.
 [[noreturn]] void refuse_id(const char* kind, std::uint64_t id, const Slots& slots);
-/// m and ρ0 of a body; what the material leaves out follows from ρ0 = m Σ W over the lattice. [model 1]
+/// m and ρ0 of a body.
 void derive_density(const SolverConfig& config, BodyState& body);
 
 /// Takes the positions of a body as its reference shape and sorts its rows for that.

@@ -27,10 +27,10 @@ TimeStepLimits::Pressure acting_pressure(const Simulation::State& state, const B
   const bool presses = state.bodies.size() > 1 && !state.sph.apart;
   const float push = presses ? (follows ? contact_share(body.material->alpha) : 1.0f) : body.material->alpha;
   const float drag = presses ? 1.0f : body.material->alpha;
-  const float coefficient = push * pressure_coefficient(state, *body.material);
+  const float coefficient = push * pressure_coefficient(state, body);
   return {.coefficient = coefficient,
           .kinematic_viscosity = drag * body.viscosity / body.rest_density,
-          .stiffness = state.stiffness(*body.material),
+          .stiffness = state.stiffness(body),
           .pull = follows ? 0.0f : body.material->settings.cohesion * coefficient,
           .damping_time = body.material->settings.damping_time,
           .damping_rate = body.material->settings.deformation_damping.value_or(0.0f)};

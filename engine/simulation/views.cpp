@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
+#include "simulation/stiffness.h"
 
 namespace mallow {
 namespace {
@@ -224,6 +225,7 @@ SimulationInfo Simulation::info() {
   for (const BodyState& body : s.bodies) {
     info.bytes += body.shape.bytes();
     const ShapeMatching& shape = body.shape;
+    const Material& settings = body.material->settings;
     info.bodies.push_back(
         {.name = body.name,
          .material = body.material->name,
@@ -234,8 +236,14 @@ SimulationInfo Simulation::info() {
          .region_radius = shape.region_radius,
          .alpha = body.material->alpha,
          .update_threshold = body.material->update_threshold,
-         .pressure_coefficient = pressure_coefficient(s, *body.material),
+         .pressure_coefficient = pressure_coefficient(s, body),
          .viscosity = body.viscosity,
+         .elastic_time_step = body.elastic_time_step,
+         .youngs_modulus = static_cast<float>(
+             stiffness_scale(s.config, settings, body.spacing) /
+             (static_cast<double>(s.base_step()) * static_cast<double>(body.elastic_time_step))),
+         .most_youngs_modulus =
+             static_cast<float>(most_modulus(s.config, settings, body.spacing)),
          .average_neighbors = shape.built ? shape.average_neighbors : count_neighbors(s, body),
          .regions = shape.built ? shape.region_weight.size() : 0,
          .shape_matching = body.matches_shape()});

@@ -111,6 +111,10 @@ struct BodyInfo {
   float update_threshold = 0;      ///< γ_u in force, to be multiplied by 1 − alpha [m/s²]
   float pressure_coefficient = 0;  ///< k in force [m²/s²]
   float viscosity = 0;             ///< μ in force [Pa s]
+  float elastic_time_step = 0;     ///< Δt_SM in force [s]
+  /// Y in force, whether it was given or follows from elastic_time_step, to be multiplied by 1 − alpha [Pa].
+  float youngs_modulus = 0;
+  float most_youngs_modulus = 0;  ///< that the longest step carries, at the lowest alpha there is [Pa]
   double average_neighbors = 0;    ///< mean |N_i| over the reference shape, i included, whatever the stride
   std::size_t regions = 0;         ///< of shape matching, as many as are owned; 0 where none are built
   bool shape_matching = false;     ///< runs now
