@@ -26,7 +26,7 @@ struct FieldTable<SolverConfig> {
       Field{"time_step_factor", &Config::time_step_factor, between(0.01, 4), "",
             "steps are this share of time_step, and the material stays what it is"},
       Field{"support_radius", &Config::support_radius, k_positive, "m", "radius of the SPH kernels, σ",
-            k_required},
+            "2.1 spacings"},
       Field{"gravity", &Config::gravity, k_finite, "m/s²", "acceleration of every particle"},
       Field{"update_period", &Config::update_period, k_positive, "s",
             "time between the checks that update reference shapes, m_u; give this or update_interval",

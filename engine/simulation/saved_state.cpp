@@ -516,7 +516,7 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
         state.last_time_step < 0)
       archive.fail("step and time_step must be 0 or above, and time finite");
     const SceneScale& scale = state.scale;
-    const bool settled = state.config.time_step && scale.spacing > 0;
+    const bool settled = state.config.time_step && state.config.support_radius && scale.spacing > 0;
     if (!(std::isfinite(scale.spacing) && scale.spacing >= 0 && std::isfinite(scale.speed) &&
           scale.speed >= 0 && scale.gravity.allFinite() && std::isfinite(state.passed_periods)) ||
         (!settled && (state.prepared || scale.spacing > 0)))

@@ -88,18 +88,21 @@ void check_moduli(const Simulation::State& state, const SolverConfig& config, Ch
     check_modulus(config, body.material->settings, body.spacing, body.name, checks);
 }
 
-/// Spacing and speeds -> scale, time_step and its source.
+/// Spacing and speeds -> scale, support_radius, time_step and its source.
 void settle(Simulation::State& state) {
   SceneScale scale{.spacing = std::numeric_limits<float>::max(), .gravity = state.config.gravity};
   for (const BodyState& body : state.bodies) scale.spacing = std::min(scale.spacing, body.spacing);
   scale.speed = fastest_speed(state);
   SolverConfig config = state.config;
+  float coarsest = 0;
+  for (const BodyState& body : state.bodies) coarsest = std::max(coarsest, body.spacing);
+  if (!config.support_radius) config.support_radius = default_support_radius(coarsest);
   const TimeStepSource source = resolve_time_step(state, scale, config);
   Checks checks;
   for (const MaterialState& material : state.materials) {
     check_stiffness(config, material.settings, material.name, checks);
     if (!material.settings.pressure_coefficient &&
-        !std::isfinite(default_pressure_coefficient(config.support_radius, 0, 0, *config.time_step)))
+        !std::isfinite(default_pressure_coefficient(*config.support_radius, 0, 0, *config.time_step)))
       checks.problem("material.pressure_coefficient",
                      "is missing: what follows from support_radius and time_step is no number of single "
                      "precision; give it");
@@ -112,7 +115,15 @@ void settle(Simulation::State& state) {
                      "precision; give it");
   check_moduli(state, config, checks);
   checks.finish();
+  const bool is_new_radius = !state.config.support_radius;
   state.config = config;
+  if (is_new_radius) {
+    take_support_radius(state);
+    for (BodyState& body : state.bodies) {
+      derive_density(config, body);
+      body.shape.region_radius = region_radius(config, body.material->settings, body.spacing);
+    }
+  }
   state.scale = scale;
   state.time_step_source = source;
 }
@@ -138,7 +149,7 @@ float pressure_coefficient(const Simulation::State& state, const BodyState& body
   const MaterialState& material = *body.material;
   if (material.settings.pressure_coefficient) return *material.settings.pressure_coefficient;
   const float time_step = pressed_step(state);
-  return default_pressure_coefficient(state.config.support_radius, material.alpha,
+  return default_pressure_coefficient(state.support_radius(), material.alpha,
                                       state.stiffness(body) * time_step * time_step, time_step);
 }
 
@@ -151,8 +162,7 @@ void resolve_pressures(Simulation::State& state) {
     sums.cohesion = material.settings.cohesion;
     if (material.settings.pressure_coefficient) continue;
     sums.contact_share = contact_share(material.alpha);
-    sums.cohesion *=
-        cohesive_share(state.config.support_radius, sums.pressure_coefficient, pressed_step(state));
+    sums.cohesion *= cohesive_share(state.support_radius(), sums.pressure_coefficient, pressed_step(state));
   }
 }
 

@@ -26,12 +26,14 @@ struct ParticleDensity {
   float mass, rest_density;
 };
 ParticleDensity particle_density(const SolverConfig& config, const Material& material, float spacing);
-/// Radius of the regions of a body [m].
+/// Radii of SPH and of the regions of a body [m]; of SPH that of its own spacing where it is left out and not
+/// settled.
+float support_radius(const SolverConfig& config, float spacing);
 float region_radius(const SolverConfig& config, const Material& material, float spacing);
 
-/// Spacing and speeds -> scale, time_step and its source, if this is the first prepare(); γ_u of every
-/// material, μ and Δt_SM of every body. Throws ConfigError where nothing says how long a step is, where steps are
-/// too long for a material's springs, or where a default is beyond single precision.
+/// Spacing and speeds -> scale, support_radius, time_step and its source, if this is the first prepare(); γ_u
+/// of every material, μ and Δt_SM of every body. Throws ConfigError where nothing says how long a step is,
+/// where steps are too long for a material's springs, or where a default is beyond single precision.
 void resolve_settings(Simulation::State& state);
 /// α, settings -> k of every body in the sums of SPH.
 void resolve_pressures(Simulation::State& state);

@@ -26,7 +26,7 @@ bool merge(const BodyState& a, const BodyState& b) {
 
 ParticleDensity particle_density(const SolverConfig& config, const Material& material, float spacing) {
   const double per_mass =
-      lattice_density(static_cast<double>(config.support_radius), static_cast<double>(spacing));
+      lattice_density(static_cast<double>(support_radius(config, spacing)), static_cast<double>(spacing));
   ParticleDensity density{.mass = 1, .rest_density = 0};
   if (material.particle_mass)
     density.mass = *material.particle_mass;
@@ -43,8 +43,17 @@ void derive_density(const SolverConfig& config, BodyState& body) {
   body.rest_density = density.rest_density;
 }
 
-float region_radius(const SolverConfig& config, const Material& material, float) {
-  return material.region_radius.value_or(config.support_radius);
+float support_radius(const SolverConfig& config, float spacing) {
+  return config.support_radius.value_or(default_support_radius(spacing));
+}
+
+float region_radius(const SolverConfig& config, const Material& material, float spacing) {
+  return material.region_radius.value_or(support_radius(config, spacing));
+}
+
+void take_support_radius(Simulation::State& state) {
+  state.sph.support_radius = state.support_radius();
+  state.sph.factors = kernel_factors(static_cast<double>(state.support_radius()));
 }
 
 void measure_rigid(const Simulation::State& s, BodyState& body) {
@@ -135,10 +144,9 @@ Simulation::Simulation(const SolverConfig& config) : state_(std::make_unique<Sta
   state_->config = config;
   state_->execution.threads = Threads(config.threads, config.executor);
   state_->execution.level = config.instruction_level.value_or(best_instruction_level());
-  state_->sph.support_radius = config.support_radius;
+  if (config.support_radius) take_support_radius(*state_);
   state_->sph.formulation = config.formulation;
   state_->sph.neighbor_slack = config.neighbor_slack;
-  state_->sph.factors = kernel_factors(static_cast<double>(config.support_radius));
 }
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;

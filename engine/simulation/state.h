@@ -181,7 +181,7 @@ struct Simulation::State {
   // Scratch.
   RegionScratch region_scratch;
   Parts parts_before, parts_after;  ///< of a body whose reference shape is updated
-  MatchedBodies matched;  ///< those whose shape is matched in the step under way
+  MatchedBodies matched;            ///< those whose shape is matched in the step under way
   FastestInput fastest;
   MovingBodies moving;
   Column<std::uint32_t> fluid_order;
@@ -194,6 +194,8 @@ struct Simulation::State {
   std::vector<TouchingBody> touching;
   ContactPairs contact_pairs;
 
+  /// σ. Known from the first prepare() on [m].
+  float support_radius() const { return *config.support_radius; }
   /// Δt0, and what bounds the steps that are taken. Known from the first prepare() on [s].
   float base_step() const { return *config.time_step; }
   float longest_step() const { return config.time_step_factor * *config.time_step; }
@@ -331,6 +333,8 @@ void measure_rigid(const Simulation::State& state, BodyState& body);
 
 /// Throws ConfigError where an id names none of a kind.
 [[noreturn]] void refuse_id(const char* kind, std::uint64_t id, const Slots& slots);
+/// σ of the config -> SPH.
+void take_support_radius(Simulation::State& state);
 /// m and ρ0 of a body.
 void derive_density(const SolverConfig& config, BodyState& body);
 

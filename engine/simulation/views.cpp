@@ -216,6 +216,7 @@ SimulationInfo Simulation::info() {
   info.bytes = s.store.bytes() + s.sph.bytes() + s.fluid_order.bytes() + s.user_acceleration.bytes() +
                s.far_position.bytes() + s.region_scratch.bytes() + s.led_position.bytes() +
                s.contact_pairs.bytes();
+  info.support_radius = s.support_radius();
   info.time_step = s.base_step();
   info.time_step_source = s.time_step_source;
   info.longest_step = s.longest_step();
@@ -242,8 +243,7 @@ SimulationInfo Simulation::info() {
          .youngs_modulus = static_cast<float>(
              stiffness_scale(s.config, settings, body.spacing) /
              (static_cast<double>(s.base_step()) * static_cast<double>(body.elastic_time_step))),
-         .most_youngs_modulus =
-             static_cast<float>(most_modulus(s.config, settings, body.spacing)),
+         .most_youngs_modulus = static_cast<float>(most_modulus(s.config, settings, body.spacing)),
          .average_neighbors = shape.built ? shape.average_neighbors : count_neighbors(s, body),
          .regions = shape.built ? shape.region_weight.size() : 0,
          .shape_matching = body.matches_shape()});

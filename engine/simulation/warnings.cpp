@@ -97,8 +97,8 @@ class Warnings {
       add(body, "viscosity ", body.viscosity, " is too low to calm the pressure that keeps the volume, and",
           shortens(limits.by_pressure), "leave it out, raise it, or give a lower pressure_coefficient");
     else
-      add(body, "support_radius ", state_.config.support_radius, ", ",
-          state_.config.support_radius / body.spacing, " spacings,", shortens(limits.by_pressure),
+      add(body, "support_radius ", state_.support_radius(), ", ",
+          state_.support_radius() / body.spacing, " spacings,", shortens(limits.by_pressure),
           "2 to 3 spacings are usual, or give a lower pressure_coefficient");
   }
 
@@ -112,7 +112,7 @@ class Warnings {
         add(body, field, ' ', radius, " is ", radius / body.spacing, " spacings: about ", std::round(each),
             " neighbours each, where 30 to 80 are usual; so few hold no body together, 2.1 spacings do");
     };
-    if (state_.needs_sph()) look("support_radius", state_.config.support_radius, state_.store.size());
+    if (state_.needs_sph()) look("support_radius", state_.support_radius(), state_.store.size());
     if (body.keeps_reference()) look("the radius of its regions,", body.shape.region_radius, body.size());
   }
 

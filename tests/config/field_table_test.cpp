@@ -148,11 +148,13 @@ TEST(field_table, states_of_version_9_hold_these_settings_in_this_order) {
             "acoustic_limit contact contact_offset wall_pressure sleep_speed sleep_time rotation_iterations "
             "neighbor_slack "
             "memory_limit");
-  EXPECT_EQ(names_in_states<Material>(),
-            "alpha update_threshold pressure_coefficient viscosity elastic_time_step youngs_modulus particle_mass "
-            "rest_density cohesion friction adhesion damping_time deformation_damping region_radius "
-            "region_stride");
-  EXPECT_EQ(names_in_states<Collider>(), "velocity angular_velocity surface_velocity restitution friction measure_load");
+  EXPECT_EQ(
+      names_in_states<Material>(),
+      "alpha update_threshold pressure_coefficient viscosity elastic_time_step youngs_modulus particle_mass "
+      "rest_density cohesion friction adhesion damping_time deformation_damping region_radius "
+      "region_stride");
+  EXPECT_EQ(names_in_states<Collider>(),
+            "velocity angular_velocity surface_velocity restitution friction measure_load");
   EXPECT_EQ(names_in_states<Emitter>(),
             "radius width height spacing velocity speed start stop jitter most_particles");
   EXPECT_EQ(names_in_states<Sphere>(), "center radius inside");
@@ -205,8 +207,8 @@ TEST(field_table, archives_give_back_every_kind_of_value) {
 
 TEST(field_table, archives_refuse_a_choice_that_there_is_not) {
   std::string bytes = packed(SolverConfig{});
-  // Behind the optional members that are left out: time_step, update_period, update_interval.
-  constexpr std::size_t k_formulation = 1 + 4 + 4 + 12 + 1 + 1;
+  // Behind the optional members that are left out: time_step, support_radius, update_period, update_interval.
+  constexpr std::size_t k_formulation = 1 + 4 + 1 + 12 + 1 + 1;
   bytes[k_formulation] = 2;
   EXPECT_THROW(unpacked<SolverConfig>(bytes), ConfigError);
 }

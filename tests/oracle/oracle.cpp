@@ -101,7 +101,7 @@ std::size_t Oracle::add_group(const Material& material) {
 void Oracle::add_body(const std::vector<Vec>& positions, const std::vector<Vec>& velocities, double spacing,
                       std::size_t group) {
   groups_[group].spacing = spacing;
-  set_mass_and_rest_density(groups_[group], config_.support_radius);
+  set_mass_and_rest_density(groups_[group], *config_.support_radius);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     particles_.push_back({.group = group, .x = positions[i], .v = velocities[i]});
   }
@@ -164,7 +164,7 @@ void Oracle::follow_alpha() {
     group.alpha = alpha_at(group.material.alpha, time_);
     const std::optional<float>& given = group.material.pressure_coefficient;
     group.contact_share = given ? 1 : std::max(group.alpha, 0.2);
-    const double dt = std::max(dt0_, longest_), speed = config_.support_radius / dt;
+    const double dt = std::max(dt0_, longest_), speed = *config_.support_radius / dt;
     const double x = std::min(1.0, (2.6 - stiffness(group) * dt * dt) / 2);
     group.pressure_coefficient = given ? double{*given} : x * speed * speed / group.contact_share;
     const double soft = given ? 1 : std::min(1.0, 0.08 * speed * speed / group.pressure_coefficient);
@@ -197,7 +197,7 @@ Step Oracle::step() {
 
 // Section 6: x̄ ← x, and N from it.
 void Oracle::rebuild_regions(std::size_t group) {
-  const double radius = groups_[group].material.region_radius.value_or(config_.support_radius);
+  const double radius = groups_[group].material.region_radius.value_or(*config_.support_radius);
   for (Particle& i : particles_) {
     if (i.group != group) continue;
     i.reference = i.x;
@@ -281,7 +281,7 @@ void Oracle::find_walls(Particle& p) const {
   p.wall_share = 0;
   const Group& group = groups_[p.group];
   if (!config_.wall_pressure || config_.formulation == Formulation::printed || group.alpha == 0) return;
-  const double sigma = config_.support_radius;
+  const double sigma = *config_.support_radius;
   const double offset = config_.contact_offset.value_or(group.spacing / 2);
   for (const Obstacle& obstacle : obstacles_) {
     for (const Primitive& part : parts_of(obstacle.collider)) {
@@ -323,7 +323,7 @@ void Oracle::sum_densities() {
     double sum = i.wall_share;
     for (const Particle& j : particles_) {
       const Group& other = groups_[j.group];
-      sum += other.mass / other.rest_density * poly6((i.x - j.x).norm(), config_.support_radius);
+      sum += other.mass / other.rest_density * poly6((i.x - j.x).norm(), *config_.support_radius);
     }
     i.density = group.rest_density * sum;
     i.pressure = group.pressure_coefficient * (i.density - group.rest_density);
@@ -334,7 +334,7 @@ void Oracle::sum_densities() {
 /// What j adds to the acceleration of i [TK eq. 1, 2, 4]. The conservative sums leave out j = i, and their
 /// formula is zero there; the printed ones do not leave it out.
 Vec Oracle::pair_acceleration(const Particle& i, const Particle& j) const {
-  const double sigma = config_.support_radius;
+  const double sigma = *config_.support_radius;
   const Vec d = i.x - j.x;
   const Group& group_i = groups_[i.group];
   const Group& group_j = groups_[j.group];
@@ -364,7 +364,7 @@ void Oracle::sum_accelerations() {
     i.sph = Vec::Zero();
     i.crossing = Vec::Zero();
     for (const Particle& j : particles_) {
-      if ((i.x - j.x).norm() > config_.support_radius) continue;
+      if ((i.x - j.x).norm() > *config_.support_radius) continue;
       (j.group == i.group ? i.sph : i.crossing) += pair_acceleration(i, j);
     }
     i.external = config_.gravity.cast<double>() + i.crossing + wall_acceleration(i);
@@ -390,7 +390,7 @@ double Oracle::max_velocity() const {
 double Oracle::time_step(double max_velocity) const {
   const double longest = longest_;
   if (!sph_acts()) return longest;
-  const double sigma = config_.support_radius;
+  const double sigma = *config_.support_radius;
   double dt = std::min(longest, 0.999 * sigma / max_velocity);
   if (config_.acoustic_limit) {
     for (const Group& group : groups_) {
@@ -432,7 +432,7 @@ void Oracle::match_shapes() {
     for (std::size_t i : j.region) {
       a += weight(particles_[i]) * (particles_[i].x - c) * (particles_[i].reference - c_ref).transpose();
     }
-    const double radius = groups_[j.group].material.region_radius.value_or(config_.support_radius);
+    const double radius = groups_[j.group].material.region_radius.value_or(*config_.support_radius);
     j.rotation = polar_rotation(a, j.rotation, w * radius * radius);
     centers[id] = c;
     reference_centers[id] = c_ref;
@@ -460,7 +460,7 @@ void Oracle::touch(const Obstacle& obstacle, const Particle& particle, const Vec
     const double w_n = w.dot(n);
     if (d + dt * w_n >= 0) continue;
 
-    const double gentle = config_.support_radius / (10 * dt0_);
+    const double gentle = *config_.support_radius / (10 * dt0_);
     double new_w_n = d >= 0 ? -d / dt : std::min(-d / dt, gentle);
     const Vec came = before - u;
     const double q = came.dot(n), e = collider.restitution;

@@ -47,7 +47,6 @@ const Case k_cases[] = {
      "scene.toml:7:1: body[0]: unknown key 'bax'; did you mean 'box'?"},
     {{.source = "box = { count = [2, 2, 2], spacing = 1.0, cornr = [0, 0, 0] }"},
      "scene.toml:7:43: body[0].box: unknown key 'cornr'; did you mean 'corner'?"},
-    {{.solver = ""}, "scene.toml:1:1: solver.support_radius: is missing: a number > 0"},
     {{.source = "box = { spacing = 1.0 }"},
      "scene.toml:7:7: body[0].box.count: is missing: 3 whole numbers in [1, 100000000]"},
     // Types.
@@ -246,7 +245,6 @@ time_step = 0
       "scene.toml:5:38: body[0].box.spacing: -1.0 is not allowed: a number > 0",
       "scene.toml:7:8: material[0]: material 'jelly' is not used by any body",
       "scene.toml:8:1: material[0]: unknown key 'alfa'; did you mean 'alpha'?",
-      "scene.toml:9:1: solver.support_radius: is missing: a number > 0",
       "scene.toml:10:13: solver.time_step: 0 is not allowed: a number > 0",
   };
   EXPECT_EQ(found, expected);
@@ -254,7 +252,6 @@ time_step = 0
 
 TEST_F(bad_scene, misses_what_every_scene_needs) {
   const std::vector<std::string> expected{
-      "scene.toml: solver.support_radius: is missing: a number > 0",
       "scene.toml: material: is missing: at least one [[material]] is needed",
       "scene.toml: body: is missing: at least one [[body]] is needed",
   };

@@ -54,10 +54,14 @@ void print_stiffness(const SimulationInfo& info) {
 
 const char* source_of(TimeStepSource source) {
   switch (source) {
-    case TimeStepSource::given: return "as given";
-    case TimeStepSource::gravity: return "from spacing and gravity";
-    case TimeStepSource::speed: return "from spacing and the fastest body";
-    case TimeStepSource::modulus: return "from youngs_modulus, as spacing and gravity would have longer ones";
+    case TimeStepSource::given:
+      return "as given";
+    case TimeStepSource::gravity:
+      return "from spacing and gravity";
+    case TimeStepSource::speed:
+      return "from spacing and the fastest body";
+    case TimeStepSource::modulus:
+      return "from youngs_modulus, as spacing and gravity would have longer ones";
   }
   return "";
 }
@@ -106,6 +110,8 @@ void info(const InfoOptions& options) {
   std::printf("pins             %zu\n", scene.pins.size());
   std::printf("instructions     %s\n", name(info.instruction_level));
   std::printf("memory           %.1f MiB\n", static_cast<double>(info.bytes) / (1024.0 * 1024.0));
+  std::printf("support radius   %g m, %s\n", static_cast<double>(info.support_radius),
+              scene.solver.support_radius ? "as given" : "from the largest spacing");
   print_times(scene, info);
   print_bodies(info);
   if (shape_matching) print_stiffness(info);

@@ -36,10 +36,14 @@ nlohmann::ordered_json groups_json(const RunReport& report) {
 
 const char* source_name(TimeStepSource source) {
   switch (source) {
-    case TimeStepSource::given: return "given";
-    case TimeStepSource::gravity: return "gravity";
-    case TimeStepSource::speed: return "speed";
-    case TimeStepSource::modulus: return "modulus";
+    case TimeStepSource::given:
+      return "given";
+    case TimeStepSource::gravity:
+      return "gravity";
+    case TimeStepSource::speed:
+      return "speed";
+    case TimeStepSource::modulus:
+      return "modulus";
   }
   return "";
 }

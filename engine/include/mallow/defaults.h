@@ -30,9 +30,13 @@ enum class TimeStepSource {
 /// fall. Nothing where neither says how long a second is.
 MALLOW_EXPORT std::optional<float> default_time_step(const SceneScale& scale);
 
-/// m2 [m²]: the mean of x² over the points of a cubic lattice within `radius` of one of them, itself included.
-/// It makes a stiffness of a region's pull: E = (1 − alpha) ρ m2/(Δt0 Δt_SM), ρ the mass by spacing³. About
-/// 0.2 radius², in jumps. radius, spacing > 0. [model 2, section 3]
+/// σ [m]: 2.1 h, which gives 38 neighbours. `spacing` is that of the coarsest body, as too few neighbours
+/// hold nothing together.
+MALLOW_EXPORT float default_support_radius(float spacing);
+
+/// m2 [m²]: the mean of x² over the points of a cubic lattice within `radius` of one of them, itself
+/// included. It makes a stiffness of a region's pull: E = (1 − alpha) ρ m2/(Δt0 Δt_SM), ρ the mass by
+/// spacing³. About 0.2 radius², in jumps. radius, spacing > 0. [model 2, section 3]
 MALLOW_EXPORT double region_moment(double radius, double spacing);
 
 /// γ_u [m/s²]: 40 |g|, above what weight and rest do to a body at any alpha below 0.95. Without gravity
