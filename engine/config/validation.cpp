@@ -33,8 +33,7 @@ void check(const AlphaSchedule& alpha, Checks& checks) {
 void check(const Material& material, Checks& checks) {
   check_fields("material.", material, checks);
   if (material.youngs_modulus && material.elastic_time_step)
-    checks.problem("material.youngs_modulus",
-                   "is not allowed beside elastic_time_step: give one of the two");
+    checks.problem("material.youngs_modulus", "is not allowed beside elastic_time_step: give one of the two");
 }
 
 namespace {
@@ -86,8 +85,9 @@ void check_stiffness(const SolverConfig& config, const Material& material, const
   std::ostringstream text;
   if (!material.elastic_time_step) {
     if (share <= 1 + k_rounding) return;
-    text << config.time_step_factor << not_allowed_in(name) << ": (1 - alpha) time_step_factor^2 must be at most "
-         << k_most << ", as elasticity would gain energy; at alpha " << material.alpha.lowest() << " at most "
+    text << config.time_step_factor << not_allowed_in(name)
+         << ": (1 - alpha) time_step_factor^2 must be at most " << k_most
+         << ", as elasticity would gain energy; at alpha " << material.alpha.lowest() << " at most "
          << std::sqrt(k_most / (1 - static_cast<double>(material.alpha.lowest())));
     checks.problem("solver.time_step_factor", text.str());
     return;
@@ -103,9 +103,18 @@ void check_stiffness(const SolverConfig& config, const Material& material, const
 void check(const Emitter& emitter, Checks& checks) {
   check_fields("emitter.", emitter, checks);
   const bool corners = emitter.width || emitter.height;
-  if (emitter.radius.has_value() + corners + !emitter.points.empty() != 1 ||
-      emitter.width.has_value() != emitter.height.has_value())
-    checks.problem("emitter.radius", "give the radius of a disc, or width and height, or points");
+  const int given = emitter.radius.has_value() + corners + !emitter.points.empty();
+  if (given == 0)
+    checks.problem("emitter.radius",
+                   "is missing: a number > 0, the radius of a round nozzle; or give width and height of one "
+                   "with corners");
+  if (given > 1)
+    checks.problem("emitter.radius",
+                   "is not allowed beside width, height or points: a nozzle is round, or has corners, or "
+                   "points of its own");
+  if (emitter.width.has_value() != emitter.height.has_value())
+    checks.problem(emitter.width ? "emitter.height" : "emitter.width",
+                   "is missing: a nozzle with corners has a width and a height");
   const double area =
       emitter.radius ? 3.15 * static_cast<double>(*emitter.radius) * static_cast<double>(*emitter.radius)
       : corners
