@@ -4,6 +4,7 @@
 #include "figures/figures_command.h"
 #include "kernels/kernels_command.h"
 #include "mallow/version.h"
+#include "materials/materials_command.h"
 #include "program/parse_and_run.h"
 #include "scaling/scaling_command.h"
 #include "stability/stability_command.h"
@@ -24,6 +25,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
   add_stability_command(app);
   add_drift_command(app);
   add_threads_command(app);
+  add_materials_command(app);
   app.require_subcommand(0, 1);  // none is answered below, with the list of what there is
   return mallow::program::parse_and_run(app, argc, argv);
 }

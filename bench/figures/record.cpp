@@ -14,7 +14,7 @@ Json about(const Take& take, const Scene& scene, const SimulationInfo& info) {
           {"overrides", take.overrides},
           {"particles", info.particles},
           {"spacing", body.spacing},
-          {"support_radius", scene.solver.support_radius},
+          {"support_radius", *scene.solver.support_radius},
           {"region_radius", body.region_radius},
           {"average_neighbors", body.average_neighbors},
           {"alpha", scene.materials.front().material.alpha.at(0)},
@@ -37,7 +37,7 @@ Run record(const Figure& figure, const Take& take, int threads, const FrameVisit
         figure.measure({.start = start,
                         .now = frame.positions,
                         .spacing = spacing,
-                        .support_radius = static_cast<double>(scene.solver.support_radius),
+                        .support_radius = static_cast<double>(*scene.solver.support_radius),
                         .threads = threads});
     for (std::size_t q = 0; q < values.size(); ++q)
       run.recording.curves[figure.quantities[q].key].push_back(values[q]);

@@ -170,7 +170,7 @@ class Catalogue {
     for (const float scale : {1e-3f, 1e3f})
       add(scale < 1 ? "a thousandth of the size" : "a thousand times the size", falling_body(),
           [scale](Setup& s) {
-            s.config.support_radius *= scale;
+            *s.config.support_radius *= scale;
             s.config.gravity *= scale;
             s.body.spacing *= scale;
             for (Vec3& x : s.body.positions) x *= scale;

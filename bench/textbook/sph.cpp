@@ -62,7 +62,7 @@ Vec printed_pair(const Kernels& kernels, const Particle& i, const Particle& j, d
 }  // namespace
 
 void find_neighbors(const SolverConfig& config, std::vector<Particle>& particles) {
-  CellGrid grid(config.support_radius);
+  CellGrid grid(*config.support_radius);
   for (std::size_t i = 0; i < particles.size(); ++i) grid.insert(i, particles[i].position);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     particles[i].neighbors.clear();
@@ -74,7 +74,7 @@ void find_neighbors(const SolverConfig& config, std::vector<Particle>& particles
 
 void sum_densities(const SolverConfig& config, const std::vector<Group>& groups,
                    std::vector<Particle>& particles) {
-  const Kernels kernels(config.support_radius);
+  const Kernels kernels(*config.support_radius);
   for (Particle& i : particles) {
     const Group& group = groups[i.group];
     double sum = group.mass / group.rest_density * kernels.poly6(0);
@@ -91,7 +91,7 @@ void sum_densities(const SolverConfig& config, const std::vector<Group>& groups,
 
 void sum_accelerations(const SolverConfig& config, const std::vector<Group>& groups,
                        std::vector<Particle>& particles) {
-  const Kernels kernels(config.support_radius);
+  const Kernels kernels(*config.support_radius);
   const bool printed = config.formulation == Formulation::printed;
   for (Particle& i : particles) {
     const Group& group = groups[i.group];

@@ -40,14 +40,14 @@ void derive_density(double support_radius, Group& group) {
 
 std::size_t Textbook::add_group(const Material& material) {
   groups_.push_back(
-      {.material = material, .region_radius = material.region_radius.value_or(config_.support_radius)});
+      {.material = material, .region_radius = material.region_radius.value_or(*config_.support_radius)});
   return groups_.size() - 1;
 }
 
 void Textbook::add_body(const Body& body, std::size_t group_index) {
   Group& group = groups_.at(group_index);
   group.spacing = body.spacing;
-  derive_density(config_.support_radius, group);
+  derive_density(*config_.support_radius, group);
   for (std::size_t k = 0; k < body.positions.size(); ++k) {
     Vec velocity = body.velocity.cast<double>();
     if (!body.velocities.empty()) velocity += body.velocities[k].cast<double>();
@@ -96,7 +96,7 @@ void Textbook::settle_defaults() {
 /// α now, and k where it is left out: x σ²/(max(α, 0.2) Δt²), whose share α acts between groups; x is 1 where
 /// elasticity leaves that.
 void Textbook::follow_alpha() {
-  const double step = std::max(base_step_, longest_step_), speed = config_.support_radius / step;
+  const double step = std::max(base_step_, longest_step_), speed = *config_.support_radius / step;
   for (Group& group : groups_) {
     group.alpha = alpha_at(group.material.alpha, time_);
     group.cohesion = group.material.cohesion;
@@ -220,7 +220,7 @@ double Textbook::mean_external_acceleration(const Group& group) const {
 
 // Section 3 of the model [TK eq. 12].
 double Textbook::limited_time_step(double max_velocity) const {
-  const double sigma = config_.support_radius;
+  const double sigma = *config_.support_radius;
   double time_step = std::min(longest_step_, 0.999 * sigma / max_velocity);
   if (!config_.acoustic_limit) return time_step;
   for (const Group& group : groups_) {
@@ -280,7 +280,7 @@ void Textbook::move_particles(double time_step) {
       const ContactStep contact{
           .time_step = time_step,
           .contact_offset = config_.contact_offset ? double{*config_.contact_offset} : group.spacing / 2,
-          .max_push = config_.support_radius / (10 * base_step_),
+          .max_push = *config_.support_radius / (10 * base_step_),
           .gravity = config_.gravity.cast<double>()};
       for (const Obstacle& obstacle : obstacles_)
         p.velocity = resolve_contact(obstacle, contact, p.position, before, p.velocity);

@@ -34,8 +34,8 @@ struct Base {
     const Lattice& box = std::get<Lattice>(scene.bodies.front().source);
     time_step = static_cast<double>(scene.solver.time_step.value());
     spacing = static_cast<double>(box.spacing);
-    support_radius = static_cast<double>(scene.solver.support_radius);
-    region_radius = static_cast<double>(material.region_radius.value_or(scene.solver.support_radius));
+    support_radius = static_cast<double>(*scene.solver.support_radius);
+    region_radius = static_cast<double>(material.region_radius.value_or(*scene.solver.support_radius));
     count = box.count;
     update_interval = scene.solver.update_interval.value();
     sph = material.alpha.highest() > 0;

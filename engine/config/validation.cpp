@@ -40,13 +40,22 @@ void check(const Material& material, Checks& checks) {
     checks.problem("material.latent_heat", "needs a solidus, and a liquidus above it");
   if (!material.temperature && (material.alpha_by_temperature || material.viscosity_by_temperature))
     checks.problem("material.temperature", "is missing: something follows it");
+  if (material.youngs_modulus && material.elastic_time_step)
+    checks.problem("material.youngs_modulus", "is not allowed beside elastic_time_step: give one of the two");
 }
 
 namespace {
 
+std::string not_allowed_in(const std::string& name) {
+  return " is not allowed" + (name.empty() ? std::string() : " in material '" + name + "'");
+}
+
+}  // namespace
+
 /// Damping takes its part of the pull that a step carries. With θ = τ/Δt and s = 1 − exp(−ζ Δt), linear
 /// theory has a (1 + 2 θ) < 4 − 2 s; tumbling bodies ask for k_stiffest.
-void check_damping(const SolverConfig& config, const Material& material, Checks& checks) {
+void check_damping(const SolverConfig& config, const Material& material, const std::string& name,
+                   Checks& checks) {
   const double rate = static_cast<double>(material.deformation_damping.value_or(0.0f));
   if (!config.time_step || !(material.damping_time > 0 || rate > 0)) return;
   const double base = static_cast<double>(*config.time_step);
@@ -56,7 +65,7 @@ void check_damping(const SolverConfig& config, const Material& material, Checks&
       (1 - static_cast<double>(material.alpha.lowest())) * step * step / (base * elastic_step);
   const auto refuse = [&](const char* key, double value, double most) {
     std::ostringstream text;
-    text << value << " is not allowed: at most " << std::max(0.0, most)
+    text << value << not_allowed_in(name) << ": at most " << std::max(0.0, most)
          << ", as a body damped more would gain energy in steps of " << step
          << " s; a larger material.elastic_time_step, which is softer, allows more";
     checks.problem(key, text.str());
@@ -70,13 +79,13 @@ void check_damping(const SolverConfig& config, const Material& material, Checks&
     refuse("material.deformation_damping", rate, -std::log1p(-most_share) / step);
 }
 
-}  // namespace
-
-void check_stiffness(const SolverConfig& config, const Material& material, Checks& checks) {
+void check_stiffness(const SolverConfig& config, const Material& material, const std::string& name,
+                     Checks& checks) {
   constexpr double k_most = static_cast<double>(k_stiffest);
   constexpr double k_rounding = 1e-5;  // of what is typed with six digits
-  if (material.alpha.keys().empty()) return;
-  check_damping(config, material, checks);
+  // What a modulus asks for is known once bodies are there: check_modulus().
+  if (material.alpha.keys().empty() || material.youngs_modulus) return;
+  check_damping(config, material, name, checks);
   // Left out, Δt_SM is Δt0, whatever that is; given, it is judged once that is known.
   if (material.elastic_time_step && !config.time_step) return;
   const double factor = static_cast<double>(config.time_step_factor);
@@ -84,15 +93,16 @@ void check_stiffness(const SolverConfig& config, const Material& material, Check
   std::ostringstream text;
   if (!material.elastic_time_step) {
     if (share <= 1 + k_rounding) return;
-    text << config.time_step_factor << " is not allowed: (1 - alpha) time_step_factor^2 must be at most "
-         << k_most << ", as elasticity would gain energy; at alpha " << material.alpha.lowest() << " at most "
+    text << config.time_step_factor << not_allowed_in(name)
+         << ": (1 - alpha) time_step_factor^2 must be at most " << k_most
+         << ", as elasticity would gain energy; at alpha " << material.alpha.lowest() << " at most "
          << std::sqrt(k_most / (1 - static_cast<double>(material.alpha.lowest())));
     checks.problem("solver.time_step_factor", text.str());
     return;
   }
   const double least = share * static_cast<double>(*config.time_step);
   if (static_cast<double>(*material.elastic_time_step) >= least * (1 - k_rounding)) return;
-  text << *material.elastic_time_step << " is not allowed: at least (1 - alpha) "
+  text << *material.elastic_time_step << not_allowed_in(name) << ": at least (1 - alpha) "
        << (factor == 1 ? "" : "time_step_factor^2 ") << "solver.time_step/" << k_most << " = " << least
        << ", as a stiffer body would gain energy; lower solver.time_step (now " << *config.time_step << ")";
   checks.problem("material.elastic_time_step", text.str());
@@ -120,9 +130,18 @@ void check_elasticity(const SolverConfig& config, const Material& material, floa
 void check(const Emitter& emitter, Checks& checks) {
   check_fields("emitter.", emitter, checks);
   const bool corners = emitter.width || emitter.height;
-  if (emitter.radius.has_value() + corners + !emitter.points.empty() != 1 ||
-      emitter.width.has_value() != emitter.height.has_value())
-    checks.problem("emitter.radius", "give the radius of a disc, or width and height, or points");
+  const int given = emitter.radius.has_value() + corners + !emitter.points.empty();
+  if (given == 0)
+    checks.problem("emitter.radius",
+                   "is missing: a number > 0, the radius of a round nozzle; or give width and height of one "
+                   "with corners");
+  if (given > 1)
+    checks.problem("emitter.radius",
+                   "is not allowed beside width, height or points: a nozzle is round, or has corners, or "
+                   "points of its own");
+  if (emitter.width.has_value() != emitter.height.has_value())
+    checks.problem(emitter.width ? "emitter.height" : "emitter.width",
+                   "is missing: a nozzle with corners has a width and a height");
   const double area =
       emitter.radius ? 3.15 * static_cast<double>(*emitter.radius) * static_cast<double>(*emitter.radius)
       : corners

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/checks.h"
 #include "mallow/body.h"
 #include "mallow/emitter.h"
@@ -19,10 +21,16 @@ void check(const Material& material, Checks& checks);
 /// below 4; rotation is not linear, and tumbling bodies gain 79% in 20,000 steps at 3.25, 6% at 3 and 2%
 /// at 2.5. [model 2, section 4 B]
 inline constexpr float k_stiffest = 2.5f;
-/// Whether steps of this solver are short enough for the material's springs.
-/// The same where the stiffest particle of a body has this share of the material's modulus.
+/// Whether steps of this solver are short enough for the material's springs; of youngs_modulus see
+/// simulation/stiffness.h. name: of the material, for messages that come where it is not obvious, or empty.
+void check_stiffness(const SolverConfig& config, const Material& material, const std::string& name,
+                     Checks& checks);
+/// The same where the stiffest particle of a body has this share of the material's modulus, whose springs are
+/// known.
 void check_elasticity(const SolverConfig& config, const Material& material, float share, Checks& checks);
-void check_stiffness(const SolverConfig& config, const Material& material, Checks& checks);
+/// Whether the damping of these springs leaves enough of what a step carries.
+void check_damping(const SolverConfig& config, const Material& material, const std::string& name,
+                   Checks& checks);
 MALLOW_EXPORT void check(const Emitter& emitter, Checks& checks);
 void check(const Body& body, Checks& checks);
 

@@ -24,7 +24,8 @@ BoundFields fields(SceneMaterial& material) {
 
 BoundFields fields(SceneBody& body) {
   return {
-      {"material", &body.material, k_any, "", "name of its [[material]]", k_required},
+      {"material", &body.material, k_any, "",
+       "name of its [[material]], or of one that `mallow materials` lists", k_required},
       {"group", &body.group, k_any, "", "bodies of one group are one piece, with one reference shape",
        "a piece of its own"},
       {"merges", &body.merges, k_any, "",
@@ -109,7 +110,8 @@ BoundFields fields(ScenePin& pin) {
 
 BoundFields fields(SceneEmitter& emitter) {
   const BoundFields place{
-      {"material", &emitter.material, k_any, "", "name of its [[material]]", k_required},
+      {"material", &emitter.material, k_any, "",
+       "name of its [[material]], or of one that `mallow materials` lists", k_required},
       {"translate", &emitter.translate, k_finite, "m", "where the nozzle is at the start"},
       {"rotate", &emitter.rotate, k_finite, "degrees",
        "turn of the nozzle about x, then y, then z; unturned the strand leaves it upwards, along z"},

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "config/validation.h"
+#include "mallow/materials.h"
 #include "scene/document.h"
 #include "scene/field_reader.h"
 #include "scene/nearest_name.h"
@@ -40,7 +41,7 @@ class SceneReader {
     read_fields(root_, "", {}, sections, problems_);
     read_section("solver", fields(scene_.solver));
     check_update_times();
-    read_list("material", 1, &SceneReader::read_material);
+    read_list("material", 0, &SceneReader::read_material);
     read_list("body", find(root_, "emitter") ? 0 : 1, &SceneReader::read_body);
     read_list("collider", 0, &SceneReader::read_collider);
     read_list("pin", 0, &SceneReader::read_pin);
@@ -91,7 +92,11 @@ class SceneReader {
   }
 
   void read_material(const Node& node, const std::string& path) {
-    read_fields(node, path, fields(scene_.materials.emplace_back()), {}, problems_);
+    SceneMaterial& read = scene_.materials.emplace_back();
+    read_fields(node, path, fields(read), {}, problems_);
+    if (read.material.youngs_modulus && read.material.elastic_time_step)
+      problems_.add(find(node, "youngs_modulus")->place, path + ".youngs_modulus",
+                    "is not allowed beside elastic_time_step: give one of the two");
   }
 
   void read_body(const Node& node, const std::string& path) {
@@ -149,7 +154,8 @@ class SceneReader {
     read_box(node, path, sink.box);
   }
 
-  /// Names are unique, bodies use names that there are, and every material is used.
+  /// Names are unique, bodies use names that there are, in the scene or as presets, and every material is
+  /// used.
   void check_materials() {
     std::map<std::string, std::size_t> index_of;
     std::vector<std::string> known;
@@ -164,29 +170,31 @@ class SceneReader {
             place_of("material", i, "name"), element_path("material", i) + ".name",
             "'" + name + "' is not allowed: " + element_path("material", first->second) + " has that name");
     }
-    std::vector<bool> used(scene_.materials.size(), false);
-    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-      const std::string& name = scene_.bodies[i].material;
-      if (name.empty()) continue;
-      const auto material = index_of.find(name);
-      if (material != index_of.end())
-        used[material->second] = true;
-      else
-        problems_.add(place_of("body", i, "material"), element_path("body", i) + ".material",
+    const std::size_t own = scene_.materials.size();
+    for (const MaterialPreset& preset : material_presets())
+      if (!index_of.contains(preset.name)) known.emplace_back(preset.name);
+    std::vector<bool> used(own, false);
+    const auto look_up = [&](const char* list, std::size_t i, const std::string& name) {
+      if (name.empty()) return;
+      if (const auto material = index_of.find(name); material != index_of.end()) {
+        if (material->second < own) used[material->second] = true;
+      } else if (const MaterialPreset* preset = find_preset(name)) {
+        index_of.emplace(name, scene_.materials.size());
+        scene_.materials.push_back({.name = name,
+                                    .material = preset->material,
+                                    .color = preset->appearance.color,
+                                    .finish = preset->appearance.finish});
+      } else {
+        problems_.add(place_of(list, i, "material"), element_path(list, i) + ".material",
                       "unknown material '" + name + "'" + (problems_.full() ? "" : suggestion(name, known)));
-    }
-    for (std::size_t i = 0; i < scene_.emitters.size(); ++i) {
-      const std::string& name = scene_.emitters[i].material;
-      if (name.empty()) continue;
-      if (const auto material = index_of.find(name); material != index_of.end())
-        used[material->second] = true;
-      else
-        problems_.add(place_of("emitter", i, "material"), element_path("emitter", i) + ".material",
-                      "unknown material '" + name + "'" + (problems_.full() ? "" : suggestion(name, known)));
-    }
+      }
+    };
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) look_up("body", i, scene_.bodies[i].material);
+    for (std::size_t i = 0; i < scene_.emitters.size(); ++i)
+      look_up("emitter", i, scene_.emitters[i].material);
     if (scene_.bodies.empty() && scene_.emitters.empty()) return;
     for (const auto& [name, i] : index_of)
-      if (!used[i])
+      if (i < own && !used[i])
         problems_.add(place_of("material", i, "name"), element_path("material", i),
                       "material '" + name + "' is not used by any body");
   }

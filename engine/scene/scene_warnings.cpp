@@ -3,6 +3,7 @@
 #include <limits>
 #include <sstream>
 
+#include "mallow/materials.h"
 #include "mallow/scene.h"
 #include "simulation/settings.h"
 
@@ -12,6 +13,8 @@ namespace {
 /// A film slower than this share of real time is hardly meant, and one whose frame_time is left out slower
 /// than that, where seconds are seconds.
 constexpr double k_slowest_film = 0.1, k_slowest_by_default = 0.5;
+/// A film so many times faster than real time, where frame_time is given, has it in milliseconds.
+constexpr double k_fastest_film = 50;
 
 /// Of what a scene says moves from the start [m/s].
 double fastest(const Scene& scene) {
@@ -22,10 +25,26 @@ double fastest(const Scene& scene) {
   return static_cast<double>(speed);
 }
 
+/// Gravity was left out, and something is in pascals and metres: what, or nothing.
+std::string in_pascals(const Scene& scene) {
+  if (scene.solver.gravity != SolverConfig{}.gravity) return {};
+  for (const SceneMaterial& material : scene.materials) {
+    if (material.material.youngs_modulus)
+      return "youngs_modulus of material '" + material.name + "' is in pascals";
+    const MaterialPreset* preset = find_preset(material.name);
+    if (preset && preset->material.rest_density == material.material.rest_density)
+      return "material '" + material.name + "' is in kilograms and metres";
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info) {
   std::vector<std::string> all = info.warnings;
+  if (const std::string what = in_pascals(scene); !what.empty())
+    all.push_back("solver: gravity is left out, and so 0.3 m/s2 as in the paper, but " + what +
+                  "; gravity = [0.0, 0.0, -9.81] is that of the earth");
   const double frames = scene.run.frames, frame = frame_time(scene, info);
   const double seconds = frames * frame;
   if (scene.run.frames == 0) return all;
@@ -43,6 +62,10 @@ std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info
            seconds < (scene.run.frame_time ? k_slowest_film : k_slowest_by_default) * film)
     text << ", and the film of them takes " << film << " s, " << std::round(film / seconds)
          << " times slower; frame_time = " << 1.0 / scene.render.frames_per_second << " shows real time";
+  else if (is_in_metres(scene.solver.gravity) && scene.run.frame_time && seconds > k_fastest_film * film)
+    text << ", and the film of them takes " << film << " s, " << std::round(seconds / film)
+         << " times faster; frame_time is in seconds, and " << 1.0 / scene.render.frames_per_second
+         << " shows real time";
   else
     return all;
   all.push_back(text.str());

@@ -9,6 +9,8 @@
 namespace mallow {
 namespace {
 
+/// What suits SPH and regions, in spacings: 32 to 39 neighbours.
+constexpr float k_usual_radius = 2.1f;
 /// Δt0 = this √(h/|g|): exactly the paper's 0.15 at its spacing of 1 and its gravity of 0.3, as single
 /// precision has the two.
 const double k_fall = static_cast<double>(0.15f) * std::sqrt(static_cast<double>(0.3f));
@@ -44,6 +46,10 @@ std::optional<float> default_time_step(const SceneScale& scale) {
   if (g > 0) return static_cast<float>(k_fall * std::sqrt(h / g));
   if (scale.speed > 0) return static_cast<float>(k_flight * h / static_cast<double>(scale.speed));
   return std::nullopt;
+}
+
+float default_support_radius(float spacing) {
+  return k_usual_radius * spacing;
 }
 
 float default_update_threshold(const SceneScale& scale, float time_step) {

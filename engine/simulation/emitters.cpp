@@ -11,6 +11,7 @@
 #include "core/bounds.h"
 #include "simulation/membership.h"
 #include "simulation/overlaps.h"
+#include "simulation/settings.h"
 #include "simulation/state.h"
 
 namespace mallow {
@@ -262,8 +263,8 @@ EmitterId Simulation::add_emitter(const Emitter& settings, MaterialId material, 
     emitter.settings.pose = pose_at(settings.keyframes, s.time);
     emitter.settings.velocity.setZero();
   }
-  const float region_radius = s.material(material).settings.region_radius.value_or(s.config.support_radius);
-  const std::size_t count = held_layers(settings, region_radius) + k_batch;
+  const float radius = region_radius(s.config, s.material(material).settings, settings.spacing);
+  const std::size_t count = held_layers(settings, radius) + k_batch;
   const Body points = next_layers(emitter, count);
   if (name.empty()) name = "strand " + std::to_string(s.emitter_count);
   emitter.body = add_body(points, material, std::move(name));

@@ -13,6 +13,7 @@
 #include "simulation/overlaps.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
+#include "simulation/stiffness.h"
 
 namespace mallow {
 namespace {
@@ -153,9 +154,11 @@ BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name)
   body.hit_impulse = s.contacts.hit_impulse;
   body.begin = body.end = s.store.size();
   body.spacing = points.spacing;
-  body.shape.region_radius = material.settings.region_radius.value_or(s.config.support_radius);
+  body.shape.region_radius = region_radius(s.config, material.settings, body.spacing);
   body.shape.region_stride = material.settings.region_stride;
   body.shape.flows = material.settings.plastic_yield.has_value();
+  check_modulus(s.config, material.settings, body.spacing, body.name, checks);
+  checks.finish();
   derive_density(s.config, body);
   check_elasticity(s, body, points);
   refuse_temperatures(body, points);

@@ -9,8 +9,7 @@
 namespace mallow {
 namespace {
 
-/// What suits SPH and regions, in spacings: 32 to 39 neighbours.
-constexpr float k_usual_radius = 2.1f;
+const float k_usual_radius = default_support_radius(1);  // in spacings
 /// Entries of neighbour lists that 32-bit places can name with a tenth to spare.
 constexpr double k_most_pairs = std::numeric_limits<std::uint32_t>::max() / std::size_t{11} * 10;
 constexpr double k_bytes_per_pair = sizeof(std::uint32_t);
@@ -74,7 +73,7 @@ std::vector<Pairs> pairs_of(const Simulation::State& state) {
       add(region_field(body.material->settings), body.shape.region_radius, body, body.size());
     if (state.bodies.size() > 1 || body.paints_alpha || body.material->carries_heat() ||
         body.material->settings.alpha.highest() > 0)
-      add("solver.support_radius", state.config.support_radius, body, state.store.size());
+      add("solver.support_radius", state.support_radius(), body, state.store.size());
   }
   return all;
 }
@@ -83,13 +82,13 @@ std::vector<Pairs> pairs_of(const Simulation::State& state) {
 
 void check_neighbors(const Simulation::State& state, const Material& material, const Body& points) {
   if (points.positions.size() == 1) return;
-  const float support_radius = state.config.support_radius;
   const auto flows = [](float alpha) { return alpha > 0; };
   const auto holds = [](float alpha) { return alpha < 1; };
   if (points.alpha.empty() ? material.alpha.highest() > 0 : std::ranges::any_of(points.alpha, flows))
-    check_radius(state, "solver.support_radius", support_radius, points);
+    check_radius(state, "solver.support_radius", support_radius(state.config, points.spacing), points);
   if (points.alpha.empty() ? material.alpha.lowest() < 1 : std::ranges::any_of(points.alpha, holds))
-    check_radius(state, region_field(material), material.region_radius.value_or(support_radius), points);
+    check_radius(state, region_field(material), region_radius(state.config, material, points.spacing),
+                 points);
 }
 
 void check_memory(const Simulation::State& state) {

@@ -9,6 +9,7 @@
 #include "simulation/membership.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
+#include "simulation/stiffness.h"
 
 namespace mallow {
 namespace {
@@ -32,11 +33,17 @@ float least_alpha(const Simulation::State& s, const BodyState& body, std::size_t
   return body.paints_alpha ? s.store.alpha[row] : settings.alpha.lowest();
 }
 
+/// Whether steps carry this share of a body's modulus; nothing where they are not known yet.
+void check_springs(const Simulation::State& s, const BodyState& body, float share, Checks& checks) {
+  if (!s.config.time_step) return;
+  check_elasticity(s.config, with_springs(s.config, body.material->settings, body.spacing), share, checks);
+}
+
 void check_elasticity(const Simulation::State& s, const BodyState& body, Checks& checks) {
   float most = 0;
   for (std::size_t row = body.begin; row < body.end; ++row)
     most = std::max(most, (1 - least_alpha(s, body, row)) * s.store.stiffness[row]);
-  check_elasticity(s.config, body.material->settings, most, checks);
+  check_springs(s, body, most, checks);
 }
 
 /// Bodies that have particles among these rows, and a column that they get a value in.
@@ -137,13 +144,13 @@ void check_elasticity(const Simulation::State& s, const BodyState& body, const B
   const Material& settings = body.material->settings;
   if (points.alpha.empty() && points.stiffness.empty() && !settings.alpha_by_temperature) return;
   const bool own = !points.alpha.empty() && !settings.alpha_by_temperature;
-  const float alpha = settings.alpha_by_temperature.value_or(settings.alpha).lowest();
+  const float alpha = lowest_alpha(settings);
   float most = 0;
   for (std::size_t k = 0; k < points.positions.size(); ++k)
     most = std::max(most, (1 - (own ? points.alpha[k] : alpha)) *
                               (points.stiffness.empty() ? 1.0f : points.stiffness[k]));
   Checks checks;
-  check_elasticity(s.config, body.material->settings, most, checks);
+  check_springs(s, body, most, checks);
   checks.finish();
 }
 

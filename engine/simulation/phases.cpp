@@ -172,7 +172,7 @@ void find_walls(Simulation::State& state) {
       walls.bodies.push_back(
           {.begin = body.begin,
            .end = body.end,
-           .reach = state.config.support_radius + state.contact_offset(body) - 0.5f * body.spacing,
+           .reach = state.support_radius() + state.contact_offset(body) - 0.5f * body.spacing,
            .alpha = body.material->alpha,
            .mass = body.mass,
            .group = &state.sph.groups[body.sph_group]});
@@ -185,7 +185,7 @@ void find_walls(Simulation::State& state) {
   // Where they stand is all that is read of them: the velocities of this step are not known yet.
   place_colliders(state.colliders, state.origin, state.base_step(), state.execution.level,
                   state.placed_colliders);
-  find_walls(state.store.position, state.store.velocity, state.placed_colliders, state.config.support_radius,
+  find_walls(state.store.position, state.store.velocity, state.placed_colliders, state.support_radius(),
              state.execution, walls);
 }
 
@@ -274,7 +274,7 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
       .pull = body.matches_shape() ? &body.shape.pull : nullptr,
       .colliders = state.placed_colliders,
       .contact = {.time_step = time_step,
-                  .max_push = config.support_radius / (10.0f * state.base_step()),
+                  .max_push = state.support_radius() / (10.0f * state.base_step()),
                   .contact_offset = state.contact_offset(body),
                   .gravity = {config.gravity[0], config.gravity[1], config.gravity[2]},
                   .least_bounce = 2.0f * config.gravity.norm() * time_step},
@@ -397,8 +397,8 @@ void touch_bodies(Simulation::State& state, float time_step, bool keeps_sums, Ve
   state.contact_pairs.keeps_sums = keeps_sums;
   resolve_body_contacts(store.position, store.pin.empty() ? nullptr : store.pin.data(), state.touching,
                         {.time_step = time_step,
-                         .reach = 2 * state.config.support_radius,
-                         .max_push = state.config.support_radius / (10.0f * state.base_step())},
+                         .reach = 2 * state.support_radius(),
+                         .max_push = state.support_radius() / (10.0f * state.base_step())},
                         state.execution, velocities, state.contact_pairs);
 }
 

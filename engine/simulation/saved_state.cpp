@@ -35,7 +35,7 @@ void pass_clock(Archive& archive, State& state) {
   archive(state.scale.gravity);
   archive(state.scale.speed);
   if constexpr (!Archive::k_packs) {
-    if (source > static_cast<std::uint8_t>(TimeStepSource::speed))
+    if (source > static_cast<std::uint8_t>(TimeStepSource::modulus))
       archive.fail("the time step has no such source");
     state.time_step_source = static_cast<TimeStepSource>(source);
   }
@@ -170,7 +170,7 @@ void unpack_materials(const SavedState& saved, Simulation::State& state) {
       if (!k_alpha.holds(material.alpha))
         archive.fail("material '" + material.name + "': alpha must be" + range_text(k_alpha));
       check(material.settings, checks);
-      check_stiffness(state.config, material.settings, checks);
+      check_stiffness(state.config, material.settings, material.name, checks);
     });
     checks.finish();
     for (std::size_t m = 0; m < state.materials.size(); ++m)
@@ -193,7 +193,7 @@ std::vector<ShapeSizes> unpack_bodies(const SavedState& saved, Simulation::State
       require_valid(archive, state, body, sizes.back(), rows);
       rows = body.end;
       const Material& settings = body.material->settings;
-      body.shape.region_radius = settings.region_radius.value_or(state.config.support_radius);
+      body.shape.region_radius = region_radius(state.config, settings, body.spacing);
       body.shape.region_stride = settings.region_stride;
       body.shape.flows = settings.plastic_yield.has_value();
     });
@@ -581,7 +581,7 @@ Simulation Simulation::restore(const SavedState& saved, int threads, std::shared
         state.last_time_step < 0)
       archive.fail("step and time_step must be 0 or above, and time finite");
     const SceneScale& scale = state.scale;
-    const bool settled = state.config.time_step && scale.spacing > 0;
+    const bool settled = state.config.time_step && state.config.support_radius && scale.spacing > 0;
     if (!(std::isfinite(scale.spacing) && scale.spacing >= 0 && std::isfinite(scale.speed) &&
           scale.speed >= 0 && scale.gravity.allFinite() && std::isfinite(state.passed_periods)) ||
         (!settled && (state.prepared || scale.spacing > 0)))

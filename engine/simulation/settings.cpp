@@ -7,6 +7,7 @@
 #include "colliders/pose.h"
 #include "config/validation.h"
 #include "simulation/state.h"
+#include "simulation/stiffness.h"
 
 namespace mallow {
 namespace {
@@ -24,9 +25,16 @@ float fastest_speed(const Simulation::State& state) {
 }
 
 /// Settles Δt0 of `config`.
-TimeStepSource resolve_time_step(const SceneScale& scale, SolverConfig& config) {
+TimeStepSource resolve_time_step(const Simulation::State& state, const SceneScale& scale,
+                                 SolverConfig& config) {
   if (config.time_step) return TimeStepSource::given;
   config.time_step = default_time_step(scale);
+  double carried = std::numeric_limits<double>::infinity();
+  for (const BodyState& body : state.bodies)
+    carried = std::min(carried, modulus_time_step(config, body.material->settings, body.spacing));
+  const bool is_shorter =
+      std::isfinite(carried) && !(config.time_step && static_cast<double>(*config.time_step) <= carried);
+  if (is_shorter) config.time_step = static_cast<float>(carried);
   if (!config.time_step)
     throw ConfigError("solver.time_step",
                       "is missing: without gravity, and where nothing moves, nothing says how long a second "
@@ -35,6 +43,7 @@ TimeStepSource resolve_time_step(const SceneScale& scale, SolverConfig& config) 
     throw ConfigError("solver.time_step",
                       "is missing: what follows from spacing and gravity, or from the fastest body, is no "
                       "number of single precision above 0; give it");
+  if (is_shorter) return TimeStepSource::modulus;
   return config.gravity.isZero() ? TimeStepSource::speed : TimeStepSource::gravity;
 }
 
@@ -72,62 +81,91 @@ float largest_norm(const VectorColumn& vectors) {
   return largest;
 }
 
-void resolve_settings(Simulation::State& state) {
-  if (state.scale.spacing == 0) {
-    SceneScale scale{.spacing = std::numeric_limits<float>::max(), .gravity = state.config.gravity};
-    for (const BodyState& body : state.bodies) scale.spacing = std::min(scale.spacing, body.spacing);
-    scale.speed = fastest_speed(state);
-    SolverConfig config = state.config;
-    const TimeStepSource source = resolve_time_step(scale, config);
-    Checks checks;
-    for (const MaterialState& material : state.materials) {
-      check_stiffness(config, material.settings, checks);
-      if (!material.settings.pressure_coefficient &&
-          !std::isfinite(default_pressure_coefficient(config.support_radius, 0, 0, *config.time_step)))
-        checks.problem("material.pressure_coefficient",
-                       "is missing: what follows from support_radius and time_step is no number of single "
-                       "precision; give it");
-    }
-    for (const BodyState& body : state.bodies)
-      if (!body.material->settings.viscosity &&
-          !std::isfinite(default_viscosity(scale, *config.time_step, body)))
-        checks.problem("material.viscosity",
-                       "is missing: what follows from spacing, gravity and mass is no number of single "
-                       "precision; give it");
-    checks.finish();
-    state.config = config;
-    state.scale = scale;
-    state.time_step_source = source;
-  }
-  const float threshold = default_update_threshold(state.scale, state.base_step());
-  for (MaterialState& material : state.materials)
-    material.update_threshold = material.settings.update_threshold.value_or(threshold);
-  for (BodyState& body : state.bodies)
-    if (const auto& thins = body.material->settings.viscosity_by_temperature)
-      body.viscosity = thins->highest();
-    else
-      body.viscosity =
-          body.material->settings.viscosity.value_or(default_viscosity(state.scale, state.base_step(), body));
+namespace {
+
+void check_moduli(const Simulation::State& state, const SolverConfig& config, Checks& checks) {
+  for (const BodyState& body : state.bodies)
+    check_modulus(config, body.material->settings, body.spacing, body.name, checks);
 }
 
-float pressure_coefficient(const Simulation::State& state, const MaterialState& material) {
+/// Spacing and speeds -> scale, support_radius, time_step and its source.
+void settle(Simulation::State& state) {
+  SceneScale scale{.spacing = std::numeric_limits<float>::max(), .gravity = state.config.gravity};
+  for (const BodyState& body : state.bodies) scale.spacing = std::min(scale.spacing, body.spacing);
+  scale.speed = fastest_speed(state);
+  SolverConfig config = state.config;
+  float coarsest = 0;
+  for (const BodyState& body : state.bodies) coarsest = std::max(coarsest, body.spacing);
+  if (!config.support_radius) config.support_radius = default_support_radius(coarsest);
+  const TimeStepSource source = resolve_time_step(state, scale, config);
+  Checks checks;
+  for (const MaterialState& material : state.materials) {
+    check_stiffness(config, material.settings, material.name, checks);
+    if (!material.settings.pressure_coefficient &&
+        !std::isfinite(default_pressure_coefficient(*config.support_radius, 0, 0, *config.time_step)))
+      checks.problem("material.pressure_coefficient",
+                     "is missing: what follows from support_radius and time_step is no number of single "
+                     "precision; give it");
+  }
+  for (const BodyState& body : state.bodies)
+    if (!body.material->settings.viscosity &&
+        !std::isfinite(default_viscosity(scale, *config.time_step, body)))
+      checks.problem("material.viscosity",
+                     "is missing: what follows from spacing, gravity and mass is no number of single "
+                     "precision; give it");
+  check_moduli(state, config, checks);
+  checks.finish();
+  const bool is_new_radius = !state.config.support_radius;
+  state.config = config;
+  if (is_new_radius) {
+    take_support_radius(state);
+    for (BodyState& body : state.bodies) {
+      derive_density(config, body);
+      body.shape.region_radius = region_radius(config, body.material->settings, body.spacing);
+    }
+  }
+  state.scale = scale;
+  state.time_step_source = source;
+}
+
+}  // namespace
+
+void resolve_settings(Simulation::State& state) {
+  if (state.scale.spacing == 0) settle(state);
+  Checks checks;
+  check_moduli(state, state.config, checks);
+  checks.finish();
+  const float threshold = default_update_threshold(state.scale, state.scene_step());
+  for (MaterialState& material : state.materials)
+    material.update_threshold = material.settings.update_threshold.value_or(threshold);
+  for (BodyState& body : state.bodies) {
+    const Material& settings = body.material->settings;
+    body.viscosity =
+        settings.viscosity_by_temperature
+            ? settings.viscosity_by_temperature->highest()
+            : settings.viscosity.value_or(default_viscosity(state.scale, state.scene_step(), body));
+    body.elastic_time_step = elastic_time_step(state.config, settings, body.spacing);
+  }
+}
+
+float pressure_coefficient(const Simulation::State& state, const BodyState& body) {
+  const MaterialState& material = *body.material;
   if (material.settings.pressure_coefficient) return *material.settings.pressure_coefficient;
   const float time_step = pressed_step(state);
-  const float pull = state.stiffness(material, material.most_elasticity) * time_step * time_step;
-  return default_pressure_coefficient(state.config.support_radius, material.most_alpha, pull, time_step);
+  const float pull = state.stiffness(body, material.most_elasticity) * time_step * time_step;
+  return default_pressure_coefficient(state.support_radius(), material.most_alpha, pull, time_step);
 }
 
 void resolve_pressures(Simulation::State& state) {
   for (const BodyState& body : state.bodies) {
     const MaterialState& material = *body.material;
     SphGroup& sums = state.sph.groups[body.sph_group];
-    sums.pressure_coefficient = pressure_coefficient(state, material);
+    sums.pressure_coefficient = pressure_coefficient(state, body);
     sums.contact_share = 1;
     sums.cohesion = material.settings.cohesion;
     if (material.settings.pressure_coefficient) continue;
     sums.contact_share = contact_share(material.most_alpha);
-    sums.cohesion *=
-        cohesive_share(state.config.support_radius, sums.pressure_coefficient, pressed_step(state));
+    sums.cohesion *= cohesive_share(state.support_radius(), sums.pressure_coefficient, pressed_step(state));
   }
 }
 
@@ -135,15 +173,15 @@ float Simulation::State::deformation_damping(const BodyState& body) const {
   if (body.material->settings.deformation_damping) return *body.material->settings.deformation_damping;
   if (body.yielded) return 0;
   const float ratio =
-      static_cast<float>(body.rigid.deformation_speed) * base_step() / (k_calm_speed * body.spacing);
-  return k_calming / (base_step() * (1 + ratio * ratio));
+      static_cast<float>(body.rigid.deformation_speed) * scene_step() / (k_calm_speed * body.spacing);
+  return k_calming / (scene_step() * (1 + ratio * ratio));
 }
 
 double update_period(const Simulation::State& state) {
   const SolverConfig& config = state.config;
   if (config.update_period) return static_cast<double>(*config.update_period);
   if (config.update_interval) return *config.update_interval * static_cast<double>(state.base_step());
-  return default_update_period(state.base_step());
+  return default_update_period(state.scene_step());
 }
 
 bool update_is_due(const Simulation::State& state) {
@@ -186,7 +224,7 @@ void add_external(Simulation::State& state, double time_step) {
     }
     body.recent_external.push_back({time_step, body.step_external});
     body.judged_external = std::max(
-        body.judged_external, recent_mean(static_cast<double>(state.base_step()), body.recent_external));
+        body.judged_external, recent_mean(static_cast<double>(state.scene_step()), body.recent_external));
   }
   if (!counts_steps(state.config)) state.passed_periods = passed_periods(state, state.time);
 }

@@ -21,14 +21,24 @@ float contact_share(float alpha);
 /// Share of a default k that negative pressures have before cohesion takes its own.
 float cohesive_share(float support_radius, float pressure_coefficient, float time_step);
 
-/// Spacing and speeds -> scale, time_step and its source, if this is the first prepare(); γ_u of every
-/// material and μ of every body. Throws ConfigError where nothing says how long a step is, where steps are
-/// too long for a material's springs, or where a default is beyond single precision.
+/// m [kg] and ρ0 [kg/m³]; what the material leaves out follows from ρ0 = m Σ W over the lattice. [model 1]
+struct ParticleDensity {
+  float mass, rest_density;
+};
+ParticleDensity particle_density(const SolverConfig& config, const Material& material, float spacing);
+/// Radii of SPH and of the regions of a body [m]; of SPH that of its own spacing where it is left out and not
+/// settled.
+float support_radius(const SolverConfig& config, float spacing);
+float region_radius(const SolverConfig& config, const Material& material, float spacing);
+
+/// Spacing and speeds -> scale, support_radius, time_step and its source, if this is the first prepare(); γ_u
+/// of every material, μ and Δt_SM of every body. Throws ConfigError where nothing says how long a step is,
+/// where steps are too long for a material's springs, or where a default is beyond single precision.
 void resolve_settings(Simulation::State& state);
 /// α, settings -> k of every body in the sums of SPH.
 void resolve_pressures(Simulation::State& state);
 /// k in force.
-float pressure_coefficient(const Simulation::State& state, const MaterialState& material);
+float pressure_coefficient(const Simulation::State& state, const BodyState& body);
 
 /// Time between checks of the reference shapes, where no step is shortened [s].
 double update_period(const Simulation::State& state);

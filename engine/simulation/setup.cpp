@@ -24,18 +24,36 @@ bool merge(const BodyState& a, const BodyState& b) {
 
 }  // namespace
 
-void derive_density(const SolverConfig& config, BodyState& body) {
+ParticleDensity particle_density(const SolverConfig& config, const Material& material, float spacing) {
   const double per_mass =
-      lattice_density(static_cast<double>(config.support_radius), static_cast<double>(body.spacing));
-  const Material& material = body.material->settings;
+      lattice_density(static_cast<double>(support_radius(config, spacing)), static_cast<double>(spacing));
+  ParticleDensity density{.mass = 1, .rest_density = 0};
   if (material.particle_mass)
-    body.mass = *material.particle_mass;
-  else
-    body.mass = material.rest_density
-                    ? static_cast<float>(static_cast<double>(*material.rest_density) / per_mass)
-                    : 1.0f;
-  body.rest_density =
-      material.rest_density.value_or(static_cast<float>(static_cast<double>(body.mass) * per_mass));
+    density.mass = *material.particle_mass;
+  else if (material.rest_density)
+    density.mass = static_cast<float>(static_cast<double>(*material.rest_density) / per_mass);
+  density.rest_density =
+      material.rest_density.value_or(static_cast<float>(static_cast<double>(density.mass) * per_mass));
+  return density;
+}
+
+void derive_density(const SolverConfig& config, BodyState& body) {
+  const ParticleDensity density = particle_density(config, body.material->settings, body.spacing);
+  body.mass = density.mass;
+  body.rest_density = density.rest_density;
+}
+
+float support_radius(const SolverConfig& config, float spacing) {
+  return config.support_radius.value_or(default_support_radius(spacing));
+}
+
+float region_radius(const SolverConfig& config, const Material& material, float spacing) {
+  return material.region_radius.value_or(support_radius(config, spacing));
+}
+
+void take_support_radius(Simulation::State& state) {
+  state.sph.support_radius = state.support_radius();
+  state.sph.factors = kernel_factors(static_cast<double>(state.support_radius()));
 }
 
 void measure_rigid(const Simulation::State& s, BodyState& body) {
@@ -129,10 +147,9 @@ Simulation::Simulation(const SolverConfig& config) : state_(std::make_unique<Sta
   state_->config = config;
   state_->execution.threads = Threads(config.threads, config.executor);
   state_->execution.level = config.instruction_level.value_or(best_instruction_level());
-  state_->sph.support_radius = config.support_radius;
+  if (config.support_radius) take_support_radius(*state_);
   state_->sph.formulation = config.formulation;
   state_->sph.neighbor_slack = config.neighbor_slack;
-  state_->sph.factors = kernel_factors(static_cast<double>(config.support_radius));
 }
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
@@ -144,7 +161,7 @@ MaterialId Simulation::add_material(const Material& material, std::string name) 
   Checks checks;
   check(material, checks);
   checks.finish();
-  check_stiffness(s.config, material, checks);
+  check_stiffness(s.config, material, {}, checks);
   checks.finish();
   if (name.empty()) name = "material " + std::to_string(s.materials.size());
   const auto number = static_cast<std::uint32_t>(s.materials.size());

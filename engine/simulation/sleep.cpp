@@ -14,11 +14,11 @@ constexpr float k_sleep_speed = 0.005f, k_sleep_time = 60;
 
 double sleep_speed(const Simulation::State& state, const BodyState& body) {
   return static_cast<double>(
-      state.config.sleep_speed.value_or(k_sleep_speed * body.spacing / state.base_step()));
+      state.config.sleep_speed.value_or(k_sleep_speed * body.spacing / state.scene_step()));
 }
 
 double sleep_time(const Simulation::State& state) {
-  return static_cast<double>(state.config.sleep_time.value_or(k_sleep_time * state.base_step()));
+  return static_cast<double>(state.config.sleep_time.value_or(k_sleep_time * state.scene_step()));
 }
 
 /// In the step that begins now.

@@ -59,6 +59,7 @@ struct BodyState {
   float mass = 0;                  ///< m [kg]
   float rest_density = 0;          ///< ρ0 [kg/m³]
   float viscosity = 0;             ///< μ in force [Pa s]
+  float elastic_time_step = 0;     ///< Δt_SM in force [s]
   std::uint32_t sph_group = 0;     ///< that of bodies which merge with this one, and its own
   double judged_external = 0;      ///< |a_ext| that the next check judges [m/s²]
   /// Mean |a_ext| of the last steps since the last check: those that a time_step reaches back to.
@@ -220,9 +221,17 @@ struct Simulation::State {
   std::vector<TouchingBody> touching;
   ContactPairs contact_pairs;
 
+  /// σ. Known from the first prepare() on [m].
+  float support_radius() const { return *config.support_radius; }
   /// Δt0, and what bounds the steps that are taken. Known from the first prepare() on [s].
   float base_step() const { return *config.time_step; }
   float longest_step() const { return config.time_step_factor * *config.time_step; }
+  /// Δt0 as spacing and gravity have it, also where a modulus asks for shorter steps: what hardly moves, and
+  /// for how long, does not follow from how stiff something is [s].
+  float scene_step() const {
+    if (time_step_source != TimeStepSource::modulus) return base_step();
+    return default_time_step(scale).value_or(base_step());
+  }
   /// Throw ConfigError where there is none of this name, or no longer.
   const BodyState& body(BodyId id) const;
   BodyState& body(BodyId id) { return const_cast<BodyState&>(std::as_const(*this).body(id)); }
@@ -271,18 +280,16 @@ struct Simulation::State {
     return std::ranges::any_of(bodies, [](const BodyState& body) { return body.hit_impulse.has_value(); });
   }
   /// Of the pull towards goals, (1 − α)/(Δt0 Δt_SM) [1/s²], where (1 − α) is `share`. [TK eq. 13]
-  float stiffness(const MaterialState& material, float share) const {
-    const float elastic_step = material.settings.elastic_time_step.value_or(base_step());
-    return share / (base_step() * elastic_step);
+  float stiffness(const BodyState& body, float share) const {
+    return share / (base_step() * body.elastic_time_step);
   }
   /// Of a body, whose regions may have their own share already.
   float stiffness(const BodyState& body) const {
-    return stiffness(*body.material, body.is_painted() ? 1.0f : 1.0f - body.material->alpha);
+    return stiffness(body, body.is_painted() ? 1.0f : 1.0f - body.material->alpha);
   }
   /// Of the stiffest region of a body.
   float most_stiffness(const BodyState& body) const {
-    return stiffness(*body.material,
-                     body.is_painted() ? body.blend.most_elasticity : 1.0f - body.material->alpha);
+    return stiffness(body, body.is_painted() ? body.blend.most_elasticity : 1.0f - body.material->alpha);
   }
   /// Some particles have their own alpha or stiffness: SPH blends pair by pair.
   bool is_painted() const { return !store.alpha.empty(); }
@@ -387,7 +394,9 @@ void measure_rigid(const Simulation::State& state, BodyState& body);
 
 /// Throws ConfigError where an id names none of a kind.
 [[noreturn]] void refuse_id(const char* kind, std::uint64_t id, const Slots& slots);
-/// m and ρ0 of a body; what the material leaves out follows from ρ0 = m Σ W over the lattice. [model 1]
+/// σ of the config -> SPH.
+void take_support_radius(Simulation::State& state);
+/// m and ρ0 of a body.
 void derive_density(const SolverConfig& config, BodyState& body);
 
 /// Takes the positions of a body as its reference shape and sorts its rows for that.

@@ -15,9 +15,9 @@ namespace {
 constexpr double k_shortest_step = 1e-3;
 
 /// σ² ρ0/μ [s]; infinite without viscosity.
-float viscous_time(const SolverConfig& config, const BodyState& body) {
+float viscous_time(const Simulation::State& state, const BodyState& body) {
   if (!(body.viscosity > 0)) return std::numeric_limits<float>::infinity();
-  return config.support_radius * config.support_radius * body.rest_density / body.viscosity;
+  return state.support_radius() * state.support_radius() * body.rest_density / body.viscosity;
 }
 
 /// Pressure, viscosity and pull of a body as they act.
@@ -28,7 +28,7 @@ TimeStepLimits::Pressure acting_pressure(const Simulation::State& state, const B
   const float push =
       presses ? (follows ? contact_share(body.material->most_alpha) : 1.0f) : body.most_alpha();
   const float drag = presses ? 1.0f : body.most_alpha();
-  const float coefficient = push * pressure_coefficient(state, *body.material);
+  const float coefficient = push * pressure_coefficient(state, body);
   return {.coefficient = coefficient,
           .kinematic_viscosity = drag * body.viscosity / body.rest_density,
           .stiffness = state.most_stiffness(body),
@@ -40,7 +40,7 @@ TimeStepLimits::Pressure acting_pressure(const Simulation::State& state, const B
 /// How far a particle may move in a step: not beyond what SPH reaches, and where bodies touch not so far that
 /// two could pass each other before either is looked for. [TK eq. 12]
 float farthest_move(const Simulation::State& state) {
-  const float radius = state.config.support_radius;
+  const float radius = state.support_radius();
   if (!state.bodies_touch()) return radius;
   return radius - 0.5f * std::ranges::max_element(state.bodies, {}, &BodyState::spacing)->spacing;
 }
@@ -49,7 +49,7 @@ float farthest_move(const Simulation::State& state) {
 TimeStepLimits limits(const Simulation::State& state, std::vector<TimeStepLimits::Pressure>& pressures) {
   TimeStepLimits limits{
       .time_step = state.longest_step(),
-      .support_radius = state.config.support_radius,
+      .support_radius = state.support_radius(),
       .farthest = farthest_move(state),
       .acoustic = state.config.acoustic_limit,
       .pressures = {},
@@ -58,7 +58,7 @@ TimeStepLimits limits(const Simulation::State& state, std::vector<TimeStepLimits
   pressures.clear();
   for (const BodyState& body : state.bodies) {
     pressures.push_back(acting_pressure(state, body));
-    limits.viscous_time = std::min(limits.viscous_time, viscous_time(state.config, body));
+    limits.viscous_time = std::min(limits.viscous_time, viscous_time(state, body));
   }
   limits.pressures = pressures;
   return limits;
@@ -118,7 +118,7 @@ float longest_time_step(Simulation::State& state, StepReport& report) {
 
 MaterialLimits material_limits(const Simulation::State& state, const BodyState& body) {
   TimeStepLimits none{.time_step = std::numeric_limits<float>::infinity(),
-                      .support_radius = state.config.support_radius,
+                      .support_radius = state.support_radius(),
                       .farthest = farthest_move(state),
                       .acoustic = state.config.acoustic_limit,
                       .pressures = {},
@@ -126,7 +126,7 @@ MaterialLimits material_limits(const Simulation::State& state, const BodyState& 
   TimeStepLimits pressed = none, viscous = none;
   const TimeStepLimits::Pressure pressure[] = {acting_pressure(state, body)};
   pressed.pressures = pressure;
-  viscous.viscous_time = viscous_time(state.config, body);
+  viscous.viscous_time = viscous_time(state, body);
   return {.by_pressure = limited_time_step(pressed, 0), .by_viscosity = limited_time_step(viscous, 0)};
 }
 

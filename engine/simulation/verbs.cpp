@@ -8,6 +8,7 @@
 #include "shape_matching/reshape.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
+#include "simulation/stiffness.h"
 
 namespace mallow {
 namespace {
@@ -58,7 +59,7 @@ void follow_alpha(Simulation::State& s, BodyState& body) {
 void follow_regions(Simulation::State& s, BodyState& body) {
   const Material& settings = body.material->settings;
   ShapeMatching& shape = body.shape;
-  const float radius = settings.region_radius.value_or(s.config.support_radius);
+  const float radius = region_radius(s.config, settings, body.spacing);
   const bool flows = settings.plastic_yield.has_value();
   if (shape.region_radius == radius && shape.region_stride == settings.region_stride && shape.flows == flows)
     return;
@@ -94,7 +95,10 @@ void Simulation::set_material(MaterialId id, const Material& settings) {
   Checks checks;
   check(settings, checks);
   checks.finish();
-  check_stiffness(s.config, settings, checks);
+  check_stiffness(s.config, settings, {}, checks);
+  for_bodies_of(s, material, [&](const BodyState& body) {
+    check_modulus(s.config, settings, body.spacing, body.name, checks);
+  });
   checks.finish();
   material.settings = settings;
   for_bodies_of(s, material, [&](BodyState& body) {
@@ -118,7 +122,10 @@ void Simulation::set_alpha(MaterialId id, const AlphaSchedule& alpha) {
   checks.finish();
   Material changed = material.settings;
   changed.alpha = alpha;
-  check_stiffness(s.config, changed, checks);
+  check_stiffness(s.config, changed, {}, checks);
+  for_bodies_of(s, material, [&](const BodyState& body) {
+    check_modulus(s.config, changed, body.spacing, body.name, checks);
+  });
   checks.finish();
   material.settings.alpha = alpha;
   for_bodies_of(s, material, [&](BodyState& body) { follow_alpha(s, body); });

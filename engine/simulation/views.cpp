@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
+#include "simulation/stiffness.h"
 
 namespace mallow {
 namespace {
@@ -217,6 +218,7 @@ SimulationInfo Simulation::info() {
   info.bytes = s.store.bytes() + s.sph.bytes() + s.fluid_order.bytes() + s.user_acceleration.bytes() +
                s.far_position.bytes() + s.region_scratch.bytes() + s.led_position.bytes() +
                s.contact_pairs.bytes() + s.volume.bytes();
+  info.support_radius = s.support_radius();
   info.time_step = s.base_step();
   info.time_step_source = s.time_step_source;
   info.longest_step = s.longest_step();
@@ -226,6 +228,7 @@ SimulationInfo Simulation::info() {
   for (const BodyState& body : s.bodies) {
     info.bytes += body.shape.bytes();
     const ShapeMatching& shape = body.shape;
+    const Material& settings = body.material->settings;
     info.bodies.push_back(
         {.name = body.name,
          .material = body.material->name,
@@ -236,8 +239,13 @@ SimulationInfo Simulation::info() {
          .region_radius = shape.region_radius,
          .alpha = body.material->alpha,
          .update_threshold = body.material->update_threshold,
-         .pressure_coefficient = pressure_coefficient(s, *body.material),
+         .pressure_coefficient = pressure_coefficient(s, body),
          .viscosity = body.viscosity,
+         .elastic_time_step = body.elastic_time_step,
+         .youngs_modulus = static_cast<float>(
+             stiffness_scale(s.config, settings, body.spacing) /
+             (static_cast<double>(s.base_step()) * static_cast<double>(body.elastic_time_step))),
+         .most_youngs_modulus = static_cast<float>(most_modulus(s.config, settings, body.spacing)),
          .average_neighbors = shape.built ? shape.average_neighbors : count_neighbors(s, body),
          .regions = shape.built ? shape.region_weight.size() : 0,
          .shape_matching = body.matches_shape()});

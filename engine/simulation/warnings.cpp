@@ -3,6 +3,7 @@
 #include <limits>
 #include <sstream>
 
+#include "colliders/shapes.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 
@@ -11,8 +12,8 @@ namespace {
 
 /// Weight and rest make a mean |a_ext| of up to about this many |g|.
 constexpr float k_resting = 2;
-/// From foam to the heaviest metals [kg/m³].
-constexpr float k_least_density = 1, k_most_density = 30000;
+/// From foam to the heaviest metals [kg/m³]. 1 is nobody's: water in g/cm³.
+constexpr float k_least_density = 5, k_most_density = 30000;
 /// Share of the longest step to which a limit may shorten all of them.
 constexpr double k_short_steps = 0.5;
 /// Neighbours that slow a step down and show nothing: those of ten spacings.
@@ -24,6 +25,9 @@ constexpr float k_least_share = 0.3f;
 /// So many particles of other bodies within a spacing are inside of these: a lattice has four there on the
 /// mean, and one that touches has one.
 constexpr std::ptrdiff_t k_inside = 3;
+
+/// Nobody means a share of the spacing that is as small as this.
+constexpr float k_rounding_depth = 0.01f;
 
 class Warnings {
  public:
@@ -42,6 +46,8 @@ class Warnings {
       list_.push_back(
           "solver.volume_tolerance ends volume iterations, of which there are none: give volume_iterations");
     if (state_.step == 0 && state_.bodies.size() > 1) look_at_overlaps();
+    if (state_.step == 0)
+      for (const BodyState& body : state_.bodies) look_at_colliders(body);
     return std::move(list_);
   }
 
@@ -118,8 +124,8 @@ class Warnings {
       add(body, "viscosity ", body.viscosity, " is too low to calm the pressure that keeps the volume, and",
           shortens(limits.by_pressure), "leave it out, raise it, or give a lower pressure_coefficient");
     else
-      add(body, "support_radius ", state_.config.support_radius, ", ",
-          state_.config.support_radius / body.spacing, " spacings,", shortens(limits.by_pressure),
+      add(body, "support_radius ", state_.support_radius(), ", ", state_.support_radius() / body.spacing,
+          " spacings,", shortens(limits.by_pressure),
           "2 to 3 spacings are usual, or give a lower pressure_coefficient");
   }
 
@@ -145,7 +151,7 @@ class Warnings {
             " neighbours each, where 30 to 80 are usual; so few hold no body together, 2.1 spacings do");
     };
     if (state_.needs_sph() || state_.keeps_volume())
-      look("support_radius", state_.config.support_radius, state_.store.size());
+      look("support_radius", state_.support_radius(), state_.store.size());
     if (body.keeps_reference()) look("the radius of its regions,", body.shape.region_radius, body.size());
   }
 
@@ -172,6 +178,24 @@ class Warnings {
       if (overlapping[g] > 0)
         add(state_.bodies[g], overlapping[g], " of ", state_.bodies[g].size(),
             " particles start within another body, which drives them out; move one of the two");
+  }
+
+  /// Particles that start within a collider, which drives them out; pinned ones feel none.
+  void look_at_colliders(const BodyState& body) {
+    const ParticleStore& store = state_.store;
+    for (std::size_t c = 0; c < state_.colliders.size(); ++c) {
+      std::size_t inside = 0;
+      float deepest = -k_rounding_depth * body.spacing;
+      for (std::size_t row = body.begin; row < body.end; ++row) {
+        if (!store.pin.empty() && store.pin[row] != 0) continue;
+        const float distance = nearest(state_.colliders[c], state_.far(store.position.get(row))).distance;
+        if (distance < -k_rounding_depth * body.spacing) ++inside;
+        deepest = std::min(deepest, distance);
+      }
+      if (inside > 0)
+        add(body, inside, " of ", body.size(), " particles start inside collider ", c, ", up to ", -deepest,
+            " m deep, and are driven out; move one of the two");
+    }
   }
 
   const Simulation::State& state_;

@@ -152,7 +152,7 @@ TEST(field_table, states_of_version_9_hold_these_settings_in_this_order) {
       "memory_limit");
   EXPECT_EQ(names_in_states<Material>(),
             "alpha update_threshold plastic_yield plastic_creep merge_flow tear_strain pressure_coefficient "
-            "viscosity elastic_time_step particle_mass "
+            "viscosity elastic_time_step youngs_modulus particle_mass "
             "rest_density cohesion friction adhesion damping_time deformation_damping region_radius "
             "region_stride");
   EXPECT_EQ(names_in_states<Collider>(),
@@ -209,8 +209,8 @@ TEST(field_table, archives_give_back_every_kind_of_value) {
 
 TEST(field_table, archives_refuse_a_choice_that_there_is_not) {
   std::string bytes = packed(SolverConfig{});
-  // Behind the optional members that are left out: time_step, update_period, update_interval.
-  constexpr std::size_t k_formulation = 1 + 4 + 4 + 12 + 1 + 1;
+  // Behind the optional members that are left out: time_step, support_radius, update_period, update_interval.
+  constexpr std::size_t k_formulation = 1 + 4 + 1 + 12 + 1 + 1;
   bytes[k_formulation] = 2;
   EXPECT_THROW(unpacked<SolverConfig>(bytes), ConfigError);
 }

@@ -105,7 +105,7 @@ std::size_t Oracle::add_group(const Material& material) {
 void Oracle::add_body(const std::vector<Vec>& positions, const std::vector<Vec>& velocities, double spacing,
                       std::size_t group) {
   groups_[group].spacing = spacing;
-  set_mass_and_rest_density(groups_[group], config_.support_radius);
+  set_mass_and_rest_density(groups_[group], *config_.support_radius);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     particles_.push_back({.group = group, .x = positions[i], .v = velocities[i]});
   }
@@ -174,7 +174,7 @@ void Oracle::follow_alpha() {
     }
     const std::optional<float>& given = group.material.pressure_coefficient;
     group.contact_share = given ? 1 : std::max(group.most_alpha, 0.2);
-    const double dt = std::max(dt0_, longest_), speed = config_.support_radius / dt;
+    const double dt = std::max(dt0_, longest_), speed = *config_.support_radius / dt;
     const double x = std::min(1.0, (2.6 - group.most_elasticity * stiffness(group) * dt * dt) / 2);
     group.pressure_coefficient = given ? double{*given} : x * speed * speed / group.contact_share;
     const double soft = given ? 1 : std::min(1.0, 0.08 * speed * speed / group.pressure_coefficient);
@@ -219,7 +219,7 @@ void Oracle::rebuild_regions(std::size_t group) {
 }
 
 void Oracle::list_regions(std::size_t group) {
-  const double radius = groups_[group].material.region_radius.value_or(config_.support_radius);
+  const double radius = groups_[group].material.region_radius.value_or(*config_.support_radius);
   for (Particle& i : particles_) {
     if (i.group != group) continue;
     i.region.clear();
@@ -233,7 +233,7 @@ void Oracle::list_regions(std::size_t group) {
 // Section 7 of the second chapter: those whose own threshold is exceeded rest beside the nearest that holds,
 // or that rests beside such a one.
 void Oracle::rest_anew(std::size_t group, double mean) {
-  const double radius = groups_[group].material.region_radius.value_or(config_.support_radius);
+  const double radius = groups_[group].material.region_radius.value_or(*config_.support_radius);
   std::vector<Particle*> placed, left;
   for (Particle& p : particles_)
     if (p.group == group)
@@ -356,7 +356,7 @@ void Oracle::find_walls(Particle& p) const {
   p.wall_share = 0;
   const Group& group = groups_[p.group];
   if (!config_.wall_pressure || config_.formulation == Formulation::printed || group.most_alpha == 0) return;
-  const double sigma = config_.support_radius;
+  const double sigma = *config_.support_radius;
   const double offset = config_.contact_offset.value_or(group.spacing / 2);
   for (const Obstacle& obstacle : obstacles_) {
     for (const Primitive& part : parts_of(obstacle.collider)) {
@@ -401,7 +401,7 @@ void Oracle::sum_densities() {
     double sum = i.wall_share;
     for (const Particle& j : particles_) {
       const Group& other = groups_[j.group];
-      sum += other.mass / other.rest_density * poly6((i.x - j.x).norm(), config_.support_radius);
+      sum += other.mass / other.rest_density * poly6((i.x - j.x).norm(), *config_.support_radius);
     }
     i.density = group.rest_density * sum;
     i.pressure = group.pressure_coefficient * (i.density - group.rest_density);
@@ -412,7 +412,7 @@ void Oracle::sum_densities() {
 /// What j adds to the acceleration of i [TK eq. 1, 2, 4]. The conservative sums leave out j = i, and their
 /// formula is zero there; the printed ones do not leave it out.
 Vec Oracle::pair_acceleration(const Particle& i, const Particle& j) const {
-  const double sigma = config_.support_radius;
+  const double sigma = *config_.support_radius;
   const Vec d = i.x - j.x;
   const Group& group_i = groups_[i.group];
   const Group& group_j = groups_[j.group];
@@ -442,7 +442,7 @@ void Oracle::sum_accelerations() {
     i.sph = i.blended = Vec::Zero();
     i.crossing = Vec::Zero();
     for (const Particle& j : particles_) {
-      if ((i.x - j.x).norm() > config_.support_radius) continue;
+      if ((i.x - j.x).norm() > *config_.support_radius) continue;
       const Vec a = pair_acceleration(i, j);
       (j.group == i.group ? i.sph : i.crossing) += a;
       if (j.group == i.group) i.blended += (alpha_of(i) + alpha_of(j)) / 2 * a;
@@ -470,7 +470,7 @@ double Oracle::max_velocity() const {
 double Oracle::time_step(double max_velocity) const {
   const double longest = longest_;
   if (!sph_acts()) return longest;
-  const double sigma = config_.support_radius;
+  const double sigma = *config_.support_radius;
   double dt = std::min(longest, 0.999 * sigma / max_velocity);
   if (config_.acoustic_limit) {
     for (const Group& group : groups_) {
@@ -512,7 +512,7 @@ void Oracle::match_shapes() {
     for (std::size_t i : j.region) {
       a += weight(particles_[i]) * (particles_[i].x - c) * (particles_[i].reference - c_ref).transpose();
     }
-    const double radius = groups_[j.group].material.region_radius.value_or(config_.support_radius);
+    const double radius = groups_[j.group].material.region_radius.value_or(*config_.support_radius);
     j.rotation = polar_rotation(a * j.stretch.transpose(), j.rotation, w * radius * radius);
     j.moment = a;
     j.rest_moment = Matrix::Zero();
@@ -574,7 +574,7 @@ void Oracle::flow(double dt) {
 bool Oracle::reframe_is_due(std::size_t group) const {
   const Group& g = groups_[group];
   if (!g.material.plastic_yield || g.alpha == 1) return false;
-  const double radius = g.material.region_radius.value_or(config_.support_radius);
+  const double radius = g.material.region_radius.value_or(*config_.support_radius);
   for (const Particle& i : particles_) {
     if (i.group != group) continue;
     if (i.flow > 0.5) return true;
@@ -620,7 +620,7 @@ void Oracle::touch(const Obstacle& obstacle, const Particle& particle, const Vec
     const double w_n = w.dot(n);
     if (d + dt * w_n >= 0) continue;
 
-    const double gentle = config_.support_radius / (10 * dt0_);
+    const double gentle = *config_.support_radius / (10 * dt0_);
     double new_w_n = d >= 0 ? -d / dt : std::min(-d / dt, gentle);
     const Vec came = before - u;
     const double q = came.dot(n), e = collider.restitution;

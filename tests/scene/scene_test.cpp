@@ -354,6 +354,8 @@ TEST_F(every_key, is_described_once_and_printed) {
   const std::string interval = "update_interval = 7", in_seconds = "update_period = 3";
   std::string other = k_every_key;
   other.replace(other.find(interval), interval.size(), in_seconds);
+  const std::string spring = "elastic_time_step = 0.05";
+  other.replace(other.find(spring), spring.size(), "youngs_modulus = 3");
   const std::string printed =
       print_scene(SceneFixture::read(k_every_key)) + print_scene(SceneFixture::read(other));
   for (std::string line; std::getline(lines, line);) {

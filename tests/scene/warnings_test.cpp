@@ -44,5 +44,42 @@ TEST_F(scene_warnings, name_frames_in_which_nothing_moves_a_spacing_far) {
       "than the spacing of 1 m; give more frames, or a longer frame_time");
 }
 
+bool warns(const std::vector<std::string>& all, const std::string& of) {
+  return std::ranges::any_of(all, [&](const std::string& text) { return text.find(of) != text.npos; });
+}
+
+TEST_F(scene_warnings, name_a_frame_time_in_milliseconds) {
+  EXPECT_TRUE(warns(warnings_of(read(falling("0.003", "0.0063", "-9.81", "frame_time = 33\n"))),
+                    "frame_time is in seconds, and 0.0333333 shows real time"));
+  EXPECT_FALSE(
+      warns(warnings_of(read(falling("0.003", "0.0063", "-9.81", "frame_time = 0.5\n"))), "frame_time"));
+}
+
+TEST_F(scene_warnings, name_gravity_that_is_left_out_beside_pascals) {
+  const std::string body = "[[body]]\nmaterial = \"honey\"\nbox = { count = [4, 4, 4], spacing = 0.01 }\n";
+  const auto has = [&](const std::string& text) {
+    return warns(warnings_of(read(text)), "gravity is left out");
+  };
+  EXPECT_TRUE(has(body));
+  EXPECT_FALSE(has("[solver]\ngravity = [0, 0, -9.81]\n" + body));
+  EXPECT_TRUE(has("[[material]]\nname = \"honey\"\nyoungs_modulus = 5e3\n" + body));
+  EXPECT_FALSE(has("[[material]]\nname = \"honey\"\nalpha = 0.5\n" + body));
+}
+
+TEST_F(scene_warnings, name_a_body_that_starts_within_a_collider) {
+  const auto with_floor = [&](const std::string& offset) {
+    return warnings_of(read(falling("0.1", "0.21", "-9.81", "frame_time = 0.0333333\n") +
+                            "[[collider]]\nplane = { normal = [0, 0, 1], offset = " + offset + " }\n"));
+  };
+  EXPECT_TRUE(with_floor("0.0").empty());
+  EXPECT_TRUE(warns(with_floor("0.15"), "particles start inside collider 0, up to "));
+}
+
+TEST_F(scene_warnings, name_a_density_that_is_in_grams_by_cubic_centimetre) {
+  std::string text = falling("0.1", "0.21", "-9.81", "frame_time = 0.0333333\n");
+  text.replace(text.find("1000.0"), 6, "1.0");
+  EXPECT_TRUE(warns(warnings_of(read(text)), "a rest density of 1 kg/m3 is given"));
+}
+
 }  // namespace warnings_test
 }  // namespace mallow

@@ -283,5 +283,26 @@ TEST(warnings, name_what_is_hardly_meant) {
       warns(info_of({.alpha = 0.5f, .viscosity = 1e4f, .rest_density = 1000.0f}, 0.05f), "viscosity"));
 }
 
+TEST(support_radius, left_out_is_that_of_the_coarsest_body_and_the_same_as_given) {
+  const auto run = [](const SolverConfig& config) {
+    Simulation s(config);
+    s.add_body(cube(4, 0.01f, {0, 0, 0.005f}),
+               Material{.alpha = 0.5f, .youngs_modulus = 5e3f, .rest_density = 1000.0f});
+    s.add_body(cube(4, 0.02f, {0.2f, 0, 0.01f}), Material{.alpha = 1.0f, .rest_density = 1000.0f});
+    s.add_collider({.shape = Plane{}});
+    for (int k = 0; k < 20; ++k) s.step();
+    EXPECT_EQ(s.info().support_radius, default_support_radius(0.02f));
+    Simulation again = Simulation::restore(s.save());
+    again.step();
+    s.step();
+    EXPECT_EQ(again.state_hash(), s.state_hash());
+    return s.state_hash();
+  };
+  SolverConfig left_out = in_metres(0.02f), given = left_out;
+  left_out.support_radius.reset();
+  given.support_radius = default_support_radius(0.02f);
+  EXPECT_EQ(run(left_out), run(given));
+}
+
 }  // namespace defaults_test
 }  // namespace mallow

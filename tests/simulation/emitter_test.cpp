@@ -265,8 +265,8 @@ TEST(emitter, is_refused_where_it_is_wrong) {
     return std::string("nothing was refused");
   };
   const std::vector<std::pair<std::function<void(Emitter&)>, const char*>> cases{
-      {[](Emitter& e) { e.radius = {}; }, "emitter.radius: give the radius"},
-      {[](Emitter& e) { e.width = 3.0f; }, "emitter.radius: give the radius"},
+      {[](Emitter& e) { e.radius = {}; }, "emitter.radius: is missing"},
+      {[](Emitter& e) { e.width = 3.0f; }, "emitter.radius: is not allowed beside width"},
       {[](Emitter& e) { e.radius = -1.0f; }, "emitter.radius: -1 is not allowed"},
       {[](Emitter& e) { e.speed = -1; }, "emitter.speed"},
       {[](Emitter& e) {

@@ -39,14 +39,38 @@ void print_bodies(const SimulationInfo& info) {
   }
 }
 
+/// How stiff bodies with a shape are, and how stiff they could be.
+void print_stiffness(const SimulationInfo& info) {
+  std::printf("\n%-16s %12s %15s %12s %16s %14s\n", "body", "E [Pa]", "at alpha 0 [Pa]", "at most [Pa]",
+              "elastic step [s]", "region radius");
+  for (const BodyInfo& body : info.bodies)
+    if (body.shape_matching)
+      std::printf("%-16s %12.4g %15.4g %12.4g %16.4g %12.3g h\n", body.name.c_str(),
+                  static_cast<double>((1 - body.alpha) * body.youngs_modulus),
+                  static_cast<double>(body.youngs_modulus), static_cast<double>(body.most_youngs_modulus),
+                  static_cast<double>(body.elastic_time_step),
+                  static_cast<double>(body.region_radius / body.spacing));
+}
+
+const char* source_of(TimeStepSource source) {
+  switch (source) {
+    case TimeStepSource::given:
+      return "as given";
+    case TimeStepSource::gravity:
+      return "from spacing and gravity";
+    case TimeStepSource::speed:
+      return "from spacing and the fastest body";
+    case TimeStepSource::modulus:
+      return "from youngs_modulus, as spacing and gravity would have longer ones";
+  }
+  return "";
+}
+
 /// How long steps and frames are, and why.
 void print_times(const Scene& scene, const SimulationInfo& info) {
   const double longest = static_cast<double>(info.longest_step);
   const double frame = frame_time(scene, info);
-  const char* source = info.time_step_source == TimeStepSource::given ? "as given"
-                       : info.time_step_source == TimeStepSource::gravity
-                           ? "from spacing and gravity"
-                           : "from spacing and the fastest body";
+  const char* source = source_of(info.time_step_source);
   std::printf("time step        %g s, %s\n", static_cast<double>(info.time_step), source);
   if (info.longest_step != info.time_step) std::printf("longest step     %g s\n", longest);
   if (std::isfinite(info.unlimited_step))
@@ -86,8 +110,11 @@ void info(const InfoOptions& options) {
   std::printf("pins             %zu\n", scene.pins.size());
   std::printf("instructions     %s\n", name(info.instruction_level));
   std::printf("memory           %.1f MiB\n", static_cast<double>(info.bytes) / (1024.0 * 1024.0));
+  std::printf("support radius   %g m, %s\n", static_cast<double>(info.support_radius),
+              scene.solver.support_radius ? "as given" : "from the largest spacing");
   print_times(scene, info);
   print_bodies(info);
+  if (shape_matching) print_stiffness(info);
   print_warnings(scene, info);
 }
 

@@ -3,6 +3,7 @@
 
 #include "cli/export_command.h"
 #include "cli/info_command.h"
+#include "cli/materials_command.h"
 #include "cli/render_command.h"
 #include "cli/run_command.h"
 #include "cli/sample_command.h"
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
   add_run_command(app);
   add_info_command(app);
   add_sample_command(app);
+  add_materials_command(app);
   add_surface_command(app);
   add_render_command(app);
   add_export_command(app);

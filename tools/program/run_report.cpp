@@ -35,7 +35,17 @@ nlohmann::ordered_json groups_json(const RunReport& report) {
 }
 
 const char* source_name(TimeStepSource source) {
-  return source == TimeStepSource::given ? "given" : source == TimeStepSource::gravity ? "gravity" : "speed";
+  switch (source) {
+    case TimeStepSource::given:
+      return "given";
+    case TimeStepSource::gravity:
+      return "gravity";
+    case TimeStepSource::speed:
+      return "speed";
+    case TimeStepSource::modulus:
+      return "modulus";
+  }
+  return "";
 }
 
 nlohmann::ordered_json updates_json(const RunReport& report) {

@@ -22,12 +22,22 @@ enum class TimeStepSource {
   given,    ///< SolverConfig::time_step
   gravity,  ///< spacing and gravity
   speed,    ///< spacing and the fastest body, as there is no gravity
+  modulus,  ///< the stiffest Material::youngs_modulus, which asks for shorter steps than spacing and gravity
 };
 
 /// Δt0 [s]: 0.082 √(h/|g|), that is 0.15 at the paper's numbers, in which a fall of ten spacings ends at 0.37
 /// spacings a step. Without gravity 0.3 h/speed, so that the fastest moves about as far a step as in such a
 /// fall. Nothing where neither says how long a second is.
 MALLOW_EXPORT std::optional<float> default_time_step(const SceneScale& scale);
+
+/// σ [m]: 2.1 h, which gives 38 neighbours. `spacing` is that of the coarsest body, as too few neighbours
+/// hold nothing together.
+MALLOW_EXPORT float default_support_radius(float spacing);
+
+/// m2 [m²]: the mean of x² over the points of a cubic lattice within `radius` of one of them, itself
+/// included. It makes a stiffness of a region's pull: E = (1 − alpha) ρ m2/(Δt0 Δt_SM), ρ the mass by
+/// spacing³. About 0.2 radius², in jumps. radius, spacing > 0. [model 2, section 3]
+MALLOW_EXPORT double region_moment(double radius, double spacing);
 
 /// γ_u [m/s²]: 40 |g|, above what weight and rest do to a body at any alpha below 0.95. Without gravity
 /// 0.27 h/Δt0², the same number where Δt0 follows from gravity.

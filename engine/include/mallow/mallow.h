@@ -9,6 +9,7 @@
 #include "mallow/ids.h"                // IWYU pragma: export
 #include "mallow/instruction_level.h"  // IWYU pragma: export
 #include "mallow/material.h"           // IWYU pragma: export
+#include "mallow/materials.h"          // IWYU pragma: export
 #include "mallow/quality.h"            // IWYU pragma: export
 #include "mallow/report.h"             // IWYU pragma: export
 #include "mallow/saved_state.h"        // IWYU pragma: export

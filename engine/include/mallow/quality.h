@@ -29,7 +29,8 @@ MALLOW_EXPORT std::span<const Quality> qualities();
 MALLOW_EXPORT SolverConfig with_quality(const SolverConfig& config, Quality quality);
 /// config: that of the material, as it was before. A material so stiff that longer steps would make it
 /// unstable is softened to where they do not, if both its elastic_time_step and the time_step are given;
-/// where the time_step is left out, prepare() refuses it.
+/// where the time_step is left out, prepare() refuses it. A youngs_modulus is kept: steps that are left out
+/// carry it at any quality, and where a time_step is given that does not, prepare() says which would.
 MALLOW_EXPORT Material with_quality(const Material& material, const SolverConfig& config, Quality quality);
 /// Voxels coarser or finer than the config has them.
 MALLOW_EXPORT SurfaceConfig with_quality(const SurfaceConfig& config, Quality quality);

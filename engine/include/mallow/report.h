@@ -121,9 +121,13 @@ struct BodyInfo {
   float update_threshold = 0;      ///< γ_u in force, to be multiplied by 1 − alpha [m/s²]
   float pressure_coefficient = 0;  ///< k in force [m²/s²]
   float viscosity = 0;             ///< μ in force [Pa s]
-  double average_neighbors = 0;    ///< mean |N_i| over the reference shape, i included, whatever the stride
-  std::size_t regions = 0;         ///< of shape matching, as many as are owned; 0 where none are built
-  bool shape_matching = false;     ///< runs now
+  float elastic_time_step = 0;     ///< Δt_SM in force [s]
+  /// Y in force, whether it was given or follows from elastic_time_step, to be multiplied by 1 − alpha [Pa].
+  float youngs_modulus = 0;
+  float most_youngs_modulus = 0;  ///< that the longest step carries, at the lowest alpha there is [Pa]
+  double average_neighbors = 0;   ///< mean |N_i| over the reference shape, i included, whatever the stride
+  std::size_t regions = 0;        ///< of shape matching, as many as are owned; 0 where none are built
+  bool shape_matching = false;    ///< runs now
 };
 /// What a simulation runs and holds; see Simulation::info().
 struct SimulationInfo {
@@ -134,6 +138,7 @@ struct SimulationInfo {
   bool cross_group = false;                                         ///< contact between bodies runs
   InstructionLevel instruction_level = InstructionLevel::baseline;  ///< that kernels use
   std::size_t bytes = 0;                                            ///< memory of columns, lists and scratch
+  float support_radius = 0;                                         ///< σ [m]
   float time_step = 0;                                              ///< Δt0 [s]
   TimeStepSource time_step_source = TimeStepSource::given;
   float longest_step = 0;    ///< time_step_factor Δt0 [s]

@@ -35,8 +35,9 @@ struct SolverConfig {
   /// reference shapes are checked at the same times. Above 1, (1 − alpha) time_step_factor² time_step /
   /// elastic_time_step is bounded, see Material::elastic_time_step.
   float time_step_factor = 1.0f;
-  /// Radius of the SPH kernels, σ [m], > 0; there is no default. [TK eq. 3]
-  float support_radius = 0.0f;
+  /// Radius of the SPH kernels, σ [m], > 0. Left out: 2.1 times the largest spacing of the bodies that there
+  /// are when the simulation is prepared for the first time, see default_support_radius(). [TK eq. 3]
+  std::optional<float> support_radius = {};
   /// Acceleration on every particle [m/s²], finite.
   Vec3 gravity{0.0f, 0.0f, -0.3f};
   /// Time between the checks that update reference shapes, m_u [s], > 0: a check is at the first step that

@@ -1,0 +1,89 @@
+// Materials by name: what their files say, in scenes and in the library.
+#include "mallow/materials.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "config/field_archive.h"
+#include "config/field_tables.h"
+#include "mallow/simulation.h"
+#include "scene/scene_fixture.h"
+
+namespace mallow {
+namespace materials_test {
+
+class materials_by_name : public SceneFixture {};
+
+template <class Config>
+std::string packed(const Config& config) {
+  PackingArchive archive;
+  pass_fields(archive, config);
+  return archive.take();
+}
+
+/// A scene whose only material is that of a file, as a reader of TOML sees it.
+std::string scene_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string text;
+  for (std::string line; std::getline(stream, line);)
+    if (!line.starts_with("about"))
+      text += (line == "[material]" ? "[[material]]\nname = \"it\"" : line) + '\n';
+  return text + "[[body]]\nmaterial = \"it\"\nbox = { count = [2, 2, 2], spacing = 0.005 }\n";
+}
+
+std::string by_name(const std::string& name, const std::string& more = "") {
+  return "[[body]]\nmaterial = \"" + name + "\"\nbox = { count = [3, 3, 3], spacing = 0.005 }\n" + more;
+}
+
+TEST_F(materials_by_name, are_what_their_files_say) {
+  std::set<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(MALLOW_DATA_DIR "/materials")) {
+    const std::string name = entry.path().stem();
+    files.insert(name);
+    const MaterialPreset* preset = find_preset(name);
+    ASSERT_NE(preset, nullptr) << name << " is not in the list of engine/config/materials.cmake";
+    const Scene scene = read(scene_of(entry.path()));
+    EXPECT_EQ(packed(preset->material), packed(scene.materials[0].material)) << name;
+    EXPECT_EQ(preset->appearance.color, scene.materials[0].color) << name;
+    EXPECT_EQ(preset->appearance.finish, scene.materials[0].finish) << name;
+    EXPECT_GT(std::string(preset->about).size(), 10u) << name;
+  }
+  EXPECT_EQ(files.size(), material_presets().size());
+  EXPECT_EQ(packed(materials::honey()), packed(find_preset("honey")->material));
+  EXPECT_EQ(find_preset("glass"), nullptr);
+}
+
+TEST_F(materials_by_name, need_nothing_else_in_a_scene) {
+  for (const MaterialPreset& preset : material_presets()) {
+    const Scene scene = read(by_name(preset.name, "[solver]\ngravity = [0, 0, -9.81]\n"));
+    ASSERT_EQ(scene.materials.size(), 1u);
+    EXPECT_EQ(scene.materials[0].name, preset.name);
+    EXPECT_EQ(packed(scene.materials[0].material), packed(preset.material));
+    EXPECT_EQ(print_scene(read(print_scene(scene))), print_scene(scene));
+    Simulation simulation = build(scene);
+    for (int k = 0; k < 3; ++k) simulation.step();
+    for (const std::string& warning : warnings(scene, simulation.info()))
+      EXPECT_EQ(warning.find("density"), std::string::npos) << warning;
+  }
+}
+
+TEST_F(materials_by_name, give_way_to_those_of_the_scene) {
+  const Scene scene = read(by_name("honey", "[[material]]\nname = \"honey\"\nalpha = 0.25\n"));
+  ASSERT_EQ(scene.materials.size(), 1u);
+  EXPECT_EQ(scene.materials[0].material.alpha.at(0), 0.25f);
+}
+
+TEST_F(materials_by_name, are_suggested_where_a_name_is_nearly_theirs) {
+  const auto found = problems(by_name("hony"));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find("unknown material 'hony'; did you mean 'honey'?"), std::string::npos) << found[0];
+  const Scene changed = read(by_name("jelly"), {"body[0].material=water"});
+  EXPECT_EQ(changed.materials[0].name, "water");
+}
+
+}  // namespace materials_test
+}  // namespace mallow
