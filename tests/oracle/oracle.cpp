@@ -597,7 +597,9 @@ void Oracle::reframe(std::size_t group) {
     stretches.push_back(Matrix::Identity());
     if (j.group != group || is_thin(j)) continue;
     const Eigen::SelfAdjointEigenSolver<Matrix> solver(elastic_strain(j));
-    const Vec clipped = solver.eigenvalues().cwiseMax(0.8).cwiseMin(1.25);
+    const Vec found = solver.eigenvalues();
+    const double size = found.minCoeff() > 0 ? std::clamp(std::cbrt(found.prod()), 0.3, 1.25) : 1;
+    const Vec clipped = size * (found / size).cwiseMax(0.8).cwiseMin(1.25);
     const Matrix axes = j.rotation * solver.eigenvectors();
     stretches.back() = axes * clipped.cwiseInverse().asDiagonal() * axes.transpose();
   }
