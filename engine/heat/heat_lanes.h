@@ -32,6 +32,7 @@ struct HeatInput {
   const HeatGroup* groups;
   ConstVectors position;
   const float* temperature;
+  const float* openness;  ///< sorted: see HeatLattice::open; pairs count the mean of the two times
   float inverse_radius;  ///< 1/σ [1/m]
 };
 
