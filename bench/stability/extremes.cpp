@@ -79,6 +79,8 @@ class Catalogue {
     bodies_that_come_and_go();
     colliders_that_move();
     kept_volumes();
+    painted_bodies();
+    heated_bodies();
     return std::move(list_);
   }
 
@@ -112,6 +114,39 @@ class Catalogue {
     add_free("everybody is everybody's neighbour", [](Setup& s) { s.config.support_radius = 20; });
     add_free("a region of everybody", [](Setup& s) { s.material.region_radius = 20.0f; });
     add_free("a region of oneself", [](Setup& s) { s.material.region_radius = 0.5f; });
+  }
+
+  /// What its particles have of their own, side by side: of one half and of the other.
+  void painted_bodies() {
+    const auto painted = [](std::vector<float>& column, const Body& body, float left, float right) {
+      for (const Vec3& x : body.positions) column.push_back(x.x() < 2.5f ? left : right);
+    };
+    add_free("alpha 0 beside alpha 1", [&](Setup& s) { painted(s.body.alpha, s.body, 0, 1); });
+    add_free("every other particle fluid", [](Setup& s) {
+      for (std::size_t i = 0; i < s.body.positions.size(); ++i)
+        s.body.alpha.push_back(static_cast<float>(i % 2));
+    });
+    add_free("a modulus beside a thousandth of it",
+             [&](Setup& s) { painted(s.body.stiffness, s.body, 2.5f, 2.5e-3f); });
+    add("alpha 0 beside alpha 1, dropped", falling_body(),
+        [&](Setup& s) { painted(s.body.alpha, s.body, 0, 1); });
+  }
+
+  void heated_bodies() {
+    const auto heated = [](Setup& s, float conductivity) {
+      s.material.temperature = 0.0f;
+      s.material.conductivity = conductivity;
+      s.material.specific_heat = 1;
+      s.material.alpha_by_temperature = Schedule{{1, 0}, {100, 1}};
+      for (const Vec3& x : s.body.positions) s.body.temperature.push_back(x.x() < 2.5f ? 0.0f : 1e4f);
+    };
+    for (const float conductivity : {0.01f, 1.0f, 100.0f})
+      add_free("10000 K beside 0 K, conductivity " + std::to_string(conductivity),
+               [&](Setup& s) { heated(s, conductivity); });
+    add("on a plate of 10000 K", falling_body(), [&](Setup& s) {
+      heated(s, 1);
+      s.colliders[0].temperature = 1e4f;
+    });
   }
 
   void few_particles() {

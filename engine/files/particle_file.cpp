@@ -26,6 +26,8 @@ std::string particle_header(const ParticleFrame& frame, std::size_t bytes_of_bod
     header += std::string("property float ") + name + '\n';
   header += std::string("property ") + ply_body_type(bytes_of_body) + " group\n";
   if (!frame.ids.empty()) header += "property uint id\nproperty uint generation\n";
+  if (!frame.alphas.empty()) header += "property float alpha\n";
+  if (!frame.temperatures.empty()) header += "property float temperature\n";
   return header + "end_header\n";
 }
 
@@ -62,16 +64,19 @@ void write_particles(const std::filesystem::path& file, const ParticleFrame& fra
   const std::size_t bytes_of_body = body_bytes(frame.bodies);
   std::string bytes = particle_header(frame, bytes_of_body);
   const std::size_t total =
-      bytes.size() + frame.positions.size() * (24 + bytes_of_body + (frame.ids.empty() ? 0 : 8));
+      bytes.size() +
+      frame.positions.size() * (24 + bytes_of_body + (frame.ids.empty() ? 0 : 8) +
+                                (frame.alphas.empty() ? 0 : 4) + (frame.temperatures.empty() ? 0 : 4));
   require_readable_size(file, total);
   bytes.reserve(total);
   for (std::size_t i = 0; i < frame.positions.size(); ++i) {
     append_little_endian(bytes, frame.positions[i]);
     append_little_endian(bytes, frame.velocities[i]);
     append_body(bytes, frame.bodies[i], bytes_of_body);
-    if (frame.ids.empty()) continue;
-    append_little_endian(bytes, slot_of(frame.ids[i]));
-    append_little_endian(bytes, generation_of(frame.ids[i]));
+    if (!frame.ids.empty()) append_little_endian(bytes, slot_of(frame.ids[i]));
+    if (!frame.ids.empty()) append_little_endian(bytes, generation_of(frame.ids[i]));
+    if (!frame.alphas.empty()) append_little_endian(bytes, frame.alphas[i]);
+    if (!frame.temperatures.empty()) append_little_endian(bytes, frame.temperatures[i]);
   }
   write_whole(file, bytes);
 }
@@ -86,6 +91,7 @@ ParticleFrame read_particles(const std::filesystem::path& file) {
   const auto velocity = ply.find_vector(vertex, {"vx", "vy", "vz"}, true);
   const auto body = ply.find_scalar(vertex, "group");
   if (!body) ply.fail("element 'vertex' lacks 'group'");
+  const auto alpha = ply.find_scalar(vertex, "alpha"), temperature = ply.find_scalar(vertex, "temperature");
   const auto id = ply.find_scalar(vertex, "id"), generation = ply.find_scalar(vertex, "generation");
   while (const PlyElement* element = ply.next_element()) {
     if (element != &vertex) continue;
@@ -96,6 +102,8 @@ ParticleFrame read_particles(const std::filesystem::path& file) {
       frame.positions.push_back(ply.finite_vector(*position));
       frame.velocities.push_back(ply.finite_vector(*velocity));
       frame.bodies.push_back(ply.index(ply.value(*body), k_most_bodies, "group"));
+      if (alpha) frame.alphas.push_back(static_cast<float>(ply.value(*alpha)));
+      if (temperature) frame.temperatures.push_back(static_cast<float>(ply.value(*temperature)));
       if (!id || !generation) continue;
       constexpr std::uint64_t k_most = std::uint64_t{1} << 32;
       frame.ids.push_back(ParticleId{ply.index(ply.value(*generation), k_most, "generation")} << 32 |

@@ -14,7 +14,12 @@ namespace mallow {
 namespace {
 
 /// The columns that a point file may hold, in the order of a row's numbers below.
-constexpr std::array<const char*, 6> k_columns = {"x", "y", "z", "vx", "vy", "vz"};
+constexpr std::array<const char*, 9> k_columns = {"x",  "y",     "z",         "vx",         "vy",
+                                                  "vz", "alpha", "stiffness", "temperature"};
+/// Where those begin that particles have of their own, and the members that they become.
+constexpr std::size_t k_own = 6;
+constexpr std::array<std::vector<float> Body::*, 3> k_own_members = {&Body::alpha, &Body::stiffness,
+                                                                     &Body::temperature};
 
 /// What the columns that hold vectors are called by other programs: ParaView writes Points:0, Points_0 in
 /// newer versions, Velocity:0.
@@ -25,6 +30,7 @@ struct CsvColumns {
   char separator = ',';
   std::vector<std::optional<std::size_t>> meaning;  ///< by column of the file: index into k_columns
   bool velocities = false;
+  std::array<bool, k_own_members.size()> own{};
 };
 
 /// "x" of "X [m]".
@@ -95,6 +101,7 @@ CsvColumns read_csv_header(TextReader& text) {
     const auto k = other_name(plain_name(names[c]));
     if (k && !own[*k / 3]) take(c, *k);
   }
+  for (std::size_t k = 0; k < columns.own.size(); ++k) columns.own[k] = found[k_own + k];
   columns.velocities = found[3] || found[4] || found[5];
   for (std::size_t k = 0; k < (columns.velocities ? 6u : 3u); ++k) {
     if (found[k]) continue;
@@ -126,6 +133,8 @@ Body read_csv_points(const std::filesystem::path& file) {
     require_room(text, body.positions.size() + 1, "points");
     body.positions.emplace_back(row[0], row[1], row[2]);
     if (columns.velocities) body.velocities.emplace_back(row[3], row[4], row[5]);
+    for (std::size_t k = 0; k < columns.own.size(); ++k)
+      if (columns.own[k]) (body.*k_own_members[k]).push_back(row[k_own + k]);
   }
   return body;
 }
@@ -135,6 +144,8 @@ Body read_ply_points(const std::filesystem::path& file) {
   const PlyElement& vertex = ply.require("vertex");
   const auto position = ply.find_vector(vertex, {"x", "y", "z"}, true);
   const auto velocity = ply.find_vector(vertex, {"vx", "vy", "vz"}, false);
+  std::array<std::optional<std::size_t>, k_own_members.size()> own;
+  for (std::size_t k = 0; k < own.size(); ++k) own[k] = ply.find_scalar(vertex, k_columns[k_own + k]);
   Body body;
   while (const PlyElement* element = ply.next_element()) {
     if (element != &vertex) continue;
@@ -142,6 +153,8 @@ Body read_ply_points(const std::filesystem::path& file) {
     while (ply.next_row()) {
       body.positions.push_back(ply.finite_vector(*position));
       if (velocity) body.velocities.push_back(ply.finite_vector(*velocity));
+      for (std::size_t k = 0; k < own.size(); ++k)
+        if (own[k]) (body.*k_own_members[k]).push_back(static_cast<float>(ply.value(*own[k])));
     }
   }
   return body;

@@ -8,9 +8,25 @@
 // Apart from the files, whose readers thereby need no simulation to be linked, as the fuzz targets do.
 namespace mallow {
 
+namespace {
+
+/// Of a column by row, in the order of slots.
+std::vector<float> by_id(const Simulation& simulation, std::span<const float> column) {
+  std::vector<float> values;
+  if (column.empty()) return values;
+  std::vector<ParticleId> ids(simulation.ids().begin(), simulation.ids().end());
+  std::ranges::sort(ids, {}, [](ParticleId id) { return slot_of(id); });
+  for (const ParticleId id : ids) values.push_back(column[simulation.row(id)]);
+  return values;
+}
+
+}  // namespace
+
 ParticleFrame snapshot(const Simulation& simulation) {
   ParticleFrame frame{simulation.positions_by_id(), simulation.velocities_by_id(), simulation.bodies_by_id(),
                       simulation.time(), simulation.step_count()};
+  frame.alphas = by_id(simulation, simulation.alphas());
+  frame.temperatures = by_id(simulation, simulation.temperatures());
   const std::span<const ParticleId> ids = simulation.ids();
   // As long as nobody was removed they are the numbers below that of all particles.
   if (std::ranges::all_of(ids, [&](ParticleId id) { return id < ids.size(); })) return frame;

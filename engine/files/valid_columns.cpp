@@ -55,6 +55,8 @@ void require_valid(const ParticleFrame& frame) {
   require("frame.velocities", frame.velocities.size());
   require("frame.bodies", frame.bodies.size());
   if (!frame.ids.empty()) require("frame.ids", frame.ids.size());
+  if (!frame.alphas.empty()) require("frame.alphas", frame.alphas.size());
+  if (!frame.temperatures.empty()) require("frame.temperatures", frame.temperatures.size());
 }
 
 }  // namespace mallow

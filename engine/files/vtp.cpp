@@ -36,6 +36,10 @@ struct PolyData {
     begin_array(name, k_float32, 3, vectors.size());
     for (const Vec3& vector : vectors) append_little_endian(bytes, vector);
   }
+  void add_numbers(const char* name, const std::vector<float>& numbers) {
+    begin_array(name, k_float32, 1, numbers.size());
+    for (const float number : numbers) append_little_endian(bytes, number);
+  }
   /// A slot may be given again, in the next generation.
   void add_ids(const std::vector<ParticleId>& ids) {
     begin_array("Id", k_uint32, 1, ids.size());
@@ -134,6 +138,8 @@ void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame&
     data.add_sequence("Id", 0, 1, count);
   else
     data.add_ids(frame.ids);
+  if (!frame.alphas.empty()) data.add_numbers("Alpha", frame.alphas);
+  if (!frame.temperatures.empty()) data.add_numbers("Temperature", frame.temperatures);
   data.xml += "</PointData>\n";
   data.add_points(frame.positions);
   data.xml += "<Verts>\n";

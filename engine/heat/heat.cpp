@@ -17,6 +17,18 @@ constexpr std::size_t k_cluster_block = 16;
 /// Particles this near to a collider touch it: those of the first layer [h].
 constexpr float k_touch = 1.0f;
 
+/// ρ/ρ0 of every place, in order, is what pairs count by.
+void find_openness(const Sph& sph, const Execution& execution, Heat& heat) {
+  const std::size_t n = sph.grid.order.size();
+  heat.openness.resize(n);
+  parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t group = sph.group.empty() ? 0 : sph.group[i];
+      heat.openness[i] = openness(heat.lattices[group], sph.density[i] / sph.groups[group].rest_density);
+    }
+  });
+}
+
 void sum_flows(const Sph& sph, const HeatedColumns& columns, const Execution& execution, Heat& heat) {
   const std::size_t n = sph.grid.order.size();
   heat.sorted.resize(n);
@@ -32,6 +44,7 @@ void sum_flows(const Sph& sph, const HeatedColumns& columns, const Execution& ex
                      .groups = heat.groups.data(),
                      .position = raw(sph.grid.sorted),
                      .temperature = heat.sorted.data(),
+                     .openness = heat.openness.data(),
                      .inverse_radius = 1.0f / sph.support_radius};
   const HeatLanes& lanes = MALLOW_SELECT(execution.level, heat_lanes);
   parallel_for(
@@ -43,7 +56,7 @@ void sum_flows(const Sph& sph, const HeatedColumns& columns, const Execution& ex
 }
 
 /// What the rows of a block exchange with colliders that they touch, and else with the air.
-void find_surface(const HeatedBody& body, std::size_t begin, std::size_t end,
+void find_surface(const HeatedBody& body, const Sph& sph, std::size_t begin, std::size_t end,
                   std::span<const PlacedCollider> placed, const HeatedColumns& columns, Heat& heat,
                   std::vector<NearWall>& near) {
   for (std::size_t row = begin; row < end; ++row) heat.surface[row] = {0, 0};
@@ -63,13 +76,12 @@ void find_surface(const HeatedBody& body, std::size_t begin, std::size_t end,
     heat.surface[wall.row].flow += g * collider.temperature;
   }
   if (!(body.constants.heat_transfer > 0)) return;
-  const double whole = kappa * h * static_cast<double>(body.lattice.total);
+  const float rest_density = sph.groups[body.group].rest_density;
   for (std::size_t row = begin; row < end; ++row) {
     Heat::Surface& surface = heat.surface[row];
     if (surface.conductance > 0) continue;
-    const double sum = whole > 0 ? static_cast<double>(heat.conductance[row]) / whole : 1;
-    const double area = h * h * static_cast<double>(exposed_share(static_cast<float>(sum))) /
-                        static_cast<double>(body.lattice.exposure);
+    const float exposed = exposed_share(sph.density_by_row[row] / rest_density);
+    const double area = h * h * static_cast<double>(exposed / body.lattice.exposure);
     surface.conductance = body.constants.heat_transfer * area;
     surface.flow = surface.conductance * heat.air_temperature;
   }
@@ -108,7 +120,8 @@ double HeatConstants::temperature(double enthalpy) const {
 }
 
 std::size_t Heat::bytes() const {
-  return sorted.bytes() + flow.bytes() + conductance.bytes() + surface.capacity() * sizeof(Surface);
+  return sorted.bytes() + openness.bytes() + flow.bytes() + conductance.bytes() +
+         surface.capacity() * sizeof(Surface);
 }
 
 double conduct(const Sph& sph, std::span<const PlacedCollider> placed, double time_step,
@@ -120,11 +133,12 @@ double conduct(const Sph& sph, std::span<const PlacedCollider> placed, double ti
   for (const HeatedBody& body : heat.bodies) heat.blocks.add(body.end - body.begin);
   heat.near.resize(heat.blocks.blocks.size());
   heat.fastest.assign(heat.blocks.blocks.size(), 0);
+  find_openness(sph, execution, heat);
   sum_flows(sph, columns, execution, heat);
   parallel_for(execution.threads, heat.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     const HeatedBody& body = heat.bodies[block.range];
     const std::size_t begin = body.begin + block.begin, end = body.begin + block.end;
-    find_surface(body, begin, end, placed, columns, heat, heat.near[number]);
+    find_surface(body, sph, begin, end, placed, columns, heat, heat.near[number]);
     double most = 0;
     for (std::size_t row = begin; row < end; ++row)
       most = std::max(most, static_cast<double>(heat.conductance[row]) + heat.surface[row].conductance);

@@ -30,6 +30,7 @@ struct HeatConstants {
 /// A body that carries heat.
 struct HeatedBody {
   std::size_t begin, end;  ///< rows
+  std::uint32_t group;     ///< of SPH
   float spacing;           ///< h [m]
   double mass;             ///< m [kg]
   float inward;  ///< how far behind what it touches a collider's surface lies: contact_offset − h/2 [m]
@@ -47,13 +48,14 @@ struct HeatedCollider {
 /// double, as what a step adds is often less than a float shows.
 struct Heat {
   std::vector<HeatGroup> groups;  ///< those of SPH
+  std::vector<HeatLattice> lattices;
   std::vector<HeatedBody> bodies;
   std::vector<HeatedCollider> colliders;
   double air_temperature = 0;  ///< [K]
 
   // Scratch.
   RangeBlocks blocks;
-  Column<float> sorted;             ///< T in the order of SPH
+  Column<float> sorted, openness;   ///< T and what pairs count by, in the order of SPH
   Column<float> flow, conductance;  ///< by row [W], [W/K]
   std::vector<std::vector<NearWall>> near;
   struct Surface {

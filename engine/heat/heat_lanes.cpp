@@ -15,7 +15,7 @@ void flows(const HeatInput& in, std::size_t begin, std::size_t end, float* flow,
     const std::uint32_t* const list = in.indices + in.list_begin[cluster];
     const std::uint32_t n = in.list_count[cluster];
     const ClusterVec3 x = load(in.position, first);
-    const Floats own_temperature = load(in.temperature + first);
+    const Floats own_temperature = load(in.temperature + first), own_openness = load(in.openness + first);
     const HeatGroup& one = in.groups[grouped ? in.group[first] : 0];
     Ints own = Ints{} + (grouped ? static_cast<int>(in.group[first]) : 0);
     Floats own_conductivity = all(one.conductivity), own_factor = all(one.factor), own_touch = all(one.touch);
@@ -37,8 +37,9 @@ void flows(const HeatInput& in, std::size_t begin, std::size_t end, float* flow,
       const Floats r2 = dot_from_left(d, d);
       const Floats t = larger(1.0f - r2 * inverse_square, Floats{});
       const Floats both = larger(own_conductivity + group.conductivity, all(1e-30f));
-      // Half of the mean of the factors and twice that of the conductivities: symmetric to the bit.
-      Floats g = (own_conductivity * group.conductivity / both) * (own_factor + group.factor) * (t * t);
+      // The harmonic mean of the conductivities, and the means of the two others: symmetric to the bit.
+      Floats g = (own_conductivity * group.conductivity / both) * (own_factor + group.factor) *
+                 (0.5f * (own_openness + in.openness[j])) * (t * t);
       if (grouped) {
         const Floats touch = 0.5f * (own_touch + group.touch);
         g = where(is_equal(own, number) | is_at_most(r2, touch * touch), g);

@@ -32,7 +32,8 @@ struct HeatInput {
   const HeatGroup* groups;
   ConstVectors position;
   const float* temperature;
-  float inverse_radius;  ///< 1/σ [1/m]
+  const float* openness;  ///< sorted: see HeatLattice::open; pairs count the mean of the two times
+  float inverse_radius;   ///< 1/σ [1/m]
 };
 
 struct HeatLanes {

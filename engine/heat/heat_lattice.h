@@ -9,19 +9,27 @@ namespace mallow {
 /// with the gradient of the poly6 kernel over r, for volumes h³: where T is linear they cancel, where it is
 /// quadratic Σ C w x² = 2 makes them the Laplacian.
 struct HeatLattice {
-  float factor = 0;    ///< C
-  float total = 0;     ///< Σ C w of a particle within
-  float exposure = 0;  ///< sum over the layers below a flat face of what exposed_share() says of them
-  /// Of layers beside a face pairs that reach over them are missing: heat goes through as much more matter
-  /// [h].
+  float factor = 0;  ///< C
+  /// At a surface pairs are missing, and without them less heat goes along it: pairs count the mean of
+  /// 1 + open (ρ0/ρ − 1) of their two times, with which as much goes along a flat face as within.
+  float open = 0;
+  float exposure = 0;  ///< sum over the layers below a flat face of exposed_share()
+  /// Between a flat face and the layers below it heat goes through as much more matter, or less [h].
   float resistance = 0;
 };
 HeatLattice heat_lattice(double support_radius, double spacing);
 
-/// What a particle lacks of the sum that it would have within, less what irregular particles lack anywhere.
-inline float exposed_share(float sum_over_total) {
+/// How much more pairs of a particle count. density: over that at rest.
+inline float openness(const HeatLattice& lattice, float density) {
+  constexpr float k_most = 3;  // in a drop of few particles
+  const float lacks = 1 / density - 1;
+  return 1 + lattice.open * (lacks > 0 ? (lacks < k_most ? lacks : k_most) : 0.0f);
+}
+
+/// What a particle lacks of the density at rest, less what irregular particles lack anywhere.
+inline float exposed_share(float density) {
   constexpr float k_irregular = 0.1f;
-  const float lacks = 1 - k_irregular - sum_over_total;
+  const float lacks = 1 - k_irregular - density;
   return lacks > 0 ? lacks : 0.0f;
 }
 

@@ -156,15 +156,36 @@ struct PlaceSkin {
 
 Skin bind_skin(const SceneBody& body, BodyId id, const Material& material,
                const std::filesystem::path& folder, Simulation& simulation, int threads) {
-  if (material.alpha.highest() >= 1)
+  const bool paints_fluid =
+      std::ranges::any_of(body.paint, [](const ScenePaint& paint) { return paint.alpha.value_or(0) >= 1; });
+  if (material.alpha_by_temperature.value_or(material.alpha).highest() >= 1 || paints_fluid)
     throw ConfigError("skin", "is not allowed where alpha reaches 1, as a fluid has no shape to follow");
   Eigen::Vector3d origin;
   const Mesh mesh = read_mesh(folder / body.skin, origin);
   return {simulation, id, std::visit(PlaceSkin{folder, mesh, origin}, body.source), threads};
 }
 
+/// A column with the values of those that are in the shapes; empty where no shape has one.
+void paint_column(const SceneBody& body, std::optional<float> ScenePaint::*value, float otherwise,
+                  const Body& points, std::vector<float>& column) {
+  for (const ScenePaint& paint : body.paint) {
+    if (!(paint.*value)) continue;
+    if (column.empty()) column.assign(points.positions.size(), otherwise);
+    for (std::size_t i = 0; i < column.size(); ++i)
+      if (nearest(paint, points.positions[i]).distance <= 0) column[i] = *(paint.*value);
+  }
+}
+
 }  // namespace
 }  // namespace scene_file
+
+void paint(const SceneBody& body, const Material& material, Body& points) {
+  using namespace scene_file;
+  paint_column(body, &ScenePaint::alpha, material.alpha.at(0), points, points.alpha);
+  paint_column(body, &ScenePaint::stiffness, 1, points, points.stiffness);
+  paint_column(body, &ScenePaint::paint_temperature, material.temperature.value_or(0), points,
+               points.temperature);
+}
 
 Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int threads) {
   const std::filesystem::path folder = scene_file.parent_path();
@@ -198,7 +219,8 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
     const SceneBody& body = scene.bodies[i];
     const std::string path = element_path("body", i) + '.' + key_of(body.source);
     collect(problems, body.line, path, [&] {
-      const Body points = mallow::sample(body, scene.file, config.threads);
+      Body points = mallow::sample(body, scene.file, config.threads);
+      paint(body, scene.materials[groups.list[groups.of_body[i]].material].material, points);
       particles += points.positions.size();
       if (particles > k_most_particles)
         throw ConfigError({}, "is one body too many: with it there are " + std::to_string(particles) +
@@ -270,12 +292,16 @@ std::vector<std::filesystem::path*> named_files(Scene& scene) {
     if (auto* points = std::get_if<PointsSource>(&body.source)) files.push_back(&points->file);
     if (!body.skin.empty()) files.push_back(&body.skin);
   }
-  for (SceneCollider& collider : scene.colliders)
-    for (ShapeSource& source : collider.sources) {
+  const auto add = [&](std::vector<ShapeSource>& sources) {
+    for (ShapeSource& source : sources) {
       if (auto* hull = std::get_if<HullSource>(&source); hull && !hull->file.empty())
         files.push_back(&hull->file);
       if (auto* mesh = std::get_if<MeshColliderSource>(&source)) files.push_back(&mesh->file);
     }
+  };
+  for (SceneBody& body : scene.bodies)
+    for (ScenePaint& paint : body.paint) add(paint.sources);
+  for (SceneCollider& collider : scene.colliders) add(collider.sources);
   return files;
 }
 

@@ -19,6 +19,7 @@ BoundFields fields(MeshSource& source);
 BoundFields fields(PointsSource& source);
 BoundFields fields(ImplicitSource& source);
 BoundFields fields(SceneCollider& collider);  ///< without its shape
+BoundFields fields(ScenePaint& paint);        ///< without its shape
 BoundFields fields(HullSource& source);
 BoundFields fields(MeshColliderSource& source);
 BoundFields fields(SceneKeyframe& keyframe);
@@ -69,6 +70,9 @@ inline const char* key_of(const SceneShape& shape) {
 }
 /// Of list elements: collider[0].keyframes.
 inline constexpr const char* k_keyframes_key = "keyframes";
+
+/// Of a body: body[0].paint.
+inline constexpr const char* k_paint_key = "paint";
 
 /// Bodies, materials, colliders and pins of a scene, at most of each.
 inline constexpr std::size_t k_most_entries = 10'000;

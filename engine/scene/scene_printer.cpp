@@ -45,7 +45,7 @@ SceneShape in_scenes(const Primitive& primitive, const ShapeSource& source) {
       primitive);
 }
 
-std::string shape_line(const SceneCollider& collider) {
+std::string shape_text(const SceneCollider& collider) {
   std::size_t part = 0;
   const auto print = [&](const Primitive& primitive) {
     SceneShape shape =
@@ -58,7 +58,17 @@ std::string shape_line(const SceneCollider& collider) {
   visit_parts(collider, [&](const auto& shape) {
     text += is_union ? (text.empty() ? " { " : ", { ") + print(shape) + " }" : print(shape);
   });
-  return (is_union ? std::string(k_union_key) + " = [" + text + " ]" : text) + '\n';
+  return is_union ? std::string(k_union_key) + " = [" + text + " ]" : text;
+}
+
+/// "paint = [{ ... }, ...]", or nothing.
+std::string paint_line(SceneBody& body) {
+  std::string text;
+  for (ScenePaint& paint : body.paint) {
+    const std::string values = inline_table(fields(paint));
+    text += (text.empty() ? " { " : ", { ") + shape_text(paint) + ',' + values.substr(1);
+  }
+  return text.empty() ? text : std::string(k_paint_key) + " = [" + text + " ]\n";
 }
 
 /// Of a collider or an emitter; keyframes that it has stand in place of what they set.
@@ -106,9 +116,9 @@ std::string print_scene(const Scene& scene) {
   for (SceneMaterial& material : copy.materials) text += "\n[[material]]\n" + lines_of(fields(material));
   for (SceneBody& body : copy.bodies)
     text += "\n[[body]]\n" + lines_of(fields(body)) + key_of(body.source) + " = " +
-            inline_table(fields(body.source)) + '\n';
+            inline_table(fields(body.source)) + '\n' + paint_line(body);
   for (SceneCollider& collider : copy.colliders)
-    text += "\n[[collider]]\n" + shape_line(collider) + posed_lines(collider);
+    text += "\n[[collider]]\n" + shape_text(collider) + '\n' + posed_lines(collider);
   for (ScenePin& pin : copy.pins)
     text += "\n[[pin]]\nbox = " + inline_table(fields(pin.box)) + '\n' + lines_of(fields(pin));
   for (SceneEmitter& emitter : copy.emitters) text += "\n[[emitter]]\n" + posed_lines(emitter);
@@ -132,6 +142,8 @@ std::string describe_scene_keys() {
     BodySource source = kind.value;
     text += key_lines(std::string("body[].") + kind.key, fields(source));
   }
+  ScenePaint paint;
+  text += key_lines(std::string("body[].") + k_paint_key + "[]", fields(paint));
   text += key_lines("collider[]", fields(collider));
   for (const std::string prefix : {"collider[].", "collider[].union[]."})
     for (const auto& kind : primitive_kinds()) {

@@ -102,9 +102,30 @@ class SceneReader {
   void read_body(const Node& node, const std::string& path) {
     SceneBody& body = scene_.bodies.emplace_back();
     body.line = node.place.line;
-    read_fields(node, path, fields(body), source_keys(), problems_);
+    std::vector<std::string> others = source_keys();
+    others.emplace_back(k_paint_key);
+    read_fields(node, path, fields(body), others, problems_);
+    read_paint(node, path, body);
     read_source(node, path, files_, body.source, problems_);
     check_file(node, path, "skin", files_, body.skin, problems_);
+  }
+
+  void read_paint(const Node& node, const std::string& body_path, SceneBody& body) {
+    const Node* given = find(node, k_paint_key);
+    if (!given) return;
+    const std::string path = join_path(body_path, k_paint_key);
+    const Array* list = given->get_if<Array>();
+    if (!list || list->empty() || list->size() > k_most_entries)
+      return problems_.add(
+          given->place, path,
+          not_allowed(describe(*given), "a list of 1 to " + std::to_string(k_most_entries) + " tables"));
+    for (std::size_t i = 0; i < list->size(); ++i) {
+      ScenePaint& paint = body.paint.emplace_back();
+      const std::string paint_path = element_path(path, i);
+      read_fields((*list)[i], paint_path, fields(paint), shape_keys(), problems_);
+      read_shape((*list)[i], paint_path, files_, paint, problems_);
+      paint.pose = pose_of(paint.translate, paint.rotate);
+    }
   }
 
   void read_collider(const Node& node, const std::string& path) {

@@ -60,6 +60,7 @@ void warm_rows(Simulation::State& s, BodyState& body, std::size_t begin, const B
 
 void prepare_heat(Simulation::State& s) {
   Heat& heat = s.heat;
+  s.sph.keeps_lists = false;
   heat.groups.clear();
   heat.bodies.clear();
   for (BodyState& body : s.bodies) {
@@ -77,7 +78,9 @@ void prepare_heat(Simulation::State& s) {
     heat = {};
     return;
   }
+  s.sph.keeps_lists = s.sph.groups.size() > 1;
   heat.groups.resize(s.sph.groups.size());
+  heat.lattices.assign(s.sph.groups.size(), {});
   for (const BodyState& body : s.bodies) {
     if (!body.is_heated) continue;
     constexpr float k_touching = 1.25f;  // spacings
@@ -86,8 +89,10 @@ void prepare_heat(Simulation::State& s) {
     heat.groups[body.sph_group] = {.conductivity = body.material->settings.conductivity,
                                    .factor = lattice.factor * body.spacing,
                                    .touch = k_touching * body.spacing};
+    heat.lattices[body.sph_group] = lattice;
     heat.bodies.push_back({.begin = body.begin,
                            .end = body.end,
+                           .group = body.sph_group,
                            .spacing = body.spacing,
                            .mass = static_cast<double>(body.mass),
                            .inward = s.contact_offset(body) - 0.5f * body.spacing,

@@ -78,8 +78,9 @@ void compute_density(const Execution& execution, Sph& sph) {
   const SphInput in = input(sph);
   const SphLanes& lanes = MALLOW_SELECT(execution.level, sph_lanes);
   // Lists that are kept for steps to come stay as they are.
-  const NearLists near = sph.kept.any ? NearLists{nullptr, nullptr}
-                                      : NearLists{sph.lists.indices.data(), sph.lists.count.data()};
+  const bool whole = sph.kept.any || sph.keeps_lists;
+  const NearLists near =
+      whole ? NearLists{nullptr, nullptr} : NearLists{sph.lists.indices.data(), sph.lists.count.data()};
   parallel_for(
       execution.threads, sph.grid.clusters(),
       [&](std::size_t begin, std::size_t end) {

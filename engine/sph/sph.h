@@ -26,7 +26,8 @@ struct Sph {
   /// Constants of particles that act on each other as parts of one body: that of one body, or of several
   /// that merge.
   std::vector<SphGroup> groups;
-  bool apart = false;  ///< pairs of two groups add nothing
+  bool apart = false;        ///< pairs of two groups add nothing
+  bool keeps_lists = false;  ///< others want to see all that is within σ, of other groups too
   /// The rows up to `end`, behind those of the body before.
   struct Body {
     std::size_t end;

@@ -281,5 +281,33 @@ TEST_F(skin_of_scene, names_the_body_whose_skin_cannot_be) {
       << missing[0];
 }
 
+TEST_F(build_scene, paints_what_is_in_a_shape_and_what_a_file_of_points_says) {
+  write("points.csv", "x,y,z,alpha,temperature\n20,0,1,0.25,310\n21,0,1,1,320\n");
+  const Scene scene = read(R"([solver]
+support_radius = 2.1
+[[material]]
+name = "jelly"
+alpha = 0.5
+temperature = 300
+[[body]]
+material = "jelly"
+box = { count = [4, 1, 1], spacing = 1.0, jitter = 0.0 }
+paint = [
+  { plane = { normal = [1, 0, 0], offset = 2 }, alpha = 0.75 },
+  { sphere = { radius = 0.6 }, translate = [0.5, 0.5, 0.5], alpha = 1.0, stiffness = 0.25 },
+]
+[[body]]
+material = "jelly"
+points = { file = "points.csv", spacing = 1.0 }
+)");
+  Simulation simulation = build(scene, 1);
+  const std::vector<float> alphas{1, 0.75f, 0.5f, 0.5f, 0.25f, 1};
+  for (ParticleId id = 0; id < 6; ++id) {
+    EXPECT_EQ(simulation.alpha(id), alphas[id]) << id;
+    EXPECT_EQ(simulation.stiffnesses()[simulation.row(id)], id == 0 ? 0.25f : 1.0f) << id;
+    EXPECT_EQ(simulation.temperatures()[simulation.row(id)], id == 4 ? 310 : id == 5 ? 320 : 300) << id;
+  }
+}
+
 }  // namespace build_test
 }  // namespace mallow

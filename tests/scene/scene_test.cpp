@@ -27,6 +27,7 @@ volume_iterations = 3
 volume_tolerance = 0.25
 sleep_speed = 0.5
 sleep_time = 2
+air_temperature = [[0, 290], [5, 280]]
 rotation_iterations = 2
 neighbor_slack = 0.125
 memory_limit = 0.5
@@ -52,6 +53,15 @@ damping_time = 0.01
 deformation_damping = 0.125
 region_radius = 2.25
 region_stride = 3
+temperature = 300
+conductivity = 0.25
+specific_heat = 1600
+latent_heat = 45000
+solidus = 303
+liquidus = 309
+heat_transfer = 12
+alpha_by_temperature = [[303, 0], [309, 1]]
+viscosity_by_temperature = [[303, 2], [309, 0.5]]
 color = [1, 0.5, 0]
 finish = "clay"
 [[body]]
@@ -59,6 +69,8 @@ material = "jelly \"red\""
 group = "g"
 velocity = [1, 2, 3]
 box = { count = [2, 3, 4], spacing = 0.1, corner = [5, 6, 7], jitter = 0.0625 }
+paint = [{ sphere = { radius = 2 }, translate = [5, 6, 7], rotate = [0, 90, 0], alpha = 0.5, stiffness = 0.25, temperature = 310 },
+         { plane = {}, alpha = 0.75 }]
 [[body]]
 material = "jelly \"red\""
 sphere = { center = [20, 0, 0], radius = 2, count = 30, jitter = 0.125 }
@@ -90,6 +102,8 @@ angular_velocity = [0, 0.25, 0]
 surface_velocity = [0, 0.5, 0]
 restitution = 0.25
 friction = 0.125
+temperature = [[0, 330], [20, 280]]
+heat_transfer = 500
 visible = false
 [[collider]]
 sphere = { center = [1, 2, 3], radius = 4, inside = true }
@@ -336,6 +350,7 @@ TEST_F(every_key, that_is_described_is_known_to_the_reader) {
       element = key.starts_with("emitter") ? 1 : 9;
     }
     if (key == "collider[].hull.points") element = 9;
+    if (const auto at = key.find("paint[]"); at != std::string::npos) key.insert(at + 6, "0");
     if (const auto at = key.find("[]"); at != std::string::npos) key.insert(at + 1, std::to_string(element));
     const auto found = problems(k_every_key, {key + "=1979-05-27"});
     ASSERT_FALSE(found.empty()) << key;

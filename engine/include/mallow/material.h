@@ -103,11 +103,11 @@ struct Material {
   /// To the air, of SolverConfig::air_temperature, where a surface touches no heated collider [W/(m² K)], >=
   /// 0.
   float heat_transfer = 0.0f;
-  /// Alpha by temperature, in place of alpha over time: keys of (temperature [K], alpha). Particles of a body
-  /// then differ in it, as with Body::alpha; where it is high they take on where they are as what they rest
-  /// in, so that what has melted sets in its new shape.
+  /// Alpha by temperature, in place of alpha over time: keys of (temperature [K], alpha in [0, 1]). Particles
+  /// of a body then differ in it, as with Body::alpha; where it is high they take on where they are as what
+  /// they rest in, so that what has melted sets in its new shape.
   std::optional<Schedule> alpha_by_temperature = {};
-  /// μ by temperature [Pa s], likewise, in place of viscosity.
+  /// μ by temperature [Pa s], >= 0, likewise, in place of viscosity.
   std::optional<Schedule> viscosity_by_temperature = {};
 };
 

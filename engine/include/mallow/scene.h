@@ -55,20 +55,6 @@ struct ImplicitSource {
 /// Where the points of a body come from.
 using BodySource = std::variant<Lattice, SphereSource, MeshSource, PointsSource, ImplicitSource>;
 
-/// A body of a scene. `material` is the name of one of its materials.
-struct SceneBody {
-  std::string material = {};
-  std::string group = {};  ///< bodies with one name here are one piece; empty: a piece of its own
-  bool merges = false;     ///< Body::merges
-  BodySource source;
-  Vec3 velocity{0, 0, 0};
-  /// A mesh that follows the body and is drawn in place of a surface around its particles, relative to the
-  /// scene; empty: none. It is placed as the body's own mesh or implicit shape is, with the same turn, scale
-  /// and shift, and lies as it is where the body has neither.
-  std::filesystem::path skin = {};
-  int line = 0;  ///< of the scene file; 0 where it did not come from one
-};
-
 /// A convex hull of the corners of a mesh, or of points.
 struct HullSource {
   std::filesystem::path file = {};  ///< relative to the scene; empty: `points` are given
@@ -104,14 +90,37 @@ struct SceneCollider : Collider {
   std::vector<SceneKeyframe> scene_keyframes = {};  ///< what scene files make of `keyframes`, as of the pose
 };
 
+/// What particles of a body have of their own that are in a shape when the scene begins; of several shapes
+/// the last counts. Shapes are those of colliders: where these keep particles out is in them.
+struct ScenePaint : SceneCollider {
+  std::optional<float> alpha = {};              ///< in [0, 1], see Body::alpha
+  std::optional<float> stiffness = {};          ///< >= 0, see Body::stiffness
+  std::optional<float> paint_temperature = {};  ///< [K], see Body::temperature
+};
+
+/// A body of a scene. `material` is the name of one of its materials.
+struct SceneBody {
+  std::string material = {};
+  std::string group = {};  ///< bodies with one name here are one piece; empty: a piece of its own
+  bool merges = false;     ///< Body::merges
+  BodySource source;
+  Vec3 velocity{0, 0, 0};
+  std::vector<ScenePaint> paint = {};
+  /// A mesh that follows the body and is drawn in place of a surface around its particles, relative to the
+  /// scene; empty: none. It is placed as the body's own mesh or implicit shape is, with the same turn, scale
+  /// and shift, and lies as it is where the body has neither.
+  std::filesystem::path skin = {};
+  int line = 0;  ///< of the scene file; 0 where it did not come from one
+};
+
 /// An emitter of a scene. `material` is the name of one of its materials.
 struct SceneEmitter : Emitter {
   std::string material = {};
   /// What scene files make of the pose: read_scene() sets both, print_scene() prints these.
-  Vec3 translate{0, 0, 0};  ///< [m]
-  Vec3 rotate{0, 0, 0};     ///< about x, then y, then z [degrees]
+  Vec3 translate{0, 0, 0};                          ///< [m]
+  Vec3 rotate{0, 0, 0};                             ///< about x, then y, then z [degrees]
   std::vector<SceneKeyframe> scene_keyframes = {};  ///< what scene files make of `keyframes`, as of the pose
-  int line = 0;             ///< of the scene file; 0 where it did not come from one
+  int line = 0;                                     ///< of the scene file; 0 where it did not come from one
 };
 
 /// A sink of a scene: particles that come into the box, or out of it, are removed.
@@ -193,6 +202,8 @@ MALLOW_EXPORT Scene with_quality(const Scene& scene, Quality quality);
 
 /// The points of a body as the scene would add them. Throws ConfigError or IoError.
 MALLOW_EXPORT Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int threads = 0);
+/// Gives points of a body, where the scene begins, what its paint says.
+MALLOW_EXPORT void paint(const SceneBody& body, const Material& material, Body& points);
 /// The simulation of a scene, ready to step. `threads` as in SolverConfig. notes: where given, gets those of
 /// all bodies, each with the body's path in front. Throws ConfigError with all problems found.
 MALLOW_EXPORT Simulation build(const Scene& scene, int threads = 0,
