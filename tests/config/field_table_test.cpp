@@ -147,28 +147,18 @@ TEST(field_table, states_of_version_9_hold_these_settings_in_this_order) {
       names_in_states<SolverConfig>(),
       "time_step time_step_factor support_radius gravity update_period update_interval formulation "
       "acoustic_limit contact contact_offset wall_pressure volume_iterations volume_tolerance sleep_speed "
-<<<<<<< ours
       "sleep_time air_temperature rotation_iterations "
-=======
-      "sleep_time rotation_iterations "
->>>>>>> theirs
       "neighbor_slack "
       "memory_limit");
   EXPECT_EQ(names_in_states<Material>(),
             "alpha update_threshold plastic_yield plastic_creep merge_flow tear_strain pressure_coefficient "
             "viscosity elastic_time_step youngs_modulus particle_mass "
             "rest_density cohesion friction adhesion damping_time deformation_damping region_radius "
-<<<<<<< ours
             "region_stride temperature conductivity specific_heat latent_heat solidus liquidus heat_transfer "
             "alpha_by_temperature viscosity_by_temperature");
   EXPECT_EQ(names_in_states<Collider>(),
             "velocity angular_velocity surface_velocity restitution friction temperature heat_transfer "
             "measure_load");
-=======
-            "region_stride");
-  EXPECT_EQ(names_in_states<Collider>(),
-            "velocity angular_velocity surface_velocity restitution friction measure_load");
->>>>>>> theirs
   EXPECT_EQ(names_in_states<Emitter>(),
             "radius width height spacing velocity speed start stop jitter most_particles");
   EXPECT_EQ(names_in_states<Sphere>(), "center radius inside");
