@@ -43,6 +43,10 @@ struct FieldTable<SolverConfig> {
             "distance from a collider at which a particle touches it", "half the spacing"},
       Field{"wall_pressure", &Config::wall_pressure, k_any, "",
             "colliders count in the density of fluids and press back; false in the paper's scenes"},
+      Field{"volume_iterations", &Config::volume_iterations, between(0, 50), "",
+            "most iterations a step that keep matter from being pressed together; 0: pressure alone does"},
+      Field{"volume_tolerance", &Config::volume_tolerance, between(0, 1), "",
+            "they end at this mean compression; 0: all are taken"},
       Field{
           "sleep_speed", &Config::sleep_speed, k_not_negative, "m/s",
           "what is slower for sleep_time, with all that it touches, sleeps until something wakes it; 0: none",

@@ -193,6 +193,29 @@ void join_motion(const MotionInput& input, MovingBodies& bodies) {
     bodies.touches.resize(bodies.partial.size() * input.colliders.size());
 }
 
+void preview_contact(const Execution& execution, const ParticleStore& store, const MovingBodies& bodies,
+                     VectorColumn& velocity) {
+  const MotionLanes& lanes = MALLOW_SELECT(execution.level, motion_lanes);
+  parallel_for(execution.threads, bodies.blocks, [&](const RangeBlocks::Block& block, std::size_t) {
+    const MotionInput& in = bodies.inputs[block.range];
+    const std::size_t begin = in.begin + block.begin, end = in.begin + block.end;
+    const ForcesInput all = forces(in, store);
+    const BlockBounds bounds = lanes.bounds(all, begin, end, raw(std::as_const(velocity)));
+    resolve_contacts({begin, end, store.position, store.velocity, all.pin, bounds}, in.colliders, in.contact,
+                     velocity, {});
+  });
+}
+
+void remember_predicted(const Execution& execution, const ParticleStore& store, MovingBodies& bodies) {
+  parallel_for(execution.threads, bodies.blocks, [&](const RangeBlocks::Block& block, std::size_t) {
+    const MotionInput& in = bodies.inputs[block.range];
+    for (std::size_t a = 0; a < 3 && in.measure_external; ++a)
+      std::copy(store.next_velocity.axis(a) + in.begin + block.begin,
+                store.next_velocity.axis(a) + in.begin + block.end,
+                bodies.predicted.axis(a) + in.begin + block.begin);
+  });
+}
+
 void move_particles(const MotionPhases& phases, const Execution& execution, ParticleStore& store,
                     MovingBodies& bodies) {
   const std::size_t colliders = bodies.loads.size();

@@ -83,6 +83,12 @@ struct MovingBodies {
 /// One more body, whose v' are there already and have still to be collided and advanced.
 void join_motion(const MotionInput& input, MovingBodies& bodies);
 
+/// v', by row of the store -> what contact with colliders would make of it. Nobody is told.
+void preview_contact(const Execution& execution, const ParticleStore& store, const MovingBodies& bodies,
+                     VectorColumn& velocity);
+/// v' as it is counts as that before contact, where something stands between the two loops that changes it.
+void remember_predicted(const Execution& execution, const ParticleStore& store, MovingBodies& bodies);
+
 /// v' and x' into the store's next columns. Each phase is asked for once, in their order.
 /// [model 4, 5; TK eq. 10, 11, 13]
 void move_particles(const MotionPhases& phases, const Execution& execution, ParticleStore& store,

@@ -72,6 +72,7 @@ void search_sph(const Simulation::State& state, Search& search) {
   search.column(Phase::density, "density", sph.density, sorted);
   search.column(Phase::density, "pressure", sph.pressure, sorted);
   search.column(Phase::density, "volume", sph.volume, sorted);
+  if (!state.sph_ran) return;
   if (sph.viscous) search.column(Phase::accelerations, "sorted velocity", sph.velocity, sorted);
   search.column(Phase::accelerations, "acceleration by SPH", sph.acceleration, same_row);
   if (state.walls())
@@ -94,7 +95,7 @@ void search_goals(const BodyState& body, Search& search) {
 std::optional<Damage> find_damage(const Simulation::State& state, Phase last) {
   if (const std::optional<Damage> found = search_state(state)) return found;
   Search search(last);
-  if (state.sph_ran) search_sph(state, search);
+  if (state.density_ran) search_sph(state, search);
   if (state.force)
     search.column(Phase::time_step, "acceleration by the force callback", state.user_acceleration, same_row);
   for (const BodyState& body : state.bodies)

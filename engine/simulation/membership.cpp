@@ -132,7 +132,7 @@ void remove_rows(Simulation::State& s, BodyState& body, std::span<const std::uin
 void Simulation::State::rows_changed() {
   rows_moved();
   sph.grid.order.resize(0);
-  sph_ran = false;
+  sph_ran = density_ran = false;
   prepared = false;
   held = false;
 }

@@ -341,7 +341,7 @@ void wake_pushed(Simulation::State& state, float time_step) {
 
 }  // namespace
 
-void resolve_touching(Simulation::State& state, float time_step) {
+void touch_bodies(Simulation::State& state, float time_step, bool keeps_sums, VectorColumn& velocities) {
   state.touching.clear();
   for (const BodyState& body : state.bodies)
     state.touching.push_back({.begin = body.begin,
@@ -354,12 +354,16 @@ void resolve_touching(Simulation::State& state, float time_step) {
                               .sleeps = body.island != 0,
                               .shape = body.matches_shape() ? &body.shape : nullptr});
   const ParticleStore& store = state.store;
-  state.contact_pairs.keeps_sums = state.reports_contacts();
+  state.contact_pairs.keeps_sums = keeps_sums;
   resolve_body_contacts(store.position, store.pin.empty() ? nullptr : store.pin.data(), state.touching,
                         {.time_step = time_step,
                          .reach = 2 * state.config.support_radius,
                          .max_push = state.config.support_radius / (10.0f * state.base_step())},
-                        state.execution, state.store.next_velocity, state.contact_pairs);
+                        state.execution, velocities, state.contact_pairs);
+}
+
+void resolve_touching(Simulation::State& state, float time_step) {
+  touch_bodies(state, time_step, state.reports_contacts(), state.store.next_velocity);
   wake_pushed(state, time_step);
 }
 

@@ -46,6 +46,7 @@ void measure_rigid(const Simulation::State& s, BodyState& body) {
 void describe_bodies(Simulation::State& state) {
   Sph& sph = state.sph;
   sph.groups.clear();
+  state.volume.groups.clear();
   sph.bodies.clear();
   sph.viscous = false;
   sph.apart = state.config.contact == BodyContact::constraint;
@@ -68,6 +69,8 @@ void describe_bodies(Simulation::State& state) {
            .contact_share = 1,
            .viscosity = body.viscosity,
            .cohesion = 0});
+      if (state.config.volume_iterations > 0)
+        state.volume.groups.push_back(volume_group(sph.groups.back(), body.spacing, sph.support_radius));
     }
     sph.bodies.push_back({body.end, body.sph_group});
   }

@@ -19,12 +19,15 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
   timer.lap(Phase::reference_update);
 
   s.sph_ran = s.needs_sph();
-  if (s.sph_ran) {
+  s.density_ran = s.sph_ran || s.keeps_volume();
+  if (s.density_ran) {
     report.neighbors_found = find_neighbors(x, s.execution, sph);  // x -> lists within σ
     timer.lap(Phase::neighbors);
     find_walls(s);                      // x, colliders -> share of walls
     compute_density(s.execution, sph);  // lists, x, share -> ρ, p      [TK eq. 3]
     timer.lap(Phase::density);
+  }
+  if (s.sph_ran) {
     compute_accelerations(s.store.velocity, s.execution, sph);  // ρ, p, x, v -> a^SPH   [TK eq. 1, 2, 4]
     press_walls(s);                                             // ρ, a^SPH -> a^wall
     timer.lap(Phase::accelerations);
@@ -45,10 +48,12 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
   timer.lap(Phase::goals);
 
   // a, g − x -> v', contact, v' -> x': in one loop where nothing stands between them. [TK eq. 10 to 13]
-  if (s.bodies_touch() && !s.awake.empty()) {
+  if ((s.keeps_volume() || s.bodies_touch()) && !s.awake.empty()) {
     move_bodies(s, step.time_step, {.predict = true});  // a, g − x -> v'
     timer.lap(Phase::motion);
-    resolve_touching(s, step.time_step);  // x, v' -> v' of what touches
+    if (s.keeps_volume()) correct_volume(s, step.time_step, report);  // ρ, v' -> v' that keep ρ
+    timer.lap(Phase::volume);
+    if (s.bodies_touch()) resolve_touching(s, step.time_step);  // x, v' -> v' of what touches
     timer.lap(Phase::body_contact);
     move_bodies(s, step.time_step, {.collide = true, .advance = true});  // contact with colliders, v' -> x'
   } else {

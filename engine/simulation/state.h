@@ -20,6 +20,7 @@
 #include "shape_matching/shape_matching.h"
 #include "simulation/near_origin.h"
 #include "sph/sph.h"
+#include "sph/volume.h"
 
 namespace mallow {
 
@@ -167,6 +168,7 @@ struct Simulation::State {
   Contacts contacts;
   ForceCallback force;
   Sph sph;
+  Volume volume;
   VectorColumn user_acceleration;  ///< empty without a force callback
 
   /// Positions as the user sees them, of step `far_step`; empty where the origin is 0.
@@ -175,7 +177,8 @@ struct Simulation::State {
 
   bool prepared = false;
   bool held = true;               ///< those that do not move lie where they are in both sets of columns
-  bool sph_ran = false;           ///< in the last step
+  bool density_ran = false;       ///< in the last step
+  bool sph_ran = false;           ///< accelerations of SPH in the last step
   std::vector<BodyState*> awake;  ///< bodies that move in the step under way
   // Scratch.
   RegionScratch region_scratch;
@@ -228,6 +231,11 @@ struct Simulation::State {
   /// Some acceleration of SPH counts: pairs within a body that is not purely elastic, or between bodies where
   /// those are kept apart by pressure.
   bool needs_sph() const;
+  /// Velocities are changed so that densities stay, whatever alpha is.
+  bool keeps_volume() const {
+    return config.volume_iterations > 0 &&
+           std::ranges::any_of(bodies, [](const BodyState& body) { return body.moves(); });
+  }
   /// There are bodies that do not merge, and contact keeps them apart.
   bool bodies_touch() const { return sph.apart && sph.groups.size() > 1; }
   /// What has been slow for long falls asleep.
@@ -293,6 +301,10 @@ ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& re
 /// everything -> next positions and velocities, mean |a_ext|; one loop does what is asked for, each phase
 /// once in a step. [TK eq. 10, 11, 13, model 4, 5] Throws StepError.
 void move_bodies(Simulation::State& state, float time_step, const MotionPhases& phases);
+/// densities, lists, predicted velocities -> those that keep volumes. [model 2, section 2]
+void correct_volume(Simulation::State& state, float time_step, StepReport& report);
+/// velocities, predicted -> what contact between bodies makes of them. keeps_sums: somebody asks what for.
+void touch_bodies(Simulation::State& state, float time_step, bool keeps_sums, VectorColumn& velocities);
 /// positions, predicted velocities -> those of bodies that touch. [model 2, section 4 C]
 void resolve_touching(Simulation::State& state, float time_step);
 /// impulses of the step -> events of contacts that begin, hit and end.

@@ -98,7 +98,7 @@ Fastest find_fastest(Simulation::State& state) {
 /// The longest step that velocities and accelerations allow.
 float longest_time_step(Simulation::State& state, StepReport& report) {
   const float longest = state.longest_step();
-  if (!state.sph_ran && !state.bodies_touch()) return longest;
+  if (!state.density_ran && !state.bodies_touch()) return longest;
   const Fastest fastest = find_fastest(state);
   const double velocity =
       fastest.squared_velocity == -1 ? 0.0 : std::sqrt(static_cast<double>(fastest.squared_velocity));
@@ -128,7 +128,7 @@ MaterialLimits material_limits(const Simulation::State& state, const BodyState& 
 }
 
 double unlimited_step(const Simulation::State& state) {
-  if (!state.needs_sph()) return std::numeric_limits<double>::infinity();
+  if (!state.needs_sph() && !state.keeps_volume()) return std::numeric_limits<double>::infinity();
   std::vector<TimeStepLimits::Pressure> pressures;
   TimeStepLimits bounds = limits(state, pressures);
   bounds.time_step = std::numeric_limits<float>::infinity();

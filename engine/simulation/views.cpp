@@ -51,7 +51,7 @@ const VectorColumn& Simulation::State::seen_positions() {
 const char* name(Phase phase) {
   constexpr std::array<const char*, k_phase_count> k_names{
       "reference_update", "neighbors", "density", "accelerations", "time_step",
-      "region_sums",      "rotations", "goals",   "body_contact",  "motion"};
+      "region_sums",      "rotations", "goals",   "volume",        "body_contact", "motion"};
   return k_names[static_cast<std::size_t>(phase)];
 }
 
@@ -62,6 +62,8 @@ void AdvanceReport::add(const StepReport& step) {
   max_velocity = std::max(max_velocity, step.max_velocity);
   if (step.limited) ++limited_steps;
   updated_references += step.updated_references;
+  volume_iterations += step.volume_iterations;
+  largest_compression = std::max(largest_compression, step.largest_compression);
   for (std::size_t i = 0; i < k_phase_count; ++i) seconds[i] += step.seconds[i];
 }
 
@@ -105,7 +107,7 @@ VectorView Simulation::velocities() const {
   return view(state_->store.velocity);
 }
 std::span<const float> Simulation::densities() const {
-  return state_->sph_ran ? state_->sph.density_by_row.span() : std::span<const float>{};
+  return state_->density_ran ? state_->sph.density_by_row.span() : std::span<const float>{};
 }
 
 Simulation::Rows Simulation::rows(BodyId id) const {
@@ -214,7 +216,7 @@ SimulationInfo Simulation::info() {
   info.instruction_level = s.execution.level;
   info.bytes = s.store.bytes() + s.sph.bytes() + s.fluid_order.bytes() + s.user_acceleration.bytes() +
                s.far_position.bytes() + s.region_scratch.bytes() + s.led_position.bytes() +
-               s.contact_pairs.bytes();
+               s.contact_pairs.bytes() + s.volume.bytes();
   info.time_step = s.base_step();
   info.time_step_source = s.time_step_source;
   info.longest_step = s.longest_step();

@@ -112,7 +112,8 @@ class Warnings {
         add(body, field, ' ', radius, " is ", radius / body.spacing, " spacings: about ", std::round(each),
             " neighbours each, where 30 to 80 are usual; so few hold no body together, 2.1 spacings do");
     };
-    if (state_.needs_sph()) look("support_radius", state_.config.support_radius, state_.store.size());
+    if (state_.needs_sph() || state_.keeps_volume())
+      look("support_radius", state_.config.support_radius, state_.store.size());
     if (body.keeps_reference()) look("the radius of its regions,", body.shape.region_radius, body.size());
   }
 

@@ -9,6 +9,19 @@ namespace {
 constexpr double k_pi = std::numbers::pi;
 constexpr double k_dense = 64;  // spacings
 
+/// Σ of term(q²) over the lattice points within a support radius.
+template <class Term>
+double lattice_sum(double support_radius, double spacing, const Term& term) {
+  const int reach = static_cast<int>(std::ceil(support_radius / spacing));
+  const double square = support_radius * support_radius;
+  double sum = 0;
+  for (int z = -reach; z <= reach; ++z)
+    for (int y = -reach; y <= reach; ++y)
+      for (int x = -reach; x <= reach; ++x)
+        if (const double q2 = spacing * spacing * (x * x + y * y + z * z) / square; q2 < 1) sum += term(q2);
+  return sum;
+}
+
 }  // namespace
 
 KernelFactors kernel_factors(double support_radius) {
@@ -34,22 +47,27 @@ float half_space_gradient(float q) {
   return t * t * t * t * (7.5f - 6 * t);
 }
 
+float half_space_slope(float q) {
+  const float t = 1 - q * q;
+  return 315.0f / 256 * t * t * t * t;
+}
+
 double lattice_density(double support_radius, double spacing) {
   const double s = support_radius;
   // Farther, the sum is the integral of W, 1, to single precision, and would take minutes for thousands of
   // spacings.
   if (s > k_dense * spacing) return 1 / (spacing * spacing * spacing);
-  const int reach = static_cast<int>(std::ceil(s / spacing));
-  double sum = 0;
-  for (int z = -reach; z <= reach; ++z) {
-    for (int y = -reach; y <= reach; ++y) {
-      for (int x = -reach; x <= reach; ++x) {
-        const double q2 = spacing * spacing * (x * x + y * y + z * z) / (s * s);
-        if (q2 < 1) sum += (1 - q2) * (1 - q2) * (1 - q2);
-      }
-    }
-  }
+  const double sum =
+      lattice_sum(s, spacing, [](double q2) { return (1 - q2) * (1 - q2) * (1 - q2); });
   return 315.0 / (64.0 * k_pi * s * s * s) * sum;
+}
+
+double lattice_gradient_squares(double support_radius, double spacing) {
+  const double square = support_radius * support_radius;
+  // The integral, 4 π ∫ (1 − q²)⁴ q⁴ dq.
+  if (support_radius > k_dense * spacing)
+    return square * 512 * k_pi / 15015 * std::pow(support_radius / spacing, 3);
+  return square * lattice_sum(support_radius, spacing, [](double q2) { return q2 * std::pow(1 - q2, 4); });
 }
 
 }  // namespace mallow

@@ -17,9 +17,13 @@ KernelFactors kernel_factors(double support_radius);
 /// σ |∇| of the spiky kernel's, which is σ times the integral of W over the plane. [Koschier & Bender 2017]
 float half_space_share(float q);
 float half_space_gradient(float q);
+/// σ |∇| of poly6's: minus the slope of half_space_share(). [Koschier & Bender 2017]
+float half_space_slope(float q);
 
 /// Σ W over an infinite cubic lattice of the given spacing, a point at the origin included [1/m³]: a full
 /// interior of unit masses has this density, which is what rest density follows from.
 double lattice_density(double support_radius, double spacing);
+/// Σ |∇W|² of poly6 there, in units of KernelFactors::poly6_gradient² [m²].
+double lattice_gradient_squares(double support_radius, double spacing);
 
 }  // namespace mallow

@@ -7,9 +7,6 @@
 namespace mallow {
 namespace {
 
-/// Clusters that one thread handles at a time.
-constexpr std::size_t k_cluster_block = 16;
-
 SphInput input(const Sph& sph) {
   return {
       .cluster_start = sph.grid.cluster_start.data(),
@@ -90,20 +87,23 @@ void compute_density(const Execution& execution, Sph& sph) {
       k_cluster_block);
 }
 
-void compute_accelerations(const VectorColumn& velocities, const Execution& execution, Sph& sph) {
+void gather_sorted(const VectorColumn& by_row, const Sph& sph, const Execution& execution,
+                   VectorColumn& sorted) {
   const std::size_t n = sph.grid.order.size();
+  sorted.resize(n);
+  parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const float* from = by_row.axis(a);
+      float* to = sorted.axis(a);
+      for (std::size_t i = begin; i < end; ++i) to[i] = from[sph.grid.order[i]];
+    }
+  });
+}
+
+void compute_accelerations(const VectorColumn& velocities, const Execution& execution, Sph& sph) {
   sph.acceleration.resize(sph.store_rows);
   if (sph.groups.size() > 1 && !sph.apart) sph.cross_group.resize(sph.store_rows);
-  if (sph.viscous) {
-    sph.velocity.resize(n);
-    parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        const float* from = velocities.axis(a);
-        float* to = sph.velocity.axis(a);
-        for (std::size_t i = begin; i < end; ++i) to[i] = from[sph.grid.order[i]];
-      }
-    });
-  }
+  if (sph.viscous) gather_sorted(velocities, sph, execution, sph.velocity);
   const SphInput in = input(sph);
   const SphLanes& lanes = MALLOW_SELECT(execution.level, sph_lanes);
   const auto accelerate = sph.formulation == Formulation::printed ? lanes.printed : lanes.conservative;

@@ -57,10 +57,16 @@ struct Sph {
   std::size_t bytes() const;
 };
 
+/// Clusters that one thread handles at a time.
+inline constexpr std::size_t k_cluster_block = 16;
+
 /// Cell grid and, per cluster of it, the list of all particles within σ. With slack, lists that still hold
 /// all of these are kept, and only their positions are brought up to date. Tells whether lists were found
 /// anew.
 bool find_neighbors(const VectorColumn& positions, const Execution& execution, Sph& sph);
+/// A column by row of the store -> the same in sorted order.
+void gather_sorted(const VectorColumn& by_row, const Sph& sph, const Execution& execution,
+                   VectorColumn& sorted);
 /// Density and pressure from the lists, which keep only who is nearer than σ unless they are kept for later
 /// steps. [TK eq. 3, model 1]
 void compute_density(const Execution& execution, Sph& sph);

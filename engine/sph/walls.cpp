@@ -45,7 +45,8 @@ class WalledBlock {
     }
     const float left = 1 - covered;
     walls_.push_back(
-        {near.row, near.collider, last, left * share, left * half_space_gradient(q) / radius_, near.normal});
+        {near.row, near.collider, last, left * share, left * half_space_gradient(q) / radius_,
+         left * half_space_slope(q) / radius_, near.normal});
     last = static_cast<std::uint32_t>(walls_.size());
   }
 
@@ -61,6 +62,7 @@ class WalledBlock {
     for (std::uint32_t w = last; w != 0; w = walls_[w - 1].before) {
       walls_[w - 1].share *= 1 - part;
       walls_[w - 1].gradient *= 1 - part;
+      walls_[w - 1].slope *= 1 - part;
     }
   }
 
@@ -123,6 +125,11 @@ void find_walls(const VectorColumn& position, const VectorColumn& velocity,
   });
 }
 
+Vec3 pushed_along(const Walls::Wall& wall, float share, const Vec3& by_neighbors) {
+  const float ratio = wall.share / std::max(1 - share, k_least_seen);
+  return ratio * (by_neighbors - by_neighbors.dot(wall.normal) * wall.normal);
+}
+
 void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders, const Execution& execution,
                  Walls& walls) {
   const std::size_t count = in.all_loads || any_measures_load(colliders) ? colliders.size() : 0;
@@ -135,10 +142,10 @@ void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders,
       const std::uint32_t row = wall.row;
       const float rho = in.density[row];
       const float excess = std::max(rho - body.group->rest_density, 0.0f);
-      const float across = body.group->pressure_coefficient * excess / rho * wall.gradient;
-      const float along = wall.share / std::max(1 - walls.share[row], k_least_seen);
-      const Vec3 a = in.sph_acceleration.get(row), &n = wall.normal;
-      const Vec3 push = body.alpha * (across * n + along * (a - a.dot(n) * n));
+      const float stiffness = body.group->pressure_coefficient * body.group->repulsion;
+      const float across = stiffness * excess / rho * wall.gradient;
+      const Vec3 along = pushed_along(wall, walls.share[row], in.sph_acceleration.get(row));
+      const Vec3 push = body.alpha * (across * wall.normal + along);
       walls.acceleration.set(row, walls.acceleration.get(row) + push);
       const bool loads = in.all_loads || colliders[wall.collider].measures_load;
       if (!loads || (in.pin && in.pin[row] != 0)) continue;

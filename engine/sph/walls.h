@@ -44,6 +44,7 @@ struct Walls {
     std::uint32_t row, collider;
     std::uint32_t before;   ///< the one before it of this row, counted from 1; 0: none
     float share, gradient;  ///< S and B, what other walls cover left out
+    float slope;            ///< −dS/dd of it [1/m]
     Vec3 normal;            ///< n
   };
   std::vector<WalledBody> bodies;
@@ -69,6 +70,9 @@ struct WallInput {
   const std::uint16_t* pin;              ///< rows whose pin is not 0 give no load; null: all do
   bool all_loads;                        ///< of colliders that do not measure theirs too
 };
+/// Beside a push across of a wall, what its matter would add along it to what a particle gets from its
+/// neighbours, of which it sees `share`, the S of all walls, too little.
+Vec3 pushed_along(const Walls::Wall& wall, float share, const Vec3& by_neighbors);
 /// ρ, a^SPH -> a^wall and loads. A negative pressure counts as none: walls hold nothing back.
 void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders, const Execution& execution,
                  Walls& walls);

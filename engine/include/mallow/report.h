@@ -26,10 +26,11 @@ enum class Phase {
                      ///< particles
   rotations,         ///< polar decompositions
   goals,             ///< goal positions, second of the sums over regions [TK eq. 7]
+  volume,            ///< what keeps densities at those at rest [model 2, section 2]
   body_contact,      ///< what keeps bodies out of each other [model 2, section 4 C]
   motion,            ///< blend, contact with colliders, positions [TK eq. 10, 11]
 };
-inline constexpr std::size_t k_phase_count = 10;  ///< values of Phase
+inline constexpr std::size_t k_phase_count = 11;  ///< values of Phase
 /// "region_sums" and the like.
 MALLOW_EXPORT const char* name(Phase phase);
 
@@ -44,6 +45,12 @@ struct StepReport {
   bool neighbors_found = false;  ///< neighbour lists were found anew, not kept (SolverConfig::neighbor_slack)
   int updated_references = 0;    ///< bodies whose reference shape was updated at the start of this step
   std::size_t awake_bodies = 0;  ///< that moved in it
+  /// Of the volume constraint, SolverConfig::volume_iterations: those taken, and the compressions that the
+  /// last look found, s = max(0, ρ/ρ0 − 1) at the end of the step as far as velocities say it: with a
+  /// tolerance those that are left, without one those before the last iteration.
+  int volume_iterations = 0;
+  double mean_compression = 0;     ///< over all particles that moved
+  double largest_compression = 0;  ///< of one
   PhaseTimes seconds{};
 };
 
@@ -92,6 +99,8 @@ struct AdvanceReport {
   double max_velocity = 0;              ///< largest V of eq. 12 [m/s]
   std::int64_t limited_steps = 0;       ///< StepReport::limited
   std::int64_t updated_references = 0;  ///< updates of reference shapes, summed over bodies
+  std::int64_t volume_iterations = 0;   ///< summed over steps
+  double largest_compression = 0;       ///< StepReport::largest_compression, the largest
   PhaseTimes seconds{};
 
   /// Counts one more step.
