@@ -73,14 +73,10 @@ double full_neighbors(float radius, float spacing) {
          std::pow(static_cast<double>(radius) / static_cast<double>(spacing), 3);
 }
 
-double cohesive_coefficient(float support_radius, float time_step) {
-  const double speed = static_cast<double>(support_radius) / static_cast<double>(time_step);
-  return k_cohesive * speed * speed;
-}
-
 float cohesive_share(float support_radius, float pressure_coefficient, float time_step) {
-  return static_cast<float>(std::min(
-      1.0, cohesive_coefficient(support_radius, time_step) / static_cast<double>(pressure_coefficient)));
+  const double speed = static_cast<double>(support_radius) / static_cast<double>(time_step);
+  return static_cast<float>(
+      std::min(1.0, k_cohesive * speed * speed / static_cast<double>(pressure_coefficient)));
 }
 
 float contact_share(float alpha) {

@@ -109,7 +109,6 @@ void resolve_settings(Simulation::State& state) {
 
 float pressure_coefficient(const Simulation::State& state, const MaterialState& material) {
   if (material.settings.pressure_coefficient) return *material.settings.pressure_coefficient;
-  if (state.config.volume_iterations > 0) return 0;
   const float time_step = pressed_step(state);
   return default_pressure_coefficient(state.config.support_radius, material.alpha,
                                       state.stiffness(material) * time_step * time_step, time_step);
@@ -120,17 +119,10 @@ void resolve_pressures(Simulation::State& state) {
     const MaterialState& material = *body.material;
     SphGroup& sums = state.sph.groups[body.sph_group];
     sums.pressure_coefficient = pressure_coefficient(state, material);
-    sums.contact_share = sums.repulsion = 1;
+    sums.contact_share = 1;
     sums.cohesion = material.settings.cohesion;
     if (material.settings.pressure_coefficient) continue;
     sums.contact_share = contact_share(material.alpha);
-    if (state.config.volume_iterations > 0) {
-      // What keeps it together is not the constraint, which only presses.
-      sums.pressure_coefficient =
-          static_cast<float>(cohesive_coefficient(state.config.support_radius, pressed_step(state)));
-      sums.repulsion = 0;
-      continue;
-    }
     sums.cohesion *=
         cohesive_share(state.config.support_radius, sums.pressure_coefficient, pressed_step(state));
   }

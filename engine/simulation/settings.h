@@ -18,8 +18,6 @@ struct MaterialState;
 float largest_norm(const VectorColumn& vectors);
 /// Share of k that acts between bodies where k follows alpha: what makes it that of alpha 1.
 float contact_share(float alpha);
-/// k of negative pressures at most [m²/s²].
-double cohesive_coefficient(float support_radius, float time_step);
 /// Share of a default k that negative pressures have before cohesion takes its own.
 float cohesive_share(float support_radius, float pressure_coefficient, float time_step);
 
@@ -29,7 +27,7 @@ float cohesive_share(float support_radius, float pressure_coefficient, float tim
 void resolve_settings(Simulation::State& state);
 /// α, settings -> k of every body in the sums of SPH.
 void resolve_pressures(Simulation::State& state);
-/// k in force; none where it is left out and volumes are kept by constraint.
+/// k in force.
 float pressure_coefficient(const Simulation::State& state, const MaterialState& material);
 
 /// Time between checks of the reference shapes, where no step is shortened [s].

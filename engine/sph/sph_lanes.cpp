@@ -71,7 +71,7 @@ void density(const SphInput& in, std::size_t begin, std::size_t end, const NearL
       rho[i] = own.rest_density * (in.density_factor * density);
       if (in.wall_share) rho[i] += own.rest_density * in.wall_share[in.row_of[i]];
       const float p = own.pressure_coefficient * (rho[i] - own.rest_density);
-      pressure[i] = p * (p < 0 ? own.cohesion : own.repulsion);
+      pressure[i] = p < 0 ? p * own.cohesion : p;
       volume[i] = own.mass / rho[i];
       rho_by_row[in.row_of[i]] = rho[i];
     }

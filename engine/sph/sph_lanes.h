@@ -14,7 +14,6 @@ struct SphGroup {
   float contact_share;         ///< share of the pressure that acts between groups
   float viscosity;             ///< μ [Pa s]
   float cohesion;              ///< share of negative pressure
-  float repulsion = 1;         ///< share of positive pressure: 0 where the volume constraint is in its place
 };
 
 /// Sums over all particles within σ. All columns are in sorted order unless they say row. The particles of a
@@ -55,8 +54,7 @@ struct NearLists {
 
 /// [begin, end): clusters.
 struct SphLanes {
-  /// ρ_i = ρ0_i (Σ_j (m_j/ρ0_j) W_ij + wall_share), p_i = k (ρ_i − ρ0), negative ones times cohesion, others
-  /// times repulsion.
+  /// ρ_i = ρ0_i (Σ_j (m_j/ρ0_j) W_ij + wall_share), p_i = k (ρ_i − ρ0), negative ones times cohesion.
   /// Writes density, pressure and volume, and the density also by row.
   void (*density)(const SphInput&, std::size_t begin, std::size_t end, const NearLists& near, float* density,
                   float* pressure, float* volume, float* density_by_row) noexcept;

@@ -32,6 +32,7 @@ VolumeInput input(const Sph& sph, const Volume& volume, float time_step) {
       .velocity = raw(volume.velocity),
       .wall_gradient = walls ? raw(volume.wall_gradient) : ConstVectors{},
       .wall_rate = walls ? volume.wall_rate.data() : nullptr,
+      .wall_share = walls ? sph.walls.share.data() : nullptr,
       .inverse_radius = 1.0f / sph.support_radius,
       .time_step = time_step,
   };

@@ -97,7 +97,12 @@ float response_of(const VolumeInput& in, const VolumeGroup& own, const Sums& sum
     g[1] += in.wall_gradient.y[row];
     g[2] += in.wall_gradient.z[row];
   }
-  const float others = Kind::grouped ? sums.square[l] : scale * scale * own.inverse_mass * sums.square[l];
+  float others = Kind::grouped ? sums.square[l] : scale * scale * own.inverse_mass * sums.square[l];
+  // What is behind a wall answers as those before it do: without, a fluid between walls never came to rest.
+  if (in.wall_share) {
+    const float open = 1 - in.wall_share[row];
+    others /= open > 0.5f ? open : 0.5f;
+  }
   const float response = squared_length(g[0], g[1], g[2]) * own.inverse_mass + others;
   return response > own.least_response ? response : own.least_response;
 }

@@ -22,7 +22,7 @@ struct VolumeGroup {
 /// D_i    | response      | 1/(m² kg)  | by how much a push changes the own rate of compression
 /// s_i    |               | 1          | compression at the end of the step
 /// λ_i    | multiplier    | m² kg/s    |
-/// ∇S, dS/dt | wall_gradient, wall_rate | 1/m, 1/s | of what walls hold of its kernel, by row
+/// S, ∇S, dS/dt | wall_share, wall_gradient, wall_rate | 1, 1/m, 1/s | what walls hold of its kernel, by row
 struct VolumeInput {
   const std::uint32_t* cluster_start;  ///< first particle of each cluster
   const std::uint32_t* list_begin;     ///< per cluster
@@ -38,6 +38,7 @@ struct VolumeInput {
   ConstVectors velocity;
   ConstVectors wall_gradient;  ///< null: no wall is near any
   const float* wall_rate;
+  const float* wall_share;  ///< S
   float inverse_radius;  ///< 1/σ
   float time_step;       ///< Δt [s]
 };
@@ -53,8 +54,8 @@ struct CompressionSum {
 /// section 2]:
 struct VolumeLanes {
   /// s_i = max(0, ρ_i/ρ0 − 1 + Δt (Σ_j ψ_j (w_i − w_j)·∇W_ij + dS/dt)), λ_i = s_i/(2 Δt D_i), 0 where it is
-  /// pinned. Where `first`, writes also D_i = |Σ_j ψ_j ∇W_ij + ∇S|²/m_i + Σ_j ψ_j² |∇W_ij|²/m_j over j that are
-  /// not pinned; else reads it.
+  /// pinned. Where `first`, writes also D_i = |Σ_j ψ_j ∇W_ij + ∇S|²/m_i + Σ_j ψ_j² |∇W_ij|²/((1 − S) m_j) over j
+  /// that are not pinned, with S at most ½; else reads it.
   CompressionSum (*compressions)(const VolumeInput&, std::size_t begin, std::size_t end, bool first,
                                  float* response, float* multiplier) noexcept;
   /// v_i −= (1/m_i) Σ_j (λ_i ψ_j + λ_j ψ_i) ∇W_ij where i is not pinned, by row. changes: the same, by row;

@@ -142,8 +142,7 @@ void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders,
       const std::uint32_t row = wall.row;
       const float rho = in.density[row];
       const float excess = std::max(rho - body.group->rest_density, 0.0f);
-      const float stiffness = body.group->pressure_coefficient * body.group->repulsion;
-      const float across = stiffness * excess / rho * wall.gradient;
+      const float across = body.group->pressure_coefficient * excess / rho * wall.gradient;
       const Vec3 along = pushed_along(wall, walls.share[row], in.sph_acceleration.get(row));
       const Vec3 push = body.alpha * (across * wall.normal + along);
       walls.acceleration.set(row, walls.acceleration.get(row) + push);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "oracle/kernels.h"
 #include "oracle/signed_distance.h"
 
 namespace mallow::oracle {
@@ -15,18 +16,20 @@ namespace {
 
 constexpr double k_pi = std::numbers::pi;
 
-// [TK eq. 3]
+}  // namespace
+
 double poly6(double r, double sigma) {
   if (r > sigma) return 0;
   return 315 / (64 * k_pi * std::pow(sigma, 9)) * std::pow(sigma * sigma - r * r, 3);
 }
 
-/// ∇ with respect to x_i, of d = x_i − x_j.
 Vec poly6_gradient(const Vec& d, double sigma) {
   const double r = d.norm();
   if (r > sigma) return Vec::Zero();
   return -6 * 315 / (64 * k_pi * std::pow(sigma, 9)) * std::pow(sigma * sigma - r * r, 2) * d;
 }
+
+namespace {
 
 double poly6_laplacian(double r, double sigma) {
   if (r > sigma) return 0;
@@ -297,9 +300,11 @@ void Oracle::find_walls(Particle& p) const {
       for (Particle::Wall& wall : p.walls) {
         wall.share *= 1 - across * share - (farther ? 0 : alike);
         wall.gradient *= 1 - across * share - (farther ? 0 : alike);
+        wall.left *= 1 - across * share - (farther ? 0 : alike);
       }
       const double left = 1 - across * p.wall_share - (farther ? alike : 0);
-      p.walls.push_back({left * share, left * half_space_gradient(d, sigma), n});
+      p.walls.push_back({left * share, left * half_space_gradient(d, sigma), n, d, left,
+                         obstacle.collider.velocity.cast<double>()});
       p.wall_share += share - across * share * p.wall_share - alike * std::min(share, p.wall_share);
     }
   }
@@ -374,7 +379,7 @@ void Oracle::sum_accelerations() {
 
 // Section 3.
 bool Oracle::sph_acts() const {
-  return groups_.size() > 1 || groups_.front().alpha > 0;
+  return groups_.size() > 1 || groups_.front().alpha > 0 || config_.volume_iterations > 0;
 }
 
 double Oracle::max_velocity() const {
@@ -481,19 +486,25 @@ void Oracle::touch(const Obstacle& obstacle, const Particle& particle, const Vec
 void Oracle::move(double dt) {
   // The pull's: from the middle of the last step to the middle of this one.
   const double pull_time = steps_ > 0 ? (time_ - last_start_ + dt) / 2 : dt;
+  std::vector<Vec> before;
   for (Particle& p : particles_) {
     const Group& group = groups_[p.group];
+    before.push_back(p.v);
     p.contact = Vec::Zero();
     if (p.pinned) {
       p.v = p.pin_velocity;
-    } else {
-      const Vec before = p.v;
-      p.v += dt * p.external + group.alpha * dt * p.sph;
-      if (!is_always_fluid(group)) p.v += pull_time * stiffness(group) * (p.goal - p.x);
-      const Vec blended = p.v;
-      for (const Obstacle& obstacle : obstacles_) touch(obstacle, p, before, dt, p.v);
-      p.contact = (p.v - blended) / dt;
+      continue;
     }
+    p.v += dt * p.external + group.alpha * dt * p.sph;
+    if (!is_always_fluid(group)) p.v += pull_time * stiffness(group) * (p.goal - p.x);
+  }
+  keep_volume(dt, before);
+  for (std::size_t id = 0; id < particles_.size(); ++id) {
+    Particle& p = particles_[id];
+    const Vec free = p.v;
+    for (const Obstacle& obstacle : obstacles_)
+      if (!p.pinned) touch(obstacle, p, before[id], dt, p.v);
+    p.contact = (p.v - free) / dt;
     p.x += dt * p.v;
   }
 }

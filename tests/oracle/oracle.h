@@ -34,6 +34,9 @@ struct Particle {
   struct Wall {
     double share, gradient;  ///< S, and B [1/m], what others cover left out
     Vec normal;
+    double distance;  ///< [m]
+    double left;      ///< the share of it that others do not cover
+    Vec velocity;     ///< [m/s]
   };
   std::vector<Wall> walls = {};
   double wall_share = 0;  ///< of the kernel's volume, of all walls
@@ -121,6 +124,7 @@ class Oracle {
   double time_step(double max_velocity) const;
   void match_shapes();
   void touch(const Obstacle& obstacle, const Particle& particle, const Vec& before, double dt, Vec& v) const;
+  void keep_volume(double dt, const std::vector<Vec>& before);
   void move(double dt);
 
   SolverConfig config_;

@@ -59,6 +59,11 @@ SolverConfig turned(SolverConfig solver, float time_step_factor) {
   solver.time_step_factor = time_step_factor;
   return solver;
 }
+/// Nothing is pressed together.
+SolverConfig full(SolverConfig solver, int iterations) {
+  solver.volume_iterations = iterations;
+  return solver;
+}
 /// Weightless: seconds follow from the fastest body.
 SolverConfig adrift() {
   return {.support_radius = 2.2f, .gravity = {0, 0, 0}};
@@ -178,12 +183,55 @@ std::vector<Case> cases_with_defaults() {
   };
 }
 
+/// Volume iterations, beside pressure or without. Blows are hard, so that they matter.
+std::vector<Case> cases_that_keep_volume() {
+  const auto stuff_of = [](AlphaSchedule alpha) {
+    return Material{
+        .alpha = std::move(alpha), .update_threshold = 1.0f, .pressure_coefficient = 0.0f, .viscosity = 0.5f};
+  };
+  const auto one = [&](AlphaSchedule alpha) {
+    return Blob{stuff_of(std::move(alpha)), {0, 0, 4.2f}, {0, 0, -3}};
+  };
+  const Material hung{.alpha = 0.3f, .update_threshold = 1e6f, .viscosity = 0.5f, .cohesion = 1.0f};
+  const Material light{.alpha = 0.2f, .update_threshold = 1.0f, .viscosity = 0.4f, .rest_density = 0.4f};
+  Material heavy = stuff_of(0.9f);
+  heavy.pressure_coefficient = {};
+  heavy.particle_mass = 2.0f;
+  return {
+      {.name = "full_elastic", .blobs = {one(0.0f)}, .colliders = {k_slope}, .solver = full(units(), 1), .updates = 1},
+      {.name = "full_jelly", .blobs = {one(0.3f)}, .colliders = {k_slope}, .solver = full(units(), 2), .updates = 1},
+      {.name = "full_paste", .blobs = {one(0.7f)}, .colliders = {k_ball}, .solver = full(units(2.9f), 3), .updates = 1},
+      {.name = "full_fluid", .blobs = {one(1.0f)}, .colliders = {k_slope}, .solver = full(units(), 2)},
+      {.name = "full_walled_fluid_in_tank",
+       .blobs = {{stuff_of(1.0f), {0, 0, 3.6f}, {-0.8f, 0.3f, -2.5f}}},
+       .colliders = {k_tank},
+       .solver = full(walled(), 2)},
+      {.name = "full_walled_moving_slope",
+       .blobs = {one(0.7f)},
+       .colliders = {{.shape = k_tilted, .velocity = {0.5f, 0, 0.6f}, .friction = 0.5f}},
+       .solver = full(walled(), 1),
+       .updates = 1},
+      {.name = "full_pinned_and_pushed",
+       .blobs = {{hung, {0, 0, 6}, {0, 0, 0}, {4, 4, 10}}},
+       .colliders = {{.shape = Plane{{0.1f, 0.1f, 1}, 0.6f}, .velocity = {0, 0, 0.9f}, .friction = 0.3f}},
+       .solver = full(units(), 2),
+       .pins = {{{{-9, -9, 5.5f}, {9, 9, 99}}}}},
+      {.name = "full_unlike_pair",
+       .blobs = {{heavy, {0, 0, 3.4f}, {0, 0, -0.4f}, {5, 5, 5}},
+                 {light, {0.2f, 0.3f, 8.2f}, {0, 0, -3}, {6, 5, 5}, 0.8f}},
+       .colliders = {k_slope},
+       .solver = full(units(), 2),
+       .updates = 1},
+  };
+}
+
 }  // namespace
 
 const std::vector<Case>& oracle_cases() {
   static const std::vector<Case> cases = [] {
     std::vector<Case> all = paper_cases();
     for (Case& one : cases_with_defaults()) all.push_back(std::move(one));
+    for (Case& one : cases_that_keep_volume()) all.push_back(std::move(one));
     return all;
   }();
   return cases;
@@ -227,7 +275,9 @@ std::vector<Case> ablations(const Case& whole) {
   const bool sph_acts = whole.blobs.front().material.alpha.keys().back().value > 0 ||
                         std::any_of(whole.blobs.begin() + 1, whole.blobs.end(),
                                     [](const Blob& b) { return !b.joins_the_one_before; });
-  if (sph_acts)
+  const bool full = whole.solver.volume_iterations > 0;
+  if (full) without("volume iterations", [](Case& less) { less.solver.volume_iterations = 0; });
+  if (sph_acts && whole.blobs.front().material.pressure_coefficient.value_or(1) > 0)
     without("pressure", [](Case& less) {
       for (Blob& b : less.blobs) b.material.pressure_coefficient = 0;
     });

@@ -57,11 +57,12 @@ struct SolverConfig {
   /// in it sinks too deep. A surface is taken to be flat over a support radius. Not with
   /// Formulation::printed. [Koschier & Bender 2017]
   bool wall_pressure = true;
-  /// Iterations a step that keep matter from being pressed together, at most, in [0, 50]; 0: none, pressure
-  /// alone does it. Velocities are changed so that no density rises above that at rest, in elastic bodies and
-  /// fluids alike. Where it is on, a pressure_coefficient that is left out means none. 1 keeps the worst
-  /// density of a hard impact near 1.25 times that at rest and what rests within a twentieth of it; 3 are a
-  /// little better. [model 2, section 2; Bender & Koschier 2015]
+  /// Iterations a step that keep matter from being pressed together, at most, in [0, 50]; 0: pressure alone
+  /// does it, and nothing where alpha is 0. They change velocities so that no density rises above that at
+  /// rest, in elastic bodies and fluids alike, and act beside pressure, which lets fluids rest: a
+  /// pressure_coefficient of 0 turns that off, and its limit on steps. One keeps the worst density of a hard
+  /// impact within a fifth of that at rest, three within an eighth. [model 2, section 2; Bender & Koschier
+  /// 2015]
   int volume_iterations = 0;
   /// Iterations of a step end where the mean of all compressions is at most this, in [0, 1]; 0: all are
   /// taken. 0.001 keeps impacts within a twentieth.

@@ -1,0 +1,86 @@
+// Section 2 of the second chapter, with walls as engine/sph/walls.h has them.
+#include <Eigen/LU>
+#include <cmath>
+
+#include "oracle/kernels.h"
+#include "oracle/oracle.h"
+
+namespace mallow::oracle {
+namespace {
+
+/// Σ |∇W|² over an infinite cubic lattice.
+double lattice_squares(double spacing, double sigma) {
+  const int n = static_cast<int>(sigma / spacing) + 1;
+  double sum = 0;
+  for (int x = -n; x <= n; ++x)
+    for (int y = -n; y <= n; ++y)
+      for (int z = -n; z <= n; ++z) sum += poly6_gradient(spacing * Vec(x, y, z), sigma).squaredNorm();
+  return sum;
+}
+
+/// Of S of a half space at distance d.
+double half_space_slope(double d, double sigma) {
+  return 315 / (256 * sigma) * std::pow(1 - d * d / (sigma * sigma), 4);
+}
+
+}  // namespace
+
+// Reads x, ρ, v' and walls; writes v'.
+void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
+  const double sigma = config_.support_radius;
+  const std::size_t n = particles_.size();
+  const auto volume = [&](const Particle& p) { return groups_[p.group].mass / groups_[p.group].rest_density; };
+  const auto mass = [&](const Particle& p) { return groups_[p.group].mass; };
+  const auto wall_gradient = [&](const Particle::Wall& wall) {
+    return Vec(-wall.left * half_space_slope(wall.distance, sigma) * wall.normal);
+  };
+  std::vector<Vec> w(n);
+  std::vector<double> lambda(n);
+  for (int iteration = 0; iteration < config_.volume_iterations; ++iteration) {
+    for (std::size_t i = 0; i < n; ++i) {
+      w[i] = particles_[i].v;
+      for (const Obstacle& obstacle : obstacles_)
+        if (!particles_[i].pinned) touch(obstacle, particles_[i], before[i], dt, w[i]);
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      const Particle& i = particles_[k];
+      const Group& group = groups_[i.group];
+      double rate = 0, others = 0;
+      Vec gradient = Vec::Zero();
+      for (std::size_t l = 0; l < n; ++l) {
+        const Particle& j = particles_[l];
+        const Vec g = volume(j) * poly6_gradient(i.x - j.x, sigma);
+        rate += (w[k] - w[l]).dot(g);
+        gradient += g;
+        if (!j.pinned) others += g.squaredNorm() / mass(j);
+      }
+      for (const Particle::Wall& wall : i.walls) {
+        gradient += wall_gradient(wall);
+        rate += (w[k] - wall.velocity).dot(wall_gradient(wall));
+      }
+      const double floor = lattice_squares(group.spacing, sigma) * volume(i) * volume(i) / mass(i) / 2;
+      others /= std::max(0.5, 1 - i.wall_share);
+      const double response = std::max(floor, gradient.squaredNorm() / mass(i) + others);
+      const double s = std::max(0.0, i.density / group.rest_density - 1 + dt * rate);
+      lambda[k] = i.pinned ? 0 : s / (2 * dt * response);
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      Particle& i = particles_[k];
+      if (i.pinned) continue;
+      Vec pushed = Vec::Zero();
+      for (std::size_t l = 0; l < n; ++l) {
+        const Particle& j = particles_[l];
+        pushed -= (lambda[k] * volume(j) + lambda[l] * volume(i)) * poly6_gradient(i.x - j.x, sigma) / mass(i);
+      }
+      i.v += pushed;
+      for (const Particle::Wall& wall : i.walls) {
+        // What is behind a wall has the particle's own λ, and moves with its neighbours along it.
+        const Vec along = pushed - pushed.dot(wall.normal) * wall.normal;
+        i.v += wall.share / std::max(0.5, 1 - i.wall_share) * along -
+               2 * lambda[k] * wall_gradient(wall) / mass(i);
+      }
+    }
+  }
+}
+
+}  // namespace mallow::oracle

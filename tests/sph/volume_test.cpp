@@ -1,0 +1,347 @@
+// What keeps densities from rising above those at rest: volume_iterations.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "mallow/mallow.h"
+#include "sph/kernel_functions.h"
+
+namespace mallow {
+namespace volume_test {
+
+using Vec = Eigen::Vector3d;
+
+SolverConfig config(int iterations, float tolerance = 0) {
+  return {.time_step = 0.15f,
+          .support_radius = 2.1f,
+          .gravity = {0, 0, -0.3f},
+          .volume_iterations = iterations,
+          .volume_tolerance = tolerance,
+          .sleep_speed = 0.0f,
+          .threads = 2};
+}
+
+/// ρ/ρ0 of the particle where that is largest.
+double worst_density(Simulation& s) {
+  double worst = 0;
+  const std::vector<BodyInfo> bodies = s.info().bodies;  // in the order of their rows
+  const std::vector<BodyId> ids = s.bodies();
+  for (std::size_t b = 0; b < ids.size(); ++b) {
+    const Simulation::Rows rows = s.rows(ids[b]);
+    for (const float density : s.densities().subspan(rows.begin, rows.end - rows.begin))
+      worst = std::max(worst, static_cast<double>(density / bodies[b].rest_density));
+  }
+  return worst;
+}
+
+Vec momentum(const Simulation& s) {
+  Vec sum(0, 0, 0);
+  for (const BodyId id : s.bodies()) sum += s.motion(id).momentum;
+  return sum;
+}
+
+TEST(lattice, sums_the_squares_of_gradients_up_to_their_integral) {
+  for (const double sigma : {2.0, 2.9, 17.0}) {
+    double sum = 0;
+    for (int x = -17; x <= 17; ++x)
+      for (int y = -17; y <= 17; ++y)
+        for (int z = -17; z <= 17; ++z) {
+          const double r2 = x * x + y * y + z * z, t = 1 - r2 / (sigma * sigma);
+          if (t > 0) sum += r2 * std::pow(t, 4);
+        }
+    EXPECT_NEAR(lattice_gradient_squares(sigma, 1) / sum, 1, 1e-12);
+  }
+  EXPECT_NEAR(lattice_gradient_squares(65, 1) / lattice_gradient_squares(63.9, 1), std::pow(65 / 63.9, 5), 1e-4);
+}
+
+/// The cube of 15³ of the paper's Table 1, dropped.
+struct Dropped {
+  double impact = 0, rest = 0;  ///< worst ρ/ρ0 of all, and of the last 50 steps
+  double volume = 0;            ///< at the end, in that at rest
+  double iterations = 0;        ///< a step
+};
+Dropped drop(float alpha, int iterations, float tolerance = 0, std::optional<float> pressure = 0.0f) {
+  constexpr float k_spacing = 22.0f / 15;
+  SolverConfig solver = config(iterations, tolerance);
+  solver.support_radius = 2.9f;
+  solver.update_interval = 20;
+  solver.wall_pressure = false;
+  solver.acoustic_limit = pressure != 16.0f;
+  Simulation s(solver);
+  s.add_collider({.shape = Plane{}, .friction = 0.3f});
+  s.add_body(
+      sample(Lattice{.count = {15, 15, 15}, .spacing = k_spacing, .corner = {0, 0, 10}, .jitter = 0}),
+      {.alpha = alpha, .update_threshold = 1.0f, .pressure_coefficient = pressure, .viscosity = 0.5f});
+  s.prepare();
+  const float rest_density = s.info().bodies[0].rest_density;
+  Dropped dropped;
+  constexpr int k_steps = 400;
+  for (int k = 0; k < k_steps; ++k) {
+    dropped.iterations += 1.0 * s.step().volume_iterations / k_steps;
+    const double worst = static_cast<double>(std::ranges::max(s.densities()) / rest_density);
+    dropped.impact = std::max(dropped.impact, worst);
+    if (k >= k_steps - 50) dropped.rest = std::max(dropped.rest, worst);
+  }
+  for (const float density : s.densities())
+    dropped.volume += 1 / std::max(1.0, static_cast<double>(density / rest_density));
+  dropped.volume /= static_cast<double>(s.particle_count());
+  return dropped;
+}
+
+TEST(volume, of_a_dropped_cube_stays_as_the_prototype_says) {
+  struct Row {
+    float alpha;
+    double impact[3], rest[3], to_tolerance, rest_to_tolerance;
+  };
+  // Of model 2, section 2.
+  const Row rows[] = {{0.0f, {1.21, 1.19, 1.17}, {1.06, 1.04, 1.03}, 1.06, 1.03},
+                      {0.3f, {1.28, 1.22, 1.21}, {1.06, 1.03, 1.02}, 1.04, 1.02},
+                      {0.7f, {1.23, 1.19, 1.18}, {1.04, 1.02, 1.02}, 1.04, 1.02},
+                      {1.0f, {1.23, 1.19, 1.18}, {1.03, 1.02, 1.01}, 1.04, 1.02}};
+  constexpr double k_room = 0.03;
+  for (const Row& row : rows) {
+    for (int iterations = 1; iterations <= 3; ++iterations) {
+      const Dropped one = drop(row.alpha, iterations);
+      EXPECT_LE(one.impact, row.impact[iterations - 1] + k_room) << row.alpha << ' ' << iterations;
+      EXPECT_LE(one.rest, row.rest[iterations - 1] + k_room) << row.alpha << ' ' << iterations;
+      EXPECT_GE(one.volume, 0.98) << row.alpha << ' ' << iterations;
+    }
+    const Dropped all = drop(row.alpha, 50, 1e-3f);
+    EXPECT_LE(all.impact, row.to_tolerance + k_room) << row.alpha;
+    EXPECT_LE(all.rest, row.rest_to_tolerance + k_room) << row.alpha;
+    EXPECT_LE(all.iterations, 4) << row.alpha;
+  }
+  // What it cures.
+  EXPECT_NEAR(drop(0.3f, 0, 0, 16.0f).impact, 2.16, 0.1);
+}
+
+TEST(volume, is_kept_better_beside_the_pressure_that_a_step_can_carry) {
+  for (const float alpha : {0.3f, 0.7f, 1.0f}) {
+    const Dropped beside = drop(alpha, 1, 0, {});
+    EXPECT_LT(beside.impact, 1.21) << alpha;
+    EXPECT_LT(beside.rest, 1.05) << alpha;
+    EXPECT_GT(beside.volume, 0.995) << alpha;
+    EXPECT_GT(drop(alpha, 0, 0, {}).impact, 1.25) << alpha;
+  }
+}
+
+/// A cube of 10³ between plates that take a fifth of its height in 100 steps and give it back.
+struct Squeezed {
+  double worst = 0;         ///< ρ/ρ0
+  double bulge = 0;         ///< width over that before, when it is squeezed most
+  double left = 0;          ///< mean distance from where particles were, at the end [h]
+};
+Squeezed squeeze(float alpha, int iterations, float tolerance = 0) {
+  SolverConfig solver = config(iterations, tolerance);
+  solver.gravity = {0, 0, 0};
+  solver.wall_pressure = false;
+  Simulation s(solver);
+  s.add_collider({.shape = Plane{}, .friction = 0.3f});
+  const ColliderId top = s.add_collider({.shape = Plane{{0, 0, -1}, -10}, .friction = 0.3f});
+  const BodyId id =
+      s.add_body(sample(Lattice{.count = {10, 10, 10}, .jitter = 0}), {.alpha = alpha, .update_threshold = 1e6f});
+  Squeezed squeezed;
+  const std::vector<Vec3> start = s.positions_by_id();
+  const auto width = [&] {
+    const std::span<const float> x = s.positions().x();
+    return *std::ranges::max_element(x) - *std::ranges::min_element(x) + 1;
+  };
+  s.prepare();
+  const float rest_density = s.info().bodies[0].rest_density;
+  constexpr int k_way = 100;
+  for (int k = 0; k < 3 * k_way; ++k) {
+    const float speed = k < k_way ? -2.0f : k < 2 * k_way ? 2.0f : 0.0f;
+    s.set_twist(top, {0, 0, speed / (k_way * 0.15f)}, {0, 0, 0});
+    s.step();
+    squeezed.worst =
+        std::max(squeezed.worst, static_cast<double>(std::ranges::max(s.densities()) / rest_density));
+    if (k == k_way - 1) squeezed.bulge = static_cast<double>(width() / 10);
+  }
+  const Vec3 shift = (s.motion(id).center_of_mass - Vec(5, 5, 5)).cast<float>();
+  const std::vector<Vec3> end = s.positions_by_id();
+  for (std::size_t i = 0; i < end.size(); ++i)
+    squeezed.left += static_cast<double>((end[i] - start[i] - shift).norm()) / static_cast<double>(end.size());
+  return squeezed;
+}
+
+TEST(volume, of_what_is_squeezed_goes_to_the_sides_and_comes_back) {
+  for (const float alpha : {0.0f, 0.3f, 0.9f}) {
+    const Squeezed with = squeeze(alpha, 50, 1e-3f), three = squeeze(alpha, 3);
+    EXPECT_LT(with.worst, 1.05) << alpha;
+    EXPECT_LT(three.worst, 1.08) << alpha;
+    EXPECT_GT(with.bulge, 1.08) << alpha;  // of the 1.118 that keep all of it
+    EXPECT_LT(with.left, alpha < 0.5f ? 0.05 : 1.0) << alpha;
+    std::printf("%g: %.3f %.3f bulge %.3f left %.3f\n", double(alpha), with.worst, three.worst, with.bulge, with.left);
+  }
+}
+
+TEST(volume, iterations_keep_momentum_and_spin) {
+  for (const float alpha : {0.0f, 0.5f, 1.0f}) {
+    SolverConfig solver = config(2);
+    solver.gravity = {0, 0, 0};
+    Simulation s(solver);
+    const Material heavy{.alpha = alpha, .particle_mass = 2.0f, .cohesion = 0.5f};
+    Body one = sample(Lattice{.count = {6, 6, 6}, .jitter = 0.1f});
+    one.velocity = {0.4f, 0.2f, 1};
+    const BodyId id = s.add_body(one, heavy);
+    Body other = sample(Lattice{.count = {6, 6, 6}, .spacing = 0.9f, .corner = {1, 0.5f, 7}, .jitter = 0.1f});
+    other.velocity = {0, 0, -1};
+    s.add_body(other, Material{.alpha = alpha});
+    const Vec before = momentum(s);
+    const double pace = s.motion(id).mass * 1.1;
+    int taken = 0;
+    for (int k = 0; k < 1000; ++k) taken += s.step().volume_iterations;
+    EXPECT_GT(taken, 100) << alpha;
+    EXPECT_LT((momentum(s) - before).norm() / pace, 1e-5) << alpha;
+  }
+}
+
+TEST(volume, of_a_poured_pool_is_kept_with_the_share_of_walls) {
+  for (const float alpha : {1.0f, 0.7f})
+    for (const int iterations : {1, 2}) {
+      Simulation s(config(iterations));
+      s.add_collider({.shape = Box{{-5, -5, 0}, {5, 5, 99}, true}, .friction = 0.3f});
+      s.add_body(sample(Lattice{.count = {10, 10, 12}, .corner = {-5, -5, 4}, .jitter = 0.1f}), {.alpha = alpha});
+      s.advance(600 * 0.15);
+      const std::span<const float> z = s.positions().z();
+      const double depth = 2 * std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size());
+      EXPECT_GT(depth, 0.95 * 12) << alpha << ' ' << iterations;
+      EXPECT_LT(depth, 1.01 * 12) << alpha << ' ' << iterations;
+      EXPECT_LT(s.energy().kinetic, 1e-3 * 1200 * 0.3 * 4) << alpha << ' ' << iterations;
+      std::printf("%g %d: depth %.3f of 12, kinetic %.2e\n", double(alpha), iterations, depth, s.energy().kinetic/1200);
+    }
+}
+
+TEST(volume, pushes_are_in_the_loads_of_colliders) {
+  Simulation s(config(2));
+  const ColliderId tank = s.add_collider(
+      {.shape = Box{{-4, -4, 0}, {4, 4, 99}, true}, .friction = 0.3f, .measure_load = true});
+  const BodyId id = s.add_body(sample(Lattice{.count = {8, 8, 8}, .corner = {-4, -4, 1}, .jitter = 0.1f}), {.alpha = 1.0f});
+  for (int k = 0; k < 60; ++k) {
+    const Vec before = s.motion(id).momentum;
+    const double seconds = s.step().time_step;
+    const Vec weight = s.motion(id).mass * seconds * Vec(0, 0, -static_cast<double>(0.3f));
+    EXPECT_NEAR((s.motion(id).momentum - before + s.load(tank).impulse - weight).norm(), 0, 1e-3) << k;
+  }
+}
+
+/// All at once: a fluid, a jelly and a paste that touch, some of it pinned, in a tank.
+Simulation mixed(int iterations, int threads, InstructionLevel level) {
+  SolverConfig solver = config(iterations);
+  solver.threads = threads;
+  solver.instruction_level = level;
+  Simulation s(solver);
+  s.add_collider({.shape = Box{{0, 0, 0}, {8, 8, 99}, true}, .friction = 0.3f});
+  s.add_collider({.shape = Sphere{{4, 4, -1}, 3}, .angular_velocity = {0.1f, 0.2f, 0}});
+  s.add_body(sample(Lattice{.count = {8, 8, 4}, .corner = {0, 0, 2}, .jitter = 0.1f}), {.alpha = 1.0f, .rest_density = 2.0f});
+  s.add_body(sample(Lattice{.count = {5, 5, 5}, .spacing = 0.9f, .corner = {1, 1, 7}, .jitter = 0.1f}), {.alpha = 0.0f});
+  s.add_body(sample(Lattice{.count = {5, 5, 5}, .corner = {2, 2, 13}, .jitter = 0.1f}), {.alpha = 0.7f, .cohesion = 0.5f});
+  s.pin(Aabb{{0, 0, 7}, {8, 2, 9}}, {0, 0, -0.1f});
+  return s;
+}
+
+TEST(volume, gives_the_same_bits_for_any_number_of_threads_and_level_and_after_a_restore) {
+  const auto hash = [](int threads, InstructionLevel level) {
+    Simulation s = mixed(2, threads, level);
+    for (int k = 0; k < 60; ++k) s.step();
+    return s.state_hash();
+  };
+  const std::uint64_t one = hash(1, best_instruction_level());
+  EXPECT_EQ(hash(2, best_instruction_level()), one);
+  EXPECT_EQ(hash(3, best_instruction_level()), one);
+  EXPECT_EQ(hash(2, InstructionLevel::baseline), one);
+  Simulation s = mixed(2, 2, best_instruction_level());
+  for (int k = 0; k < 30; ++k) s.step();
+  Simulation restored = Simulation::restore(s.save(), 1);
+  for (int k = 0; k < 30; ++k) restored.step();
+  EXPECT_EQ(restored.state_hash(), one);
+}
+
+TEST(volume, is_kept_where_bodies_of_different_matter_touch_and_are_pinned) {
+  Simulation s = mixed(3, 2, best_instruction_level());
+  double worst = 0;
+  for (int k = 0; k < 300; ++k) {
+    s.step();
+    worst = std::max(worst, worst_density(s));
+  }
+  std::printf("mixed worst %.3f end %.3f\n", worst, worst_density(s));
+  EXPECT_LT(worst, 1.4);
+  EXPECT_LT(worst_density(s), 1.1);
+}
+
+TEST(volume, is_the_same_far_from_the_origin_and_in_other_units) {
+  const auto worst = [](float scale, float far) {
+    SolverConfig solver = config(2);
+    solver.support_radius *= scale;
+    solver.gravity *= scale;
+    Simulation s(solver);
+    s.add_collider({.shape = Plane{}, .friction = 0.3f});
+    Body cube = sample(Lattice{.count = {8, 8, 8}, .spacing = scale, .corner = {far * scale, 0, 6 * scale}, .jitter = 0});
+    s.add_body(cube, {.alpha = 0.3f, .particle_mass = 1 / scale});
+    double most = 0;
+    for (int k = 0; k < 120; ++k) {
+      s.step();
+      most = std::max(most, worst_density(s));
+    }
+    return most;
+  };
+  const double here = worst(1, 0);
+  EXPECT_NEAR(worst(1e-4f, 0), here, 1e-3);
+  EXPECT_NEAR(worst(1e4f, 0), here, 1e-3);
+  EXPECT_NEAR(worst(1, 1e5f), here, 0.02);
+}
+
+TEST(volume, iterations_end_at_the_tolerance_and_are_none_where_nothing_is_pressed) {
+  SolverConfig solver = config(50, 1e-3f);
+  Simulation s(solver);
+  s.add_collider({.shape = Plane{}});
+  s.add_body(sample(Lattice{.count = {8, 8, 8}, .corner = {0, 0, 4}, .jitter = 0}), {.alpha = 0.0f});
+  for (int k = 0; k < 10; ++k) EXPECT_LE(s.step().volume_iterations, 1) << k;  // it falls
+  int most = 0;
+  for (int k = 0; k < 100; ++k) {
+    const StepReport report = s.step();
+    most = std::max(most, report.volume_iterations);
+    EXPECT_TRUE(report.mean_compression <= 1e-3 || report.volume_iterations == 50) << k;
+    EXPECT_GE(report.largest_compression, report.mean_compression) << k;
+  }
+  EXPECT_GT(most, 3);
+}
+
+TEST(volume, costs_nothing_where_it_is_off) {
+  const auto run = [](SolverConfig solver) {
+    Simulation s(solver);
+    s.add_body(sample(Lattice{.count = {6, 6, 6}, .jitter = 0.1f}), {.alpha = 0.0f});
+    s.step();
+    EXPECT_TRUE(s.densities().empty());
+    return s.info().bytes;
+  };
+  EXPECT_EQ(run(config(0)), run(config(0, 0.5f)));
+}
+
+TEST(volume, lets_what_rests_fall_asleep_and_wakes_what_is_hit) {
+  SolverConfig solver = config(2);
+  solver.sleep_speed = {};
+  Simulation s(solver);
+  s.add_collider({.shape = Plane{}, .friction = 0.5f});
+  for (const float z : {0.0f, 7.0f})
+    s.add_body(sample(Lattice{.count = {6, 6, 6}, .corner = {0, 0, z}, .jitter = 0.05f}), {.alpha = 0.0f});
+  StepReport report;
+  for (int k = 0; k < 3000; ++k) {
+    report = s.step();
+    if (report.awake_bodies == 0) break;
+  }
+  EXPECT_EQ(report.awake_bodies, 0u);
+  Body ball = sample(Lattice{.count = {3, 3, 3}, .corner = {1, 1, 16}, .jitter = 0});
+  s.add_body(ball, Material{.alpha = 0.0f});
+  std::size_t awake = 0;
+  for (int k = 0; k < 120; ++k) awake = std::max(awake, s.step().awake_bodies);
+  EXPECT_EQ(awake, 3u);
+}
+
+}  // namespace volume_test
+}  // namespace mallow
