@@ -77,6 +77,7 @@ class Catalogue {
     damping();
     bodies_that_come_and_go();
     colliders_that_move();
+    kept_volumes();
     return std::move(list_);
   }
 
@@ -405,6 +406,96 @@ class Catalogue {
                                    .angular_velocity = {0, 0, turns}});
           },
           trial);
+  }
+
+  void add_kept(const std::string& name, const Setup& base, int iterations, const Change& change,
+                const Trial& trial = {}) {
+    add(
+        "volume kept, " + name, base,
+        [&](Setup& s) {
+          s.config.volume_iterations = iterations;
+          s.material.pressure_coefficient = {};
+          change(s);
+        },
+        trial);
+  }
+
+  /// Corrections take energy but for what was pressed together at the start: model 2, section 2.
+  void kept_volumes() {
+    Trial trial;
+    trial.by_conserved_energy = true;
+    trial.energy_room = 0.02;
+    trial.steps = 2000;
+    for (const int iterations : {1, 2, 50}) {
+      const std::string each = std::to_string(iterations) + (iterations == 1 ? " iteration" : " iterations");
+      add_kept(
+          each + ", as stiff as is allowed", falling_body(), iterations,
+          [](Setup& s) {
+            s.body =
+                sample(Lattice{.count = {5, 5, 5}, .spacing = 0.8f, .corner = {0, 0, 4}, .jitter = 0.05f});
+            stir(s, 0.5f);
+            s.material.update_threshold = 1e30f;
+            s.material.elastic_time_step =
+                std::max(0.01f, (1 - s.material.alpha.lowest()) * *s.config.time_step / 2.5f);
+          },
+          trial);
+      add_kept(each + ", steps of four times time_step", falling_body(), iterations, [](Setup& s) {
+        s.config.time_step_factor = 4;
+        s.material.elastic_time_step = std::max(0.1f, (1 - s.material.alpha.lowest()) * 0.15f * 16 / 2.4f);
+      });
+      add_kept(each + ", with cohesion", falling_body(), iterations,
+               [](Setup& s) { s.material.cohesion = 1; });
+    }
+    add_kept(
+        "all damping as much as is allowed", falling_body(), 2,
+        [](Setup& s) {
+          s.material.pressure_coefficient = 0.0f;
+          const float a = std::max(0.01f, 1 - s.material.alpha.lowest());
+          s.material.damping_time = 0.999f * 0.15f * (2.5f / a - 1) / 2;
+          s.material.deformation_damping = 6.3f;
+          s.material.update_threshold = 1e30f;
+          stir(s, 0.5f);
+        },
+        trial);
+    trial.steps = 300;
+    for (const float speed : {1.0f, 140.0f})
+      add_kept(
+          "two bodies head-on at " + std::to_string(static_cast<int>(speed)) + " a second", two_bodies(speed),
+          2, [](Setup& s) { s.material.update_threshold = 1e30f; }, trial);
+    for (const int thin : {1, 2})
+      add_kept(std::to_string(thin) + (thin == 1 ? " layer" : " layers"), falling_body(), 2,
+               [thin](Setup& s) {
+                 s.body = sample(Lattice{.count = {8, 8, thin}, .corner = {0, 0, 1}, .jitter = 0.05f});
+               });
+    trial = {};
+    trial.energy_room = 1e9;  // pins do work
+    trial.before_step = [](Simulation& simulation, int step) {
+      if (step > 0) return;
+      simulation.pin(Aabb{{-9, -9, -9}, {9, 9, 2}}, {0, 0, 0});
+      simulation.pin(Aabb{{-9, -9, 5}, {9, 9, 9}}, {0, 0, -0.1f});
+    };
+    add_kept(
+        "pressed between pins", free_body(), 3, [](Setup&) {}, trial);
+    Trial pressed;
+    pressed.energy_room = 1e9;  // the plates do work without end
+    pressed.steps = 700;
+    add_kept(
+        "between two plates that close", falling_body(), 3,
+        [](Setup& s) {
+          s.colliders.push_back(
+              {.shape = Plane{.normal = {0, 0, -1}, .offset = -6.5f}, .velocity = {0, 0, -0.1f}});
+        },
+        pressed);
+    trial = {};
+    trial.energy_room = 1e3;
+    trial.before_step = [](Simulation& simulation, int step) {
+      if (step > 0) return;
+      const Pose down{.translation = {2.5f, 2.5f, 40}, .rotation = {1, 0, 0, 0}};
+      simulation.add_emitter({.radius = 2.0f, .pose = down, .speed = 6, .most_particles = 800},
+                             MaterialId{0});
+    };
+    add_kept(
+        "an emitter of a layer a step onto a body", falling_body(), 2, [](Setup&) {}, trial);
   }
 
   int long_steps_;

@@ -119,6 +119,15 @@ const std::vector<Knob>& all_knobs() {
                  .label = "stride " + text(stride),
                  .overrides = {override_of("material[0].region_stride", stride)}};
        }},
+      {"volume_iterations",
+       always,
+       {1, 2, 3},
+       {1},
+       [](const Base&, double iterations) -> Setting {
+         return {.knobs = "volume_iterations",
+                 .label = "volume " + text(iterations),
+                 .overrides = {override_of("solver.volume_iterations", iterations)}};
+       }},
       {"neighbor_slack",
        sph,
        {0.05, 0.1, 0.2, 0.3},

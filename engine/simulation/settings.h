@@ -53,6 +53,8 @@ struct MaterialLimits {
   double by_viscosity;  ///< which diffuses
 };
 MaterialLimits material_limits(const Simulation::State& state, const BodyState& body);
+/// Share of the compression that a volume iteration takes from a body in a step of `time_step` [s].
+float volume_relaxation(const Simulation::State& state, const BodyState& body, float time_step);
 /// Whether gravity is that of a planet or moon in metres and seconds, by its size.
 MALLOW_EXPORT bool is_in_metres(const Vec3& gravity);
 /// What can be run, but is hardly meant. alpha and defaults are settled.

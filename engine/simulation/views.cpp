@@ -50,8 +50,8 @@ const VectorColumn& Simulation::State::seen_positions() {
 
 const char* name(Phase phase) {
   constexpr std::array<const char*, k_phase_count> k_names{
-      "reference_update", "neighbors", "density", "accelerations", "time_step",
-      "region_sums",      "rotations", "goals",   "volume",        "body_contact", "motion"};
+      "reference_update", "neighbors", "density", "accelerations", "time_step", "region_sums",
+      "rotations",        "goals",     "volume",  "body_contact",  "motion"};
   return k_names[static_cast<std::size_t>(phase)];
 }
 

@@ -19,6 +19,8 @@ constexpr double k_short_steps = 0.5;
 constexpr double k_many_neighbors = 4000;
 /// Spacings within which there are the six nearest and the twelve of diagonals: fewer hold no body together.
 constexpr float k_least_radius = 1.45f;
+/// Of what an iteration of the volume constraint may do, a share that hardly shows.
+constexpr float k_least_share = 0.3f;
 /// So many particles of other bodies within a spacing are inside of these: a lattice has four there on the
 /// mean, and one that touches has one.
 constexpr std::ptrdiff_t k_inside = 3;
@@ -33,7 +35,11 @@ class Warnings {
       look_at_density(body);
       look_at_limits(body);
       look_at_neighbors(body);
+      look_at_volume(body);
     }
+    if (state_.config.volume_tolerance > 0 && state_.config.volume_iterations == 0)
+      list_.push_back(
+          "solver.volume_tolerance ends volume iterations, of which there are none: give volume_iterations");
     if (state_.step == 0 && state_.bodies.size() > 1) look_at_overlaps();
     return std::move(list_);
   }
@@ -100,6 +106,17 @@ class Warnings {
       add(body, "support_radius ", state_.config.support_radius, ", ",
           state_.config.support_radius / body.spacing, " spacings,", shortens(limits.by_pressure),
           "2 to 3 spacings are usual, or give a lower pressure_coefficient");
+  }
+
+  /// What is as stiff as a step can carry leaves no room for another spring.
+  void look_at_volume(const BodyState& body) {
+    if (state_.config.volume_iterations == 0) return;
+    const float share = 2 * volume_relaxation(state_, body, state_.longest_step());
+    if (share < k_least_share)
+      add(body, "elasticity and damping are so stiff for a step of ", state_.longest_step(),
+          " s that a volume iteration takes ", share,
+          " of its share; raise material.elastic_time_step, or lower solver.time_step and give "
+          "material.elastic_time_step");
   }
 
   void look_at_neighbors(const BodyState& body) {

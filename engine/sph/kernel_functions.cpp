@@ -57,8 +57,7 @@ double lattice_density(double support_radius, double spacing) {
   // Farther, the sum is the integral of W, 1, to single precision, and would take minutes for thousands of
   // spacings.
   if (s > k_dense * spacing) return 1 / (spacing * spacing * spacing);
-  const double sum =
-      lattice_sum(s, spacing, [](double q2) { return (1 - q2) * (1 - q2) * (1 - q2); });
+  const double sum = lattice_sum(s, spacing, [](double q2) { return (1 - q2) * (1 - q2) * (1 - q2); });
   return 315.0 / (64.0 * k_pi * s * s * s) * sum;
 }
 

@@ -97,8 +97,7 @@ void push_by_walls(const VolumeStep& step, const Sph& sph, const Execution& exec
         if (volume.wall_loads.empty()) return;
         ColliderLoad& load = volume.wall_loads[block * step.colliders.size() + wall.collider];
         const Eigen::Vector3d given = -static_cast<double>(body.mass) * change.cast<double>();
-        const Vec3 arm =
-            step.position.get(row) - Vec3(step.colliders[wall.collider].surface.translation);
+        const Vec3 arm = step.position.get(row) - Vec3(step.colliders[wall.collider].surface.translation);
         load.impulse += given;
         load.torque += arm.cast<double>().cross(given);
       });
@@ -120,8 +119,9 @@ VolumeGroup volume_group(const SphGroup& group, float spacing, float support_rad
   return {.slope = static_cast<float>(slope),
           .inverse_mass = 1 / group.mass,
           .inverse_rest_density = 1 / group.rest_density,
-          .least_response =
-              static_cast<float>(k_least_response * slope * slope * lattice / static_cast<double>(group.mass))};
+          .relaxation = 0,
+          .least_response = static_cast<float>(k_least_response * slope * slope * lattice /
+                                               static_cast<double>(group.mass))};
 }
 
 void begin_volume(const VolumeStep& step, const Sph& sph, const Execution& execution, Volume& volume) {
@@ -135,8 +135,8 @@ void begin_volume(const VolumeStep& step, const Sph& sph, const Execution& execu
   volume.wall_loads.assign(sph.walls.any ? sph.walls.partial_loads.size() : 0, {});
 }
 
-Compression find_compression(const VolumeStep& step, const VectorColumn& velocity, bool first,
-                             const Sph& sph, const Execution& execution, Volume& volume) {
+Compression find_compression(const VolumeStep& step, const VectorColumn& velocity, bool first, const Sph& sph,
+                             const Execution& execution, Volume& volume) {
   gather_sorted(velocity, sph, execution, volume.velocity);
   if (sph.walls.any) find_wall_rates(step, velocity, sph, execution, volume);
   const VolumeInput in = input(sph, volume, step.time_step);

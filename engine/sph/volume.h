@@ -15,15 +15,15 @@ namespace mallow {
 struct Volume {
   std::vector<VolumeGroup> groups;  ///< of Sph::groups
   // Sorted order of Sph.
-  VectorColumn velocity;      ///< w
-  Column<float> response;     ///< D [1/(m² kg)]
-  Column<float> multiplier;   ///< λ [m² kg/s]
-  Column<float> mobile;       ///< 0 where it is pinned, else 1; empty where nothing is
+  VectorColumn velocity;     ///< w
+  Column<float> response;    ///< D [1/(m² kg)]
+  Column<float> multiplier;  ///< λ [m² kg/s]
+  Column<float> mobile;      ///< 0 where it is pinned, else 1; empty where nothing is
   // By row of the particle store; empty where no wall is near.
-  VectorColumn wall_gradient;     ///< ∇S [1/m], 0 where no wall is near
-  Column<float> wall_rate;        ///< dS/dt [1/s], likewise
+  VectorColumn wall_gradient;  ///< ∇S [1/m], 0 where no wall is near
+  Column<float> wall_rate;     ///< dS/dt [1/s], likewise
   Column<float> multiplier_by_row;
-  VectorColumn changes;           ///< of velocities, in one iteration [m/s]
+  VectorColumn changes;  ///< of velocities, in one iteration [m/s]
 
   VectorColumn contacted;  ///< what contact makes of v', by row
 
@@ -56,8 +56,8 @@ struct Compression {
 /// pins, walls -> what all iterations of a step share.
 void begin_volume(const VolumeStep& step, const Sph& sph, const Execution& execution, Volume& volume);
 /// velocity: w, by row of the store -> s and λ, and D where `first`.
-Compression find_compression(const VolumeStep& step, const VectorColumn& velocity, bool first,
-                             const Sph& sph, const Execution& execution, Volume& volume);
+Compression find_compression(const VolumeStep& step, const VectorColumn& velocity, bool first, const Sph& sph,
+                             const Execution& execution, Volume& volume);
 /// λ -> v' that compress less. A wall pushes as if the particle's own λ were behind it, and along as
 /// press_walls() does.
 void correct_velocities(const VolumeStep& step, const Sph& sph, const Execution& execution, Volume& volume,

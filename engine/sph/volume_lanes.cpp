@@ -120,7 +120,7 @@ void find_multipliers(const VolumeInput& in, std::size_t cluster, float* respons
     if (in.wall_rate) rate += in.wall_rate[row];
     const float excess = in.density[i] * own.inverse_rest_density - 1.0f + in.time_step * rate;
     const float s = (excess > 0 ? excess : 0.0f) * pairs.mobility(i);
-    multiplier[i] = 0.5f * s / (in.time_step * response[i]);
+    multiplier[i] = own.relaxation * s / (in.time_step * response[i]);
     total.sum += static_cast<double>(s);
     total.largest = s > total.largest ? s : total.largest;
     total.particles += s > 0;
@@ -141,14 +141,15 @@ CompressionSum all_compressions(const VolumeInput& in, std::size_t begin, std::s
 
 CompressionSum compressions(const VolumeInput& in, std::size_t begin, std::size_t end, bool first,
                             float* response, float* multiplier) noexcept {
-  const auto sum = in.group ? (in.mobile ? all_compressions<Kinds<true, true>> : all_compressions<Kinds<true, false>>)
-                            : (in.mobile ? all_compressions<Kinds<false, true>> : all_compressions<Kinds<false, false>>);
+  const auto sum =
+      in.group ? (in.mobile ? all_compressions<Kinds<true, true>> : all_compressions<Kinds<true, false>>)
+               : (in.mobile ? all_compressions<Kinds<false, true>> : all_compressions<Kinds<false, false>>);
   return sum(in, begin, end, first, response, multiplier);
 }
 
 template <class Kind>
-void push_cluster(const VolumeInput& in, std::size_t cluster, const float* multiplier, const Vectors& velocity,
-                  const Vectors& changes) {
+void push_cluster(const VolumeInput& in, std::size_t cluster, const float* multiplier,
+                  const Vectors& velocity, const Vectors& changes) {
   const ClusterPairs<Kind> pairs(in, cluster);
   const Floats own = load(multiplier + pairs.first);
   Floats own_slope = {};
@@ -182,8 +183,8 @@ void push_all(const VolumeInput& in, std::size_t begin, std::size_t end, const f
     push_cluster<Kind>(in, cluster, multiplier, velocity, changes);
 }
 
-void push(const VolumeInput& in, std::size_t begin, std::size_t end, const float* multiplier, Vectors velocity,
-          Vectors changes) noexcept {
+void push(const VolumeInput& in, std::size_t begin, std::size_t end, const float* multiplier,
+          Vectors velocity, Vectors changes) noexcept {
   const auto add = in.group ? (in.mobile ? push_all<Kinds<true, true>> : push_all<Kinds<true, false>>)
                             : (in.mobile ? push_all<Kinds<false, true>> : push_all<Kinds<false, false>>);
   add(in, begin, end, multiplier, velocity, changes);

@@ -10,6 +10,7 @@ struct VolumeGroup {
   float slope;                 ///< ψ |∇W/r| at r = 0, with ψ = m/ρ0 [1/m²]
   float inverse_mass;          ///< 1/m [1/kg]
   float inverse_rest_density;  ///< 1/ρ0 [m³/kg]
+  float relaxation;            ///< share of what a particle alone would ask for, of the step
   float least_response;        ///< what D is at least: half of that in its lattice [1/(m² kg)]
 };
 
@@ -39,23 +40,23 @@ struct VolumeInput {
   ConstVectors wall_gradient;  ///< null: no wall is near any
   const float* wall_rate;
   const float* wall_share;  ///< S
-  float inverse_radius;  ///< 1/σ
-  float time_step;       ///< Δt [s]
+  float inverse_radius;     ///< 1/σ
+  float time_step;          ///< Δt [s]
 };
 
 /// Of some particles.
 struct CompressionSum {
-  double sum;              ///< Σ s_i
-  float largest;           ///< max s_i
+  double sum;               ///< Σ s_i
+  float largest;            ///< max s_i
   std::uint32_t particles;  ///< those that are compressed
 };
 
 /// [begin, end): clusters. With ψ of particle j's own group and ∇W of poly6 [Bender & Koschier 2015; model 2,
 /// section 2]:
 struct VolumeLanes {
-  /// s_i = max(0, ρ_i/ρ0 − 1 + Δt (Σ_j ψ_j (w_i − w_j)·∇W_ij + dS/dt)), λ_i = s_i/(2 Δt D_i), 0 where it is
-  /// pinned. Where `first`, writes also D_i = |Σ_j ψ_j ∇W_ij + ∇S|²/m_i + Σ_j ψ_j² |∇W_ij|²/((1 − S) m_j) over j
-  /// that are not pinned, with S at most ½; else reads it.
+  /// s_i = max(0, ρ_i/ρ0 − 1 + Δt (Σ_j ψ_j (w_i − w_j)·∇W_ij + dS/dt)), λ_i = relaxation s_i/(Δt D_i), 0
+  /// where it is pinned. Where `first`, writes also D_i = |Σ_j ψ_j ∇W_ij + ∇S|²/m_i + Σ_j ψ_j² |∇W_ij|²/((1 −
+  /// S) m_j) over j that are not pinned, with S at most ½; else reads it.
   CompressionSum (*compressions)(const VolumeInput&, std::size_t begin, std::size_t end, bool first,
                                  float* response, float* multiplier) noexcept;
   /// v_i −= (1/m_i) Σ_j (λ_i ψ_j + λ_j ψ_i) ∇W_ij where i is not pinned, by row. changes: the same, by row;

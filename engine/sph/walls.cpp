@@ -44,9 +44,8 @@ class WalledBlock {
       sum = share;
     }
     const float left = 1 - covered;
-    walls_.push_back(
-        {near.row, near.collider, last, left * share, left * half_space_gradient(q) / radius_,
-         left * half_space_slope(q) / radius_, near.normal});
+    walls_.push_back({near.row, near.collider, last, left * share, left * half_space_gradient(q) / radius_,
+                      left * half_space_slope(q) / radius_, near.normal});
     last = static_cast<std::uint32_t>(walls_.size());
   }
 

@@ -1,5 +1,6 @@
 // Section 2 of the second chapter, with walls as engine/sph/walls.h has them.
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "oracle/kernels.h"
@@ -29,7 +30,9 @@ double half_space_slope(double d, double sigma) {
 void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
   const double sigma = config_.support_radius;
   const std::size_t n = particles_.size();
-  const auto volume = [&](const Particle& p) { return groups_[p.group].mass / groups_[p.group].rest_density; };
+  const auto volume = [&](const Particle& p) {
+    return groups_[p.group].mass / groups_[p.group].rest_density;
+  };
   const auto mass = [&](const Particle& p) { return groups_[p.group].mass; };
   const auto wall_gradient = [&](const Particle::Wall& wall) {
     return Vec(-wall.left * half_space_slope(wall.distance, sigma) * wall.normal);
@@ -62,7 +65,8 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       others /= std::max(0.5, 1 - i.wall_share);
       const double response = std::max(floor, gradient.squaredNorm() / mass(i) + others);
       const double s = std::max(0.0, i.density / group.rest_density - 1 + dt * rate);
-      lambda[k] = i.pinned ? 0 : s / (2 * dt * response);
+      const double share = std::clamp((2.8 - stiffness(group) * dt * dt) / 2, 0.0, 1.0);
+      lambda[k] = i.pinned ? 0 : share * s / (2 * dt * response);
     }
     for (std::size_t k = 0; k < n; ++k) {
       Particle& i = particles_[k];
@@ -70,7 +74,8 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       Vec pushed = Vec::Zero();
       for (std::size_t l = 0; l < n; ++l) {
         const Particle& j = particles_[l];
-        pushed -= (lambda[k] * volume(j) + lambda[l] * volume(i)) * poly6_gradient(i.x - j.x, sigma) / mass(i);
+        pushed -=
+            (lambda[k] * volume(j) + lambda[l] * volume(i)) * poly6_gradient(i.x - j.x, sigma) / mass(i);
       }
       i.v += pushed;
       for (const Particle::Wall& wall : i.walls) {

@@ -23,6 +23,8 @@ acoustic_limit = false
 contact = "pressure"
 contact_offset = 0.25
 wall_pressure = false
+volume_iterations = 3
+volume_tolerance = 0.25
 sleep_speed = 0.5
 sleep_time = 2
 rotation_iterations = 2
@@ -194,6 +196,8 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_FALSE(read.solver.acoustic_limit);
   EXPECT_EQ(read.solver.contact_offset, 0.25f);
   EXPECT_FALSE(read.solver.wall_pressure);
+  EXPECT_EQ(read.solver.volume_iterations, 3);
+  EXPECT_EQ(read.solver.volume_tolerance, 0.25f);
   EXPECT_EQ(read.solver.rotation_iterations, 2);
   EXPECT_EQ(read.solver.neighbor_slack, 0.125f);
   EXPECT_EQ(read.solver.instruction_level, InstructionLevel::baseline);

@@ -56,7 +56,8 @@ TEST(lattice, sums_the_squares_of_gradients_up_to_their_integral) {
         }
     EXPECT_NEAR(lattice_gradient_squares(sigma, 1) / sum, 1, 1e-12);
   }
-  EXPECT_NEAR(lattice_gradient_squares(65, 1) / lattice_gradient_squares(63.9, 1), std::pow(65 / 63.9, 5), 1e-4);
+  EXPECT_NEAR(lattice_gradient_squares(65, 1) / lattice_gradient_squares(63.9, 1), std::pow(65 / 63.9, 5),
+              1e-4);
 }
 
 /// The cube of 15³ of the paper's Table 1, dropped.
@@ -74,9 +75,8 @@ Dropped drop(float alpha, int iterations, float tolerance = 0, std::optional<flo
   solver.acoustic_limit = pressure != 16.0f;
   Simulation s(solver);
   s.add_collider({.shape = Plane{}, .friction = 0.3f});
-  s.add_body(
-      sample(Lattice{.count = {15, 15, 15}, .spacing = k_spacing, .corner = {0, 0, 10}, .jitter = 0}),
-      {.alpha = alpha, .update_threshold = 1.0f, .pressure_coefficient = pressure, .viscosity = 0.5f});
+  s.add_body(sample(Lattice{.count = {15, 15, 15}, .spacing = k_spacing, .corner = {0, 0, 10}, .jitter = 0}),
+             {.alpha = alpha, .update_threshold = 1.0f, .pressure_coefficient = pressure, .viscosity = 0.5f});
   s.prepare();
   const float rest_density = s.info().bodies[0].rest_density;
   Dropped dropped;
@@ -132,9 +132,9 @@ TEST(volume, is_kept_better_beside_the_pressure_that_a_step_can_carry) {
 
 /// A cube of 10³ between plates that take a fifth of its height in 100 steps and give it back.
 struct Squeezed {
-  double worst = 0;         ///< ρ/ρ0
-  double bulge = 0;         ///< width over that before, when it is squeezed most
-  double left = 0;          ///< mean distance from where particles were, at the end [h]
+  double worst = 0;  ///< ρ/ρ0
+  double bulge = 0;  ///< width over that before, when it is squeezed most
+  double left = 0;   ///< mean distance from where particles were, at the end [h]
 };
 Squeezed squeeze(float alpha, int iterations, float tolerance = 0) {
   SolverConfig solver = config(iterations, tolerance);
@@ -143,8 +143,8 @@ Squeezed squeeze(float alpha, int iterations, float tolerance = 0) {
   Simulation s(solver);
   s.add_collider({.shape = Plane{}, .friction = 0.3f});
   const ColliderId top = s.add_collider({.shape = Plane{{0, 0, -1}, -10}, .friction = 0.3f});
-  const BodyId id =
-      s.add_body(sample(Lattice{.count = {10, 10, 10}, .jitter = 0}), {.alpha = alpha, .update_threshold = 1e6f});
+  const BodyId id = s.add_body(sample(Lattice{.count = {10, 10, 10}, .jitter = 0}),
+                               {.alpha = alpha, .update_threshold = 1e6f});
   Squeezed squeezed;
   const std::vector<Vec3> start = s.positions_by_id();
   const auto width = [&] {
@@ -165,7 +165,8 @@ Squeezed squeeze(float alpha, int iterations, float tolerance = 0) {
   const Vec3 shift = (s.motion(id).center_of_mass - Vec(5, 5, 5)).cast<float>();
   const std::vector<Vec3> end = s.positions_by_id();
   for (std::size_t i = 0; i < end.size(); ++i)
-    squeezed.left += static_cast<double>((end[i] - start[i] - shift).norm()) / static_cast<double>(end.size());
+    squeezed.left +=
+        static_cast<double>((end[i] - start[i] - shift).norm()) / static_cast<double>(end.size());
   return squeezed;
 }
 
@@ -176,7 +177,8 @@ TEST(volume, of_what_is_squeezed_goes_to_the_sides_and_comes_back) {
     EXPECT_LT(three.worst, 1.08) << alpha;
     EXPECT_GT(with.bulge, 1.08) << alpha;  // of the 1.118 that keep all of it
     EXPECT_LT(with.left, alpha < 0.5f ? 0.05 : 1.0) << alpha;
-    std::printf("%g: %.3f %.3f bulge %.3f left %.3f\n", double(alpha), with.worst, three.worst, with.bulge, with.left);
+    std::printf("%g: %.3f %.3f bulge %.3f left %.3f\n", double(alpha), with.worst, three.worst, with.bulge,
+                with.left);
   }
 }
 
@@ -206,22 +208,25 @@ TEST(volume, of_a_poured_pool_is_kept_with_the_share_of_walls) {
     for (const int iterations : {1, 2}) {
       Simulation s(config(iterations));
       s.add_collider({.shape = Box{{-5, -5, 0}, {5, 5, 99}, true}, .friction = 0.3f});
-      s.add_body(sample(Lattice{.count = {10, 10, 12}, .corner = {-5, -5, 4}, .jitter = 0.1f}), {.alpha = alpha});
+      s.add_body(sample(Lattice{.count = {10, 10, 12}, .corner = {-5, -5, 4}, .jitter = 0.1f}),
+                 {.alpha = alpha});
       s.advance(600 * 0.15);
       const std::span<const float> z = s.positions().z();
       const double depth = 2 * std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size());
       EXPECT_GT(depth, 0.95 * 12) << alpha << ' ' << iterations;
       EXPECT_LT(depth, 1.01 * 12) << alpha << ' ' << iterations;
       EXPECT_LT(s.energy().kinetic, 1e-3 * 1200 * 0.3 * 4) << alpha << ' ' << iterations;
-      std::printf("%g %d: depth %.3f of 12, kinetic %.2e\n", double(alpha), iterations, depth, s.energy().kinetic/1200);
+      std::printf("%g %d: depth %.3f of 12, kinetic %.2e\n", double(alpha), iterations, depth,
+                  s.energy().kinetic / 1200);
     }
 }
 
 TEST(volume, pushes_are_in_the_loads_of_colliders) {
   Simulation s(config(2));
-  const ColliderId tank = s.add_collider(
-      {.shape = Box{{-4, -4, 0}, {4, 4, 99}, true}, .friction = 0.3f, .measure_load = true});
-  const BodyId id = s.add_body(sample(Lattice{.count = {8, 8, 8}, .corner = {-4, -4, 1}, .jitter = 0.1f}), {.alpha = 1.0f});
+  const ColliderId tank =
+      s.add_collider({.shape = Box{{-4, -4, 0}, {4, 4, 99}, true}, .friction = 0.3f, .measure_load = true});
+  const BodyId id =
+      s.add_body(sample(Lattice{.count = {8, 8, 8}, .corner = {-4, -4, 1}, .jitter = 0.1f}), {.alpha = 1.0f});
   for (int k = 0; k < 60; ++k) {
     const Vec before = s.motion(id).momentum;
     const double seconds = s.step().time_step;
@@ -238,9 +243,12 @@ Simulation mixed(int iterations, int threads, InstructionLevel level) {
   Simulation s(solver);
   s.add_collider({.shape = Box{{0, 0, 0}, {8, 8, 99}, true}, .friction = 0.3f});
   s.add_collider({.shape = Sphere{{4, 4, -1}, 3}, .angular_velocity = {0.1f, 0.2f, 0}});
-  s.add_body(sample(Lattice{.count = {8, 8, 4}, .corner = {0, 0, 2}, .jitter = 0.1f}), {.alpha = 1.0f, .rest_density = 2.0f});
-  s.add_body(sample(Lattice{.count = {5, 5, 5}, .spacing = 0.9f, .corner = {1, 1, 7}, .jitter = 0.1f}), {.alpha = 0.0f});
-  s.add_body(sample(Lattice{.count = {5, 5, 5}, .corner = {2, 2, 13}, .jitter = 0.1f}), {.alpha = 0.7f, .cohesion = 0.5f});
+  s.add_body(sample(Lattice{.count = {8, 8, 4}, .corner = {0, 0, 2}, .jitter = 0.1f}),
+             {.alpha = 1.0f, .rest_density = 2.0f});
+  s.add_body(sample(Lattice{.count = {5, 5, 5}, .spacing = 0.9f, .corner = {1, 1, 7}, .jitter = 0.1f}),
+             {.alpha = 0.0f});
+  s.add_body(sample(Lattice{.count = {5, 5, 5}, .corner = {2, 2, 13}, .jitter = 0.1f}),
+             {.alpha = 0.7f, .cohesion = 0.5f});
   s.pin(Aabb{{0, 0, 7}, {8, 2, 9}}, {0, 0, -0.1f});
   return s;
 }
@@ -281,7 +289,8 @@ TEST(volume, is_the_same_far_from_the_origin_and_in_other_units) {
     solver.gravity *= scale;
     Simulation s(solver);
     s.add_collider({.shape = Plane{}, .friction = 0.3f});
-    Body cube = sample(Lattice{.count = {8, 8, 8}, .spacing = scale, .corner = {far * scale, 0, 6 * scale}, .jitter = 0});
+    Body cube = sample(
+        Lattice{.count = {8, 8, 8}, .spacing = scale, .corner = {far * scale, 0, 6 * scale}, .jitter = 0});
     s.add_body(cube, {.alpha = 0.3f, .particle_mass = 1 / scale});
     double most = 0;
     for (int k = 0; k < 120; ++k) {
