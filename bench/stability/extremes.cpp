@@ -449,7 +449,6 @@ class Catalogue {
     add_kept(
         "all damping as much as is allowed", falling_body(), 2,
         [](Setup& s) {
-          s.material.pressure_coefficient = 0.0f;
           const float a = std::max(0.01f, 1 - s.material.alpha.lowest());
           s.material.damping_time = 0.999f * 0.15f * (2.5f / a - 1) / 2;
           s.material.deformation_damping = 6.3f;

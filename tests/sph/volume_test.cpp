@@ -6,6 +6,7 @@
 #include <functional>
 #include <numeric>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "mallow/mallow.h"
@@ -316,6 +317,20 @@ TEST(volume, iterations_end_at_the_tolerance_and_are_none_where_nothing_is_press
     EXPECT_GE(report.largest_compression, report.mean_compression) << k;
   }
   EXPECT_GT(most, 3);
+}
+
+TEST(volume, warns_of_a_tolerance_of_nothing_and_of_bodies_too_stiff_for_it) {
+  const auto warnings = [](const SolverConfig& solver, float elastic_time_step) {
+    Simulation s(solver);
+    s.add_body(sample(Lattice{.count = {4, 4, 4}, .jitter = 0}),
+               {.alpha = 0.0f, .elastic_time_step = elastic_time_step});
+    std::string all;
+    for (const std::string& one : s.info().warnings) all += one + '\n';
+    return all;
+  };
+  EXPECT_NE(warnings(config(0, 1e-3f), 0.15f).find("volume_tolerance"), std::string::npos);
+  EXPECT_NE(warnings(config(2), 0.06f).find("raise material.elastic_time_step"), std::string::npos);
+  EXPECT_EQ(warnings(config(2, 1e-3f), 0.15f), "");
 }
 
 TEST(volume, costs_nothing_where_it_is_off) {
