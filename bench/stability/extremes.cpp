@@ -60,6 +60,13 @@ void stir(Setup& setup, float velocity) {
   }
 }
 
+/// From a nozzle above the body.
+void pour_a_layer_a_step(Simulation& simulation, int step) {
+  if (step > 0) return;
+  const Pose down{.translation = {2.5f, 2.5f, 40}, .rotation = {1, 0, 0, 0}};
+  simulation.add_emitter({.radius = 2.0f, .pose = down, .speed = 6, .most_particles = 800}, MaterialId{0});
+}
+
 class Catalogue {
  public:
   explicit Catalogue(int long_steps) : long_steps_(long_steps) {}
@@ -375,12 +382,7 @@ class Catalogue {
           "a body added and one removed every " + std::to_string(every) + " steps", falling_body(),
           [](Setup&) {}, trial);
     }
-    trial.before_step = [](Simulation& simulation, int step) {
-      if (step > 0) return;
-      const Pose down{.translation = {2.5f, 2.5f, 40}, .rotation = {1, 0, 0, 0}};
-      simulation.add_emitter({.radius = 2.0f, .pose = down, .speed = 6, .most_particles = 800},
-                             MaterialId{0});
-    };
+    trial.before_step = pour_a_layer_a_step;
     add(
         "an emitter of a layer a step onto a body", falling_body(), [](Setup&) {}, trial);
   }
@@ -487,12 +489,7 @@ class Catalogue {
         pressed);
     trial = {};
     trial.energy_room = 1e3;
-    trial.before_step = [](Simulation& simulation, int step) {
-      if (step > 0) return;
-      const Pose down{.translation = {2.5f, 2.5f, 40}, .rotation = {1, 0, 0, 0}};
-      simulation.add_emitter({.radius = 2.0f, .pose = down, .speed = 6, .most_particles = 800},
-                             MaterialId{0});
-    };
+    trial.before_step = pour_a_layer_a_step;
     add_kept(
         "an emitter of a layer a step onto a body", falling_body(), 2, [](Setup&) {}, trial);
   }
