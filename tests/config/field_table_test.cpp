@@ -143,17 +143,19 @@ std::string names_in_states() {
 
 // What fails here has changed what saved states hold: their version in saved_state.cpp must be counted up.
 TEST(field_table, states_of_version_9_hold_these_settings_in_this_order) {
-  EXPECT_EQ(names_in_states<SolverConfig>(),
-            "time_step time_step_factor support_radius gravity update_period update_interval formulation "
-            "acoustic_limit contact contact_offset wall_pressure volume_iterations volume_tolerance sleep_speed "
-            "sleep_time rotation_iterations "
-            "neighbor_slack "
-            "memory_limit");
+  EXPECT_EQ(
+      names_in_states<SolverConfig>(),
+      "time_step time_step_factor support_radius gravity update_period update_interval formulation "
+      "acoustic_limit contact contact_offset wall_pressure volume_iterations volume_tolerance sleep_speed "
+      "sleep_time rotation_iterations "
+      "neighbor_slack "
+      "memory_limit");
   EXPECT_EQ(names_in_states<Material>(),
             "alpha update_threshold pressure_coefficient viscosity elastic_time_step particle_mass "
             "rest_density cohesion friction adhesion damping_time deformation_damping region_radius "
             "region_stride");
-  EXPECT_EQ(names_in_states<Collider>(), "velocity angular_velocity surface_velocity restitution friction measure_load");
+  EXPECT_EQ(names_in_states<Collider>(),
+            "velocity angular_velocity surface_velocity restitution friction measure_load");
   EXPECT_EQ(names_in_states<Emitter>(),
             "radius width height spacing velocity speed start stop jitter most_particles");
   EXPECT_EQ(names_in_states<Sphere>(), "center radius inside");

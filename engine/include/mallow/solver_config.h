@@ -61,8 +61,8 @@ struct SolverConfig {
   /// does it, and nothing where alpha is 0. They change velocities so that no density rises above that at
   /// rest, in elastic bodies and fluids alike, and act beside pressure, which lets fluids rest: a
   /// pressure_coefficient of 0 turns that off, and its limit on steps. One keeps the worst density of a hard
-  /// impact within a fifth of that at rest, three within an eighth. [model 2, section 2; Bender & Koschier
-  /// 2015]
+  /// impact within a quarter of that at rest, three within a seventh. Bodies nearly as stiff as their step
+  /// can carry get less of it. [model 2, section 2; Bender & Koschier 2015]
   int volume_iterations = 0;
   /// Iterations of a step end where the mean of all compressions is at most this, in [0, 1]; 0: all are
   /// taken. 0.001 keeps impacts within a twentieth.
