@@ -65,7 +65,7 @@ struct SolverConfig {
   /// can carry get less of it. [model 2, section 2; Bender & Koschier 2015]
   int volume_iterations = 0;
   /// Iterations of a step end where the mean of all compressions is at most this, in [0, 1]; 0: all are
-  /// taken. 0.001 keeps impacts within a twentieth.
+  /// taken. 0.001 keeps impacts near a twentieth.
   float volume_tolerance = 0.0f;
   /// A body sleeps whose particles have been slower than this in the mean for sleep_time, with all that it
   /// touches: no phase runs for it until something wakes it [m/s], >= 0; 0: none ever sleeps.
