@@ -2,8 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
-#include <span>
 
 #include <Eigen/Core>
 
@@ -47,13 +45,10 @@ Eigen::Matrix3d stretched_moment(const ShapeMatching& shape, std::size_t region)
 bool is_thin(const Eigen::Matrix3d& moment);
 
 /// S of a region whose frame becomes where its particles are: R E⁻¹ Rᵀ, so that the elastic strain E that it
-/// has stays, as far as its eigenvalues over its size are between 0.8 and 1.25. I where the region is thin,
-/// nothing where it is crushed or mirrored. m: M of plastic_lanes.h, moment: S B Sᵀ.
-std::optional<Eigen::Matrix3f> reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
-                                                const Eigen::Matrix3d& moment);
-/// Whether so many regions are that a new frame has to wait: a body that a check meets in a blow would stay
-/// flat.
-bool are_crushed(std::span<const std::optional<Eigen::Matrix3f>> reframed);
+/// has stays, as far as its eigenvalues are between 0.8 and 1.25. I where the region is thin. m: M of
+/// plastic_lanes.h, moment: S B Sᵀ.
+Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
+                                 const Eigen::Matrix3d& moment);
 /// What gives a body a new frame, see Material.
 struct FrameLimits {
   float merge_flow = 0, tear_strain = 0;

@@ -101,20 +101,18 @@ CarriedRegions carry_regions(const ShapeMatching& shape) {
   return carried;
 }
 
-std::optional<CarriedRegions> reframe_regions(const VectorColumn& positions, std::size_t begin,
-                                              int iterations, const Execution& execution,
-                                              ShapeMatching& shape) {
-  std::vector<std::optional<Eigen::Matrix3f>> reframed(shape.region_weight.size());
+CarriedRegions reframe_regions(const VectorColumn& positions, std::size_t begin, int iterations,
+                               const Execution& execution, ShapeMatching& shape) {
+  std::vector<Eigen::Matrix3f> reframed(shape.region_weight.size());
   MatchedBodies matched;
   matched.add(shape, begin);
   for (auto* bodies : {&matched.small, &matched.large})
     for (MatchedBodies::Body& body : *bodies) body.reframed = &reframed;
   match_shapes(positions, iterations, execution, matched);
-  if (are_crushed(reframed)) return {};
   CarriedRegions carried = carry_regions(shape);
   std::ranges::fill(carried.rotations, Eigen::Vector4f(0, 0, 0, 1));
   for (std::size_t i = 0; i < carried.stretches.size(); ++i)
-    carried.stretches[i] = {.stretch = reframed[shape.first_region(i)].value_or(Eigen::Matrix3f::Identity())};
+    carried.stretches[i] = {.stretch = reframed[shape.first_region(i)]};
   forget_lists(carried);
   return carried;
 }

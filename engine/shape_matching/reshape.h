@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,10 +22,9 @@ struct CarriedRegions {
 /// Those of a shape that is built.
 CarriedRegions carry_regions(const ShapeMatching& shape);
 /// Those of a shape whose reference shape is to be where its particles are now: they keep the elastic strain
-/// that they have, and nothing else. Nothing where it is crushed. The pull is that of now.
-std::optional<CarriedRegions> reframe_regions(const VectorColumn& positions, std::size_t begin,
-                                              int iterations, const Execution& execution,
-                                              ShapeMatching& shape);
+/// that they have, and nothing else. The pull is that of now.
+CarriedRegions reframe_regions(const VectorColumn& positions, std::size_t begin, int iterations,
+                               const Execution& execution, ShapeMatching& shape);
 /// No list is as it was.
 void forget_lists(CarriedRegions& carried);
 /// Row k becomes what row order[k] was.

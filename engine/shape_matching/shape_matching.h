@@ -88,7 +88,7 @@ class MatchedBodies {
     FlowRule rule;
     ShapeInput input = {};  ///< since the last sum_regions()
     /// Per region what reframed_stretch() makes of it, if asked for.
-    std::vector<std::optional<Eigen::Matrix3f>>* reframed = nullptr;
+    std::vector<Eigen::Matrix3f>* reframed = nullptr;
   };
   float time_step = 0;  ///< in which regions flow; 0: nothing does [s]
   std::vector<Body> small, large;

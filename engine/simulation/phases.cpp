@@ -1,6 +1,5 @@
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -103,26 +102,25 @@ int update_references(Simulation::State& state) {
     const double threshold =
         static_cast<double>(body.material->update_threshold * (1.0f - body.material->alpha));
     const bool yields = check && body.follows_threshold() && body.judged_external > threshold;
-    std::optional<CarriedRegions> carried;
-    if (check && !yields && flows(body) && frame_is_due(state, body)) {
-      check_damage(state);
-      carried = reframe_regions(state.store.position, body.begin, state.config.rotation_iterations,
-                                state.execution, body.shape);
-    }
-    const bool reframes = carried.has_value();
+    const bool reframes = check && !yields && flows(body) && frame_is_due(state, body);
     const bool had_regions = body.matches_shape() && body.shape.built;
     const auto due = [&] { return body.matches_shape() && !body.shape.built; };
     // A reference shape outlives the step: nothing that is not finite may get into it.
     if (yields || reframes || due()) check_damage(state);
     if (yields || reframes) {
+      CarriedRegions carried;
       if (had_regions) find_parts(body.shape, state.parts_before);
-      if (yields && had_regions) catch_up_with_pull(state, body);
+      if (reframes)
+        carried = reframe_regions(state.store.position, body.begin, state.config.rotation_iterations,
+                                  state.execution, body.shape);
+      else if (had_regions)
+        catch_up_with_pull(state, body);
       take_reference(state, body);
       const std::span<const std::uint32_t> order = state.region_scratch.pillars.order.span();
       if (had_regions) sort_parts(order, state.parts_before);
       if (reframes) {
-        sort_carried(order, *carried);
-        build_carried(*carried, state.execution, state.region_scratch, body.shape);
+        sort_carried(order, carried);
+        build_carried(carried, state.execution, state.region_scratch, body.shape);
       }
       body.yielded = true;
       state.events.push_back({BodyEvent::Kind::yielded, body.id});

@@ -261,7 +261,8 @@ std::vector<std::size_t> Oracle::update_references() {
     const Material& material = groups_[g].material;
     const bool follows = !material.plastic_yield || material.update_threshold;
     if (is_always_fluid(groups_[g]) || !follows || judged_acceleration(g) <= threshold) {
-      if (!reframe_is_due(g) || !reframe(g)) continue;
+      if (!reframe_is_due(g)) continue;
+      reframe(g);
       updated.push_back(g);
       continue;
     }
@@ -522,32 +523,23 @@ bool Oracle::reframe_is_due(std::size_t group) const {
   return false;
 }
 
-// Elastic strain stays; all else is as after an update. False where too much of it is crushed.
-bool Oracle::reframe(std::size_t group) {
+// Elastic strain stays; all else is as after an update.
+void Oracle::reframe(std::size_t group) {
   match_shapes();
   std::vector<Matrix> stretches;
-  std::size_t crushed = 0, count = 0;
   for (const Particle& j : particles_) {
     stretches.push_back(Matrix::Identity());
-    if (j.group != group) continue;
-    ++count;
-    if (is_thin(j)) continue;
+    if (j.group != group || is_thin(j)) continue;
     const Eigen::SelfAdjointEigenSolver<Matrix> solver(elastic_strain(j));
     const Vec found = solver.eigenvalues();
-    const double size = found.minCoeff() > 0 ? std::cbrt(found.prod()) : 0;
-    if (size <= 0.6) {
-      ++crushed;
-      continue;
-    }
-    const Vec clipped = std::min(size, 1.25) * (found / size).cwiseMax(0.8).cwiseMin(1.25);
+    const double size = found.minCoeff() > 0 ? std::clamp(std::cbrt(found.prod()), 0.3, 1.25) : 1;
+    const Vec clipped = size * (found / size).cwiseMax(0.8).cwiseMin(1.25);
     const Matrix axes = j.rotation * solver.eigenvectors();
     stretches.back() = axes * clipped.cwiseInverse().asDiagonal() * axes.transpose();
   }
-  if (50 * crushed > count) return false;
   rebuild_regions(group);
   for (std::size_t i = 0; i < particles_.size(); ++i)
     if (particles_[i].group == group) particles_[i].stretch = stretches[i];
-  return true;
 }
 
 // Section 4 A of the second chapter, one obstacle: its parts one after the other.

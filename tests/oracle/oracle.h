@@ -41,11 +41,11 @@ struct Particle {
   double wall_share = 0;  ///< of the kernel's volume, of all walls
   double density = 0;
   double pressure = 0;
-  Vec sph{0, 0, 0};                     ///< a^SPH of the same group [m/s²]
-  Vec external{0, 0, 0};                ///< gravity, user force, walls and the other groups [m/s²]
-  Vec crossing{0, 0, 0};                ///< the part of `external` that is from the other groups [m/s²]
-  Vec contact{0, 0, 0};                 ///< change of velocity by colliders over Δt [m/s²]
-  Vec goal{0, 0, 0};                    ///< g
+  Vec sph{0, 0, 0};       ///< a^SPH of the same group [m/s²]
+  Vec external{0, 0, 0};  ///< gravity, user force, walls and the other groups [m/s²]
+  Vec crossing{0, 0, 0};  ///< the part of `external` that is from the other groups [m/s²]
+  Vec contact{0, 0, 0};   ///< change of velocity by colliders over Δt [m/s²]
+  Vec goal{0, 0, 0};      ///< g
   Matrix moment = Matrix::Zero();       ///< A of its region
   Matrix rest_moment = Matrix::Zero();  ///< Ā
 };
@@ -109,7 +109,7 @@ class Oracle {
   void rebuild_regions(std::size_t group);
   void flow(double dt);
   bool reframe_is_due(std::size_t group) const;
-  bool reframe(std::size_t group);
+  void reframe(std::size_t group);
   void settle();
   void follow_alpha();
   double mean_external_acceleration(std::size_t group) const;
