@@ -28,7 +28,7 @@ double half_space_slope(double d, double sigma) {
 
 // Reads x, ρ, v' and walls; writes v'.
 void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
-  const double sigma = config_.support_radius;
+  const double sigma = *config_.support_radius;
   const std::size_t n = particles_.size();
   const auto volume = [&](const Particle& p) {
     return groups_[p.group].mass / groups_[p.group].rest_density;

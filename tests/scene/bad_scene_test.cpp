@@ -36,7 +36,8 @@ const Case k_cases[] = {
      "scene.toml:3:1: solver: unknown key 'foo'; known are time_step, time_step_factor, support_radius, "
      "gravity, "
      "update_period, update_interval, formulation, acoustic_limit, contact, contact_offset, "
-     "wall_pressure, volume_iterations, volume_tolerance, sleep_speed, sleep_time, rotation_iterations, "
+      "wall_pressure, volume_iterations, volume_tolerance, sleep_speed, sleep_time, air_temperature, "
+      "rotation_iterations, "
      "neighbor_slack, instruction_level and memory_limit"},
     {{.solver = "support_radius = 2.0\nupdate_interval = 10\nupdate_period = 1"},
      "scene.toml:3:19: solver.update_interval: is not allowed beside update_period: give one of the two"},
