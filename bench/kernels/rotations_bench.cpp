@@ -43,7 +43,7 @@ struct MatrixRegions {
     shape.sums.resize(k_matrices * k_row);
     shape.undecided.resize(k_matrices);
     restore();
-    matched.large.push_back({&shape, 0, shape_input(x, 0, shape)});
+    matched.large.push_back({&shape, 0, {}, shape_input(x, 0, shape)});
     matched.regions.add(k_matrices);
   }
   MatrixRegions(const MatrixRegions&) = delete;
