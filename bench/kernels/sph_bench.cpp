@@ -67,7 +67,9 @@ void add_scene(const LatticeScene& scene, int threads, InstructionLevel level, K
     };
   };
   const auto density = [=](SphScene& s) { compute_density({threads, level}, s.sph); };
-  const auto accelerations = [=](SphScene& s) { compute_accelerations(s.velocity, {{}, {}}, {threads, level}, s.sph); };
+  const auto accelerations = [=](SphScene& s) {
+    compute_accelerations(s.velocity, {{}, {}}, {threads, level}, s.sph);
+  };
   const auto about = [&](const char* kernel) {
     return KernelCase{kernel, scene.name, threads, name(level), "pair"};
   };

@@ -124,10 +124,10 @@ class Catalogue {
       for (std::size_t i = 0; i < s.body.positions.size(); ++i)
         s.body.alpha.push_back(static_cast<float>(i % 2));
     });
-    add_free("a modulus beside a thousandth of it", [&](Setup& s) {
-      painted(s.body.stiffness, s.body, 2.5f, 2.5e-3f);
-    });
-    add("alpha 0 beside alpha 1, dropped", falling_body(), [&](Setup& s) { painted(s.body.alpha, s.body, 0, 1); });
+    add_free("a modulus beside a thousandth of it",
+             [&](Setup& s) { painted(s.body.stiffness, s.body, 2.5f, 2.5e-3f); });
+    add("alpha 0 beside alpha 1, dropped", falling_body(),
+        [&](Setup& s) { painted(s.body.alpha, s.body, 0, 1); });
   }
 
   void heated_bodies() {

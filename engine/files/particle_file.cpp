@@ -64,9 +64,9 @@ void write_particles(const std::filesystem::path& file, const ParticleFrame& fra
   const std::size_t bytes_of_body = body_bytes(frame.bodies);
   std::string bytes = particle_header(frame, bytes_of_body);
   const std::size_t total =
-      bytes.size() + frame.positions.size() * (24 + bytes_of_body + (frame.ids.empty() ? 0 : 8) +
-                                                         (frame.alphas.empty() ? 0 : 4) +
-                                                         (frame.temperatures.empty() ? 0 : 4));
+      bytes.size() +
+      frame.positions.size() * (24 + bytes_of_body + (frame.ids.empty() ? 0 : 8) +
+                                (frame.alphas.empty() ? 0 : 4) + (frame.temperatures.empty() ? 0 : 4));
   require_readable_size(file, total);
   bytes.reserve(total);
   for (std::size_t i = 0; i < frame.positions.size(); ++i) {

@@ -69,8 +69,8 @@ void find_surface(const HeatedBody& body, const Sph& sph, std::size_t begin, std
   for (const NearWall& wall : near) {
     const HeatedCollider& collider = heat.colliders[wall.collider];
     if (!collider.is_heated || !(kappa > 0)) continue;
-    const double way = static_cast<double>(wall.distance - body.inward) -
-                       static_cast<double>(body.lattice.resistance) * h;
+    const double way =
+        static_cast<double>(wall.distance - body.inward) - static_cast<double>(body.lattice.resistance) * h;
     const double g = h * h / (std::max(way, 0.125 * h) / kappa + collider.inverse_transfer);
     heat.surface[wall.row].conductance += g;
     heat.surface[wall.row].flow += g * collider.temperature;
@@ -94,11 +94,10 @@ void heat_rows(const HeatedBody& body, std::size_t begin, std::size_t end, doubl
     const double before =
         static_cast<double>(columns.temperature[row]) + static_cast<double>(columns.rest[row]);
     const Heat::Surface& surface = heat.surface[row];
-    const double power =
-        static_cast<double>(heat.flow[row]) + (surface.flow - surface.conductance * before);
+    const double power = static_cast<double>(heat.flow[row]) + (surface.flow - surface.conductance * before);
     const double gained = time_step * power / body.mass;
-    const double after = c.latent_heat > 0 ? c.temperature(c.enthalpy(before) + gained)
-                                           : before + gained / c.specific_heat;
+    const double after =
+        c.latent_heat > 0 ? c.temperature(c.enthalpy(before) + gained) : before + gained / c.specific_heat;
     columns.temperature[row] = static_cast<float>(after);
     columns.rest[row] = static_cast<float>(after - static_cast<double>(columns.temperature[row]));
   }
@@ -121,7 +120,8 @@ double HeatConstants::temperature(double enthalpy) const {
 }
 
 std::size_t Heat::bytes() const {
-  return sorted.bytes() + openness.bytes() + flow.bytes() + conductance.bytes() + surface.capacity() * sizeof(Surface);
+  return sorted.bytes() + openness.bytes() + flow.bytes() + conductance.bytes() +
+         surface.capacity() * sizeof(Surface);
 }
 
 double conduct(const Sph& sph, std::span<const PlacedCollider> placed, double time_step,

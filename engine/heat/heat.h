@@ -33,15 +33,15 @@ struct HeatedBody {
   std::uint32_t group;     ///< of SPH
   float spacing;           ///< h [m]
   double mass;             ///< m [kg]
-  float inward;            ///< how far behind what it touches a collider's surface lies: contact_offset − h/2 [m]
+  float inward;  ///< how far behind what it touches a collider's surface lies: contact_offset − h/2 [m]
   HeatConstants constants;
   HeatLattice lattice;
 };
 /// A collider, in the order of all.
 struct HeatedCollider {
   bool is_heated = false;
-  double temperature = 0;        ///< [K]
-  double inverse_transfer = 0;   ///< of what lies between it and a body [m² K/W]
+  double temperature = 0;       ///< [K]
+  double inverse_transfer = 0;  ///< of what lies between it and a body [m² K/W]
 };
 
 /// What of a scene carries heat. Temperatures are those of the store: a float and what it leaves out of a
@@ -76,13 +76,13 @@ struct HeatedColumns {
   Column<float>& rest;  ///< what `temperature` leaves out
 };
 
-/// Most parts that a step is cut into. A particle takes on at most its neighbours' mean in one: T stays within
-/// what it was.
+/// Most parts that a step is cut into. A particle takes on at most its neighbours' mean in one: T stays
+/// within what it was.
 inline constexpr double k_most_heat_parts = 200;
 
-/// Conducts for time_step [s], over lists of SPH that are those of these positions: explicit, in as many equal
-/// parts as stability takes. placed: all colliders. Returns how many; where that is above k_most_heat_parts
-/// nothing is changed.
+/// Conducts for time_step [s], over lists of SPH that are those of these positions: explicit, in as many
+/// equal parts as stability takes. placed: all colliders. Returns how many; where that is above
+/// k_most_heat_parts nothing is changed.
 double conduct(const Sph& sph, std::span<const PlacedCollider> placed, double time_step,
                const Execution& execution, const HeatedColumns& columns, Heat& heat);
 

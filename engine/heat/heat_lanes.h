@@ -33,7 +33,7 @@ struct HeatInput {
   ConstVectors position;
   const float* temperature;
   const float* openness;  ///< sorted: see HeatLattice::open; pairs count the mean of the two times
-  float inverse_radius;  ///< 1/σ [1/m]
+  float inverse_radius;   ///< 1/σ [1/m]
 };
 
 struct HeatLanes {

@@ -9,7 +9,7 @@ namespace mallow {
 /// with the gradient of the poly6 kernel over r, for volumes h³: where T is linear they cancel, where it is
 /// quadratic Σ C w x² = 2 makes them the Laplacian.
 struct HeatLattice {
-  float factor = 0;    ///< C
+  float factor = 0;  ///< C
   /// At a surface pairs are missing, and without them less heat goes along it: pairs count the mean of
   /// 1 + open (ρ0/ρ − 1) of their two times, with which as much goes along a flat face as within.
   float open = 0;

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "core/column.h"
-#include "core/threads.h"
 #include "core/slots.h"
+#include "core/threads.h"
 
 namespace mallow {
 
@@ -17,11 +17,11 @@ struct ParticleStore {
   Column<ParticleId> id;
   Column<std::uint16_t> pin;  ///< 0: free, else 1 + index of the pin; empty where nothing is pinned
   // What some body has by particle; empty where none has, else bodies without hold their material's.
-  Column<float> alpha;      ///< α, in [0, 1]
-  Column<float> stiffness;  ///< factor on the modulus, >= 0
-  Column<float> temperature;      ///< T [K]; empty where nothing carries heat
+  Column<float> alpha;             ///< α, in [0, 1]
+  Column<float> stiffness;         ///< factor on the modulus, >= 0
+  Column<float> temperature;       ///< T [K]; empty where nothing carries heat
   Column<float> temperature_rest;  ///< what that leaves out of a double [K]
-  Slots slots;              ///< id -> row
+  Slots slots;                     ///< id -> row
 
   // Where a step writes before it is known to be good; scratch of sorts in between.
   VectorColumn next_position;

@@ -76,7 +76,8 @@ BoundFields fields(ScenePaint& paint) {
   return {
       {"translate", &paint.translate, k_finite, "m", "where the origin of its shape is"},
       {"rotate", &paint.rotate, k_finite, "degrees", "turn of its shape about x, then y, then z"},
-      {"alpha", &paint.alpha, between(0, 1), "", "of the particles in it, for the whole run", "the material's"},
+      {"alpha", &paint.alpha, between(0, 1), "", "of the particles in it, for the whole run",
+       "the material's"},
       {"stiffness", &paint.stiffness, k_not_negative, "", "factor on the elastic modulus in it", "1"},
       {"temperature", &paint.paint_temperature, k_finite, "K", "of the particles in it at the start",
        "the material's"},

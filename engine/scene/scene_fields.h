@@ -19,7 +19,7 @@ BoundFields fields(MeshSource& source);
 BoundFields fields(PointsSource& source);
 BoundFields fields(ImplicitSource& source);
 BoundFields fields(SceneCollider& collider);  ///< without its shape
-BoundFields fields(ScenePaint& paint);  ///< without its shape
+BoundFields fields(ScenePaint& paint);        ///< without its shape
 BoundFields fields(HullSource& source);
 BoundFields fields(MeshColliderSource& source);
 BoundFields fields(SceneKeyframe& keyframe);

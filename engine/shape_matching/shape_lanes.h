@@ -5,7 +5,8 @@
 
 namespace mallow {
 
-/// Floats of a row: twelve sums, Σ e_j where regions differ, and padding, one cache line, so that a neighbour costs one load and one add.
+/// Floats of a row: twelve sums, Σ e_j where regions differ, and padding, one cache line, so that a neighbour
+/// costs one load and one add.
 inline constexpr std::size_t k_row = 16;
 inline constexpr std::size_t k_row_sums = 12;
 /// Consecutive rows.
@@ -48,7 +49,8 @@ struct RegionLists {
 /// c̄_j     | center        | m    | Σ w x̄ / W
 /// B_j     | moment        | m²   | Σ w x̄ x̄ᵀ − W c̄ c̄ᵀ: xx yy zz yz xz xy
 /// R_j     | rotation      | 1    | quaternion x y z w, last step's where a step starts
-/// e_j     | elasticity    | 1    | (1 − α_j) times the stiffness factor of region j's owner, where some differ:
+/// e_j     | elasticity    | 1    | (1 − α_j) times the stiffness factor of region j's owner, where some
+/// differ:
 ///         |               |      | the goal of region j counts e_j times. Momentum is kept, as what a region
 ///         |               |      | does to its particles sums up to nothing. [model 2, section 7]
 struct ShapeInput {
@@ -60,7 +62,7 @@ struct ShapeInput {
   const float* region_weight;
   ConstVectors center;
   const float* moment[6];
-  const float* elasticity;  ///< null: 1 for all
+  const float* elasticity;     ///< null: 1 for all
   float frame_rotation[9];     ///< R_g, row by row
   float frame_translation[3];  ///< t
 };

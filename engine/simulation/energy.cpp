@@ -44,9 +44,9 @@ double match(const Simulation::State& state, const BodyState& body, std::vector<
     const Eigen::Quaterniond last(q(3), q(0), q(1), q(2));
     const Eigen::Matrix3d rotation = polar_rotation(a, last, scale).toRotationMatrix();
     const std::size_t owner = body.begin + shape.owner(j);
-    const double share = body.is_painted() ? static_cast<double>((1 - state.store.alpha[owner]) *
-                                                                 state.store.stiffness[owner])
-                                           : 1.0;
+    const double share =
+        body.is_painted() ? static_cast<double>((1 - state.store.alpha[owner]) * state.store.stiffness[owner])
+                          : 1.0;
     for (const std::uint32_t i : members) {
       const Vec away = rotation * (rest(i) - rest_center) + center - x(i);
       sum += 0.5 * share * static_cast<double>(shape.weight[i]) * away.squaredNorm();

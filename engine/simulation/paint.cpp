@@ -182,8 +182,8 @@ bool update_part(Simulation::State& s, BodyState& body) {
   for (std::size_t i = 0; i < yields.size(); ++i)
     yields[i] = mean > body.material->update_threshold * (1.0f - s.store.alpha[body.begin + i]);
   if (std::ranges::find(yields, 0) == yields.end()) return false;
-  // What the old shape pulled in half a step, less what the new one will: as where the whole is updated, where
-  // that is nothing.
+  // What the old shape pulled in half a step, less what the new one will: as where the whole is updated,
+  // where that is nothing.
   kick_by_pull(s, body, 0.5f);
   CarriedRegions carried = carry_regions(body.shape);
   rest_anew(s.store.position, body.begin, yields, s.execution, carried, body.shape);

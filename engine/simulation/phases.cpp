@@ -20,8 +20,9 @@ constexpr std::int64_t k_sort_interval = 60;
 
 bool Simulation::State::needs_sph() const {
   const bool presses = bodies.size() > 1 && !sph.apart;
-  return std::ranges::any_of(
-      bodies, [&](const BodyState& body) { return body.moves() && (presses || body.is_heated || body.most_alpha() > 0); });
+  return std::ranges::any_of(bodies, [&](const BodyState& body) {
+    return body.moves() && (presses || body.is_heated || body.most_alpha() > 0);
+  });
 }
 
 void read_alphas(Simulation::State& state) {

@@ -107,7 +107,7 @@ void resolve_settings(Simulation::State& state) {
       body.viscosity = thins->highest();
     else
       body.viscosity =
-        body.material->settings.viscosity.value_or(default_viscosity(state.scale, state.base_step(), body));
+          body.material->settings.viscosity.value_or(default_viscosity(state.scale, state.base_step(), body));
 }
 
 float pressure_coefficient(const Simulation::State& state, const MaterialState& material) {

@@ -32,7 +32,7 @@ struct MaterialState {
   std::string name;
   std::uint32_t number = 0;  ///< its MaterialId
   Material settings;
-  float alpha = 0;             ///< at the present time
+  float alpha = 0;  ///< at the present time
   /// Of all particles of its bodies, where some have their own: that k suits.
   float most_alpha = 0, most_elasticity = 1;
   float update_threshold = 0;  ///< γ_u in force [m/s²]
@@ -75,10 +75,10 @@ struct BodyState {
   double mean_speed = 0;  ///< of its particles, after the last step [m/s]
   Aabb box = {};          ///< around its particles while it sleeps [m]
   bool paints_alpha = false, paints_stiffness = false;  ///< its particles have their own
-  bool is_heated = false;  ///< its particles have a temperature
+  bool is_heated = false;                               ///< its particles have a temperature
   BlendRange blend;                                     ///< of one that paints
-  bool grew = true;       ///< has particles that prepare() has not seen
-  ShapeMatching shape;    ///< empty where alpha is never below 1
+  bool grew = true;                                     ///< has particles that prepare() has not seen
+  ShapeMatching shape;                                  ///< empty where alpha is never below 1
 
   std::size_t size() const { return end - begin; }
   /// Mean |a_ext| before the check that is next [m/s²].
@@ -198,7 +198,7 @@ struct Simulation::State {
   // Scratch.
   RegionScratch region_scratch;
   Parts parts_before, parts_after;  ///< of a body whose reference shape is updated
-  MatchedBodies matched;  ///< those whose shape is matched in the step under way
+  MatchedBodies matched;            ///< those whose shape is matched in the step under way
   FastestInput fastest;
   MovingBodies moving;
   Column<std::uint32_t> fluid_order;
@@ -296,7 +296,8 @@ void read_alphas(Simulation::State& state);
 void follow_temperatures(Simulation::State& state);
 /// temperatures -> viscosity of what follows them.
 void thin_by_heat(Simulation::State& state);
-/// lists of SPH, colliders, air -> temperatures. [Cleary & Monaghan 1999; model 2, section 7] Throws StepError.
+/// lists of SPH, colliders, air -> temperatures. [Cleary & Monaghan 1999; model 2, section 7] Throws
+/// StepError.
 void conduct_heat(Simulation::State& state, float time_step);
 /// Temperatures of particles that have none yet; what follows from the materials of heated bodies.
 void prepare_heat(Simulation::State& state);

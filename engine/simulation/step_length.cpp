@@ -25,7 +25,8 @@ TimeStepLimits::Pressure acting_pressure(const Simulation::State& state, const B
   // Other bodies feel the whole pressure, whatever this one's alpha, unless it follows alpha.
   const bool follows = !body.material->settings.pressure_coefficient;
   const bool presses = state.bodies.size() > 1 && !state.sph.apart;
-  const float push = presses ? (follows ? contact_share(body.material->most_alpha) : 1.0f) : body.most_alpha();
+  const float push =
+      presses ? (follows ? contact_share(body.material->most_alpha) : 1.0f) : body.most_alpha();
   const float drag = presses ? 1.0f : body.most_alpha();
   const float coefficient = push * pressure_coefficient(state, *body.material);
   return {.coefficient = coefficient,

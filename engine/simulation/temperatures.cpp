@@ -52,7 +52,8 @@ void warm_rows(Simulation::State& s, BodyState& body, std::size_t begin, const B
   make_columns(s);
   body.is_heated = true;
   for (std::size_t row = begin; row < body.end; ++row) {
-    s.store.temperature[row] = points.temperature.empty() ? *material.temperature : points.temperature[row - begin];
+    s.store.temperature[row] =
+        points.temperature.empty() ? *material.temperature : points.temperature[row - begin];
     s.store.temperature_rest[row] = 0;
   }
 }
@@ -109,9 +110,8 @@ void follow_temperatures(Simulation::State& s) {
     for (std::size_t row = begin; row < end; ++row)
       s.store.alpha[row] = alpha.at(static_cast<double>(s.store.temperature[row]));
   });
-  if (std::ranges::any_of(s.bodies, [&](const BodyState& body) {
-        return body.is_heated && follows(*body.material);
-      }))
+  if (std::ranges::any_of(s.bodies,
+                          [&](const BodyState& body) { return body.is_heated && follows(*body.material); }))
     s.blend_changed = true;
 }
 
@@ -123,7 +123,8 @@ void thin_by_heat(Simulation::State& s) {
   if (std::ranges::none_of(s.bodies, thins)) return s.viscosity.resize(0);
   s.viscosity.resize(s.store.size());
   for (const BodyState& body : s.bodies)
-    if (!thins(body)) std::fill(s.viscosity.begin() + body.begin, s.viscosity.begin() + body.end, body.viscosity);
+    if (!thins(body))
+      std::fill(s.viscosity.begin() + body.begin, s.viscosity.begin() + body.end, body.viscosity);
   for_rows_of(s, follows, [&](const BodyState& body, std::size_t begin, std::size_t end) {
     const Schedule& viscosity = *body.material->settings.viscosity_by_temperature;
     for (std::size_t row = begin; row < end; ++row)
@@ -150,8 +151,7 @@ void conduct_heat(Simulation::State& s, float time_step) {
     heat.colliders.push_back(
         {.is_heated = collider.temperature.has_value(),
          .temperature = collider.temperature ? static_cast<double>(collider.temperature->at(s.time)) : 0,
-         .inverse_transfer =
-             collider.heat_transfer ? 1 / static_cast<double>(*collider.heat_transfer) : 0});
+         .inverse_transfer = collider.heat_transfer ? 1 / static_cast<double>(*collider.heat_transfer) : 0});
   heat.air_temperature = static_cast<double>(s.config.air_temperature.at(s.time));
   const double parts =
       conduct(s.sph, s.placed_colliders, static_cast<double>(time_step), s.execution,

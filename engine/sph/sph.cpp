@@ -37,8 +37,8 @@ SphInput input(const Sph& sph) {
 
 std::size_t Sph::bytes() const {
   return grid.bytes() + lists.bytes() + kept.bytes() + rows.bytes() + positions.bytes() + group.bytes() +
-         velocity.bytes() + alpha.bytes() + viscosity.bytes() + density.bytes() + pressure.bytes() + volume.bytes() + density_by_row.bytes() +
-         acceleration.bytes() + cross_group.bytes() + walls.bytes();
+         velocity.bytes() + alpha.bytes() + viscosity.bytes() + density.bytes() + pressure.bytes() +
+         volume.bytes() + density_by_row.bytes() + acceleration.bytes() + cross_group.bytes() + walls.bytes();
 }
 
 bool find_neighbors(const VectorColumn& positions, const Execution& execution, Sph& sph) {
@@ -82,8 +82,8 @@ void compute_density(const Execution& execution, Sph& sph) {
   const SphLanes& lanes = MALLOW_SELECT(execution.level, sph_lanes);
   // Lists that are kept for steps to come stay as they are.
   const bool whole = sph.kept.any || sph.keeps_lists;
-  const NearLists near = whole ? NearLists{nullptr, nullptr}
-                                      : NearLists{sph.lists.indices.data(), sph.lists.count.data()};
+  const NearLists near =
+      whole ? NearLists{nullptr, nullptr} : NearLists{sph.lists.indices.data(), sph.lists.count.data()};
   parallel_for(
       execution.threads, sph.grid.clusters(),
       [&](std::size_t begin, std::size_t end) {

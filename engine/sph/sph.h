@@ -26,7 +26,7 @@ struct Sph {
   /// Constants of particles that act on each other as parts of one body: that of one body, or of several
   /// that merge.
   std::vector<SphGroup> groups;
-  bool apart = false;  ///< pairs of two groups add nothing
+  bool apart = false;        ///< pairs of two groups add nothing
   bool keeps_lists = false;  ///< others want to see all that is within σ, of other groups too
   /// The rows up to `end`, behind those of the body before.
   struct Body {
@@ -42,8 +42,8 @@ struct Sph {
   KeptLists kept;       ///< empty without slack
   Walls walls;
   // Sorted order.
-  Column<std::uint32_t> group;  ///< empty where there is one group
-  VectorColumn velocity;        ///< empty without viscosity
+  Column<std::uint32_t> group;     ///< empty where there is one group
+  VectorColumn velocity;           ///< empty without viscosity
   Column<float> alpha, viscosity;  ///< see ByParticle
   Column<float> density, pressure, volume;
   // By row of the particle store; of those that take part.

@@ -35,15 +35,15 @@ struct SphInput {
   const std::uint32_t* row_of;  ///< sorted place -> row of the particle store
   const std::uint32_t* group;   ///< null: all in group 0
   const SphGroup* groups;
-  bool apart;  ///< pairs of two groups add nothing: contact between bodies is not by pressure
+  bool apart;               ///< pairs of two groups add nothing: contact between bodies is not by pressure
   const float* wall_share;  ///< of the volume around a particle, by row; null: no wall is near any
   ConstVectors position;
-  ConstVectors velocity;  ///< accelerations only; null without viscosity
+  ConstVectors velocity;   ///< accelerations only; null without viscosity
   const float* alpha;      ///< α_i, accelerations only; null: sums of one group are not blended
   const float* viscosity;  ///< μ_i [Pa s], beside alpha; null: that of their groups
-  float radius;           ///< σ [m]
-  float inverse_radius;   ///< 1/σ
-  float density_factor;   ///< KernelFactors
+  float radius;            ///< σ [m]
+  float inverse_radius;    ///< 1/σ
+  float density_factor;    ///< KernelFactors
   float spiky_gradient;
   float poly6_gradient;
 };

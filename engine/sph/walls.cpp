@@ -139,8 +139,8 @@ void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders,
       const float along = wall.share / std::max(1 - walls.share[row], k_least_seen);
       const Vec3 a = in.sph_acceleration.get(row), &n = wall.normal;
       const Vec3 beside = along * (a - a.dot(n) * n);
-      const Vec3 push = in.alpha ? Vec3(in.alpha[row] * across * n + beside)
-                                 : Vec3(body.alpha * (across * n + beside));
+      const Vec3 push =
+          in.alpha ? Vec3(in.alpha[row] * across * n + beside) : Vec3(body.alpha * (across * n + beside));
       walls.acceleration.set(row, walls.acceleration.get(row) + push);
       const bool loads = in.all_loads || colliders[wall.collider].measures_load;
       if (!loads || (in.pin && in.pin[row] != 0)) continue;

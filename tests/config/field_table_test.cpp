@@ -155,7 +155,8 @@ TEST(field_table, states_of_version_9_hold_these_settings_in_this_order) {
             "region_stride temperature conductivity specific_heat latent_heat solidus liquidus heat_transfer "
             "alpha_by_temperature viscosity_by_temperature");
   EXPECT_EQ(names_in_states<Collider>(),
-            "velocity angular_velocity surface_velocity restitution friction temperature heat_transfer measure_load");
+            "velocity angular_velocity surface_velocity restitution friction temperature heat_transfer "
+            "measure_load");
   EXPECT_EQ(names_in_states<Emitter>(),
             "radius width height spacing velocity speed start stop jitter most_particles");
   EXPECT_EQ(names_in_states<Sphere>(), "center radius inside");

@@ -223,8 +223,8 @@ void Oracle::list_regions(std::size_t group) {
   }
 }
 
-// Section 7 of the second chapter: those whose own threshold is exceeded rest beside the nearest that holds, or
-// that rests beside such a one.
+// Section 7 of the second chapter: those whose own threshold is exceeded rest beside the nearest that holds,
+// or that rests beside such a one.
 void Oracle::rest_anew(std::size_t group, double mean) {
   const double radius = groups_[group].material.region_radius.value_or(config_.support_radius);
   std::vector<Particle*> placed, left;
@@ -366,9 +366,9 @@ Vec Oracle::wall_acceleration(const Particle& p) const {
   const double pressure = group.pressure_coefficient * std::max(0.0, p.density - group.rest_density);
   Vec sum = Vec::Zero();
   for (const Particle::Wall& wall : p.walls)
-    sum += alpha_of(p) * pressure / p.density * wall.gradient * wall.normal +
-           wall.share / std::max(0.5, 1 - p.wall_share) *
-               (p.blended - p.blended.dot(wall.normal) * wall.normal);
+    sum +=
+        alpha_of(p) * pressure / p.density * wall.gradient * wall.normal +
+        wall.share / std::max(0.5, 1 - p.wall_share) * (p.blended - p.blended.dot(wall.normal) * wall.normal);
   return sum;
 }
 
@@ -441,8 +441,7 @@ double Oracle::max_velocity() const {
   for (const Particle& p : particles_) {
     const Group& group = groups_[p.group];
     const bool whole = group.material.pressure_coefficient && !is_painted();
-    if (!p.pinned)
-      max = std::max(max, (p.v + longest_ * ((whole ? p.sph : p.blended) + p.external)).norm());
+    if (!p.pinned) max = std::max(max, (p.v + longest_ * ((whole ? p.sph : p.blended) + p.external)).norm());
   }
   return max;
 }

@@ -47,7 +47,7 @@ struct Particle {
   Vec crossing{0, 0, 0};  ///< the part of `external` that is from the other groups [m/s²]
   Vec contact{0, 0, 0};   ///< change of velocity by colliders over Δt [m/s²]
   Vec goal{0, 0, 0};      ///< g
-  Vec pull{0, 0, 0};      ///< mean of goal_ij − x_i over its regions, each times (1 − alpha) stiffness of its own
+  Vec pull{0, 0, 0};  ///< mean of goal_ij − x_i over its regions, each times (1 − alpha) stiffness of its own
 };
 
 struct Group {
@@ -55,13 +55,13 @@ struct Group {
   double spacing = 0;
   double mass = 0;
   double rest_density = 0;
-  double update_threshold = 0;      ///< γ_u
-  double viscosity = 0;             ///< μ
-  double alpha = 0;                 ///< of the last step
+  double update_threshold = 0;                 ///< γ_u
+  double viscosity = 0;                        ///< μ
+  double alpha = 0;                            ///< of the last step
   double most_alpha = 0, most_elasticity = 0;  ///< of its particles
-  double pressure_coefficient = 0;  ///< k of the last step
-  double contact_share = 1;         ///< of its pressure that acts between groups
-  double cohesion = 0;              ///< share of its negative pressure
+  double pressure_coefficient = 0;             ///< k of the last step
+  double contact_share = 1;                    ///< of its pressure that acts between groups
+  double cohesion = 0;                         ///< share of its negative pressure
   /// Mean |a_ext| over the unpinned, from the start to the end of every step.
   struct External {
     double start, end, mean;

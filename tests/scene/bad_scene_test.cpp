@@ -195,8 +195,9 @@ const Case k_cases[] = {
      "before"},
     {{.rest = "[[collider]]\nplane = {}\nvelocity = [0, 0, 1]\nkeyframes = [{ time = 1 }]"},
      "scene.toml:10:12: collider[0].velocity: is not allowed beside keyframes"},
-    {{.rest = "[[emitter]]\nmaterial = \"jelly\"\nradius = 1\nspacing = 1\nvelocity = [0, 0, 1]\nkeyframes = [{ "
-              "time = 1 }]"},
+    {{.rest =
+          "[[emitter]]\nmaterial = \"jelly\"\nradius = 1\nspacing = 1\nvelocity = [0, 0, 1]\nkeyframes = [{ "
+          "time = 1 }]"},
      "scene.toml:12:12: emitter[0].velocity: is not allowed beside keyframes"},
     {{.rest = "[[emitter]]\nmaterial = \"jelly\"\nradius = 1\nspacing = 1\nspeed = [[0, 1], [1, -1]]"},
      "scene.toml:12:22: emitter[0].speed[1][1]: -1 is not allowed: a number >= 0"},
@@ -328,10 +329,10 @@ TEST_F(bad_scene, limits_what_is_within_what) {
         std::vector<std::string>{
             "scene.toml:1:21: tables and lists are nested too deeply here: at most 16 levels are allowed"});
   }
-  EXPECT_EQ(
-      problems(keys(9) + " = 1\n").back(),
-      "scene.toml:1:1: unknown key 'a'; known are solver, material, body, collider, pin, emitter, sink, surface, run and "
-      "render");
+  EXPECT_EQ(problems(keys(9) + " = 1\n").back(),
+            "scene.toml:1:1: unknown key 'a'; known are solver, material, body, collider, pin, emitter, "
+            "sink, surface, run and "
+            "render");
   EXPECT_EQ(problems("a = '" + std::string(k_max_line_bytes, 'a') + "'\n"),
             std::vector<std::string>{"scene.toml:1:1048578: the line is too long: at most 1048576 bytes are "
                                      "allowed"});

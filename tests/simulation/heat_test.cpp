@@ -33,8 +33,8 @@ void hold(Simulation& s) {
 double in_slab(double x, double f) {
   double sum = x;
   for (int n = 1; n < 200; ++n)
-    sum += 2 / (n * k_pi) * (n % 2 == 0 ? 1 : -1) * std::sin(n * k_pi * x) *
-           std::exp(-n * n * k_pi * k_pi * f);
+    sum +=
+        2 / (n * k_pi) * (n % 2 == 0 ? 1 : -1) * std::sin(n * k_pi * x) * std::exp(-n * n * k_pi * k_pi * f);
   return sum;
 }
 
@@ -57,7 +57,8 @@ TEST(heat, of_a_slab_is_the_analytic_one_within_two_percent) {
           off[static_cast<std::size_t>(x)] +=
               static_cast<double>(s.temperatures()[row]) - 100 * in_slab(x / k_length, f);
         }
-        for (const double sum : off) EXPECT_LT(std::abs(sum) / 36, 2) << support_radius << ' ' << jitter << ' ' << f;
+        for (const double sum : off)
+          EXPECT_LT(std::abs(sum) / 36, 2) << support_radius << ' ' << jitter << ' ' << f;
       }
     }
 }
@@ -122,7 +123,8 @@ TEST(heat, of_melting_moves_the_front_as_stefan_says) {
     s.advance(t - s.time());
     // What is melted: the sum of the share of the latent heat that particles have taken up.
     double melted = 0;
-    for (const float temperature : s.temperatures()) melted += std::clamp(static_cast<double>(temperature) / 2, 0.0, 1.0);
+    for (const float temperature : s.temperatures())
+      melted += std::clamp(static_cast<double>(temperature) / 2, 0.0, 1.0);
     const double front = 2 * k_lambda * std::sqrt(k_diffusivity * t);
     EXPECT_NEAR(melted / 16 / front, 1, 0.1) << t;
   }
@@ -135,10 +137,8 @@ TEST(heat, goes_to_the_air_by_the_area_of_the_surface) {
                 .gravity = {0, 0, 0},
                 .air_temperature = 0.0f,
                 .threads = 2});
-  s.add_body(sample(Lattice{.count = {12, 12, 12}}), {.temperature = 100.0f,
-                                                      .conductivity = 100.0f,
-                                                      .specific_heat = 100.0f,
-                                                      .heat_transfer = 1.0f});
+  s.add_body(sample(Lattice{.count = {12, 12, 12}}),
+             {.temperature = 100.0f, .conductivity = 100.0f, .specific_heat = 100.0f, .heat_transfer = 1.0f});
   s.advance(60);
   const double exact = 100 * std::exp(-1.0 * 6 * 144 * 60 / (1728 * 100.0));
   double mean = 0;
@@ -148,7 +148,11 @@ TEST(heat, goes_to_the_air_by_the_area_of_the_surface) {
 
 /// A cube on a plate that is hot and then cold.
 Simulation on_plate(int threads) {
-  Simulation s({.time_step = 0.15f, .support_radius = 2.1f, .gravity = {0, 0, -0.3f}, .update_period = 1.5f, .threads = threads});
+  Simulation s({.time_step = 0.15f,
+                .support_radius = 2.1f,
+                .gravity = {0, 0, -0.3f},
+                .update_period = 1.5f,
+                .threads = threads});
   s.add_body(sample(Lattice{.count = {8, 8, 8}, .corner = {-4, -4, 0}}),
              {.cohesion = 0.5f,
               .temperature = 300.0f,
@@ -160,7 +164,7 @@ Simulation on_plate(int threads) {
 }
 
 struct Layers {
-  double top = 0;                ///< mean height of the highest tenth
+  double top = 0;                        ///< mean height of the highest tenth
   double low_alpha = 0, high_alpha = 0;  ///< mean of those below 2, and of the upper half
   double width = 0;
 };
@@ -170,7 +174,8 @@ Layers layers_of(const Simulation& s) {
   std::ranges::sort(heights);
   const std::size_t n = heights.size();
   Layers layers;
-  for (std::size_t k = n - n / 10; k < n; ++k) layers.top += static_cast<double>(heights[k]) / static_cast<double>(n / 10);
+  for (std::size_t k = n - n / 10; k < n; ++k)
+    layers.top += static_cast<double>(heights[k]) / static_cast<double>(n / 10);
   std::size_t low = 0, high = 0;
   for (std::size_t row = 0; row < n; ++row) {
     const float z = s.positions()[row].z();

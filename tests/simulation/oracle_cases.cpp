@@ -229,7 +229,8 @@ std::vector<Case> ablations(const Case& whole) {
     });
   for (std::size_t b = 0; b < whole.blobs.size(); ++b)
     if (whole.blobs[b].painted) without("paint", [&](Case& less) { less.blobs[b].painted = false; });
-  const bool sph_acts = whole.blobs.front().painted || whole.blobs.front().material.alpha.keys().back().value > 0 ||
+  const bool sph_acts = whole.blobs.front().painted ||
+                        whole.blobs.front().material.alpha.keys().back().value > 0 ||
                         std::any_of(whole.blobs.begin() + 1, whole.blobs.end(),
                                     [](const Blob& b) { return !b.joins_the_one_before; });
   if (sph_acts)

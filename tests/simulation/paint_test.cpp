@@ -35,8 +35,8 @@ Body graded(Body body) {
 /// Turning, and shaken by a pattern of no symmetry.
 Body stirred(Body body, float speed, float spin) {
   for (const Vec3& x : body.positions)
-    body.velocities.push_back(Vec3(0, 0, spin).cross(x) +
-                              speed * Vec3(std::sin(x.y() + 2 * x.z()), std::cos(x.x()), std::sin(3 * x.x())));
+    body.velocities.push_back(Vec3(0, 0, spin).cross(x) + speed * Vec3(std::sin(x.y() + 2 * x.z()),
+                                                                       std::cos(x.x()), std::sin(3 * x.x())));
   return body;
 }
 
@@ -58,7 +58,8 @@ Motion motion_of(const Simulation& s) {
 double largest_distance(const Simulation& a, const Simulation& b) {
   double largest = 0;
   const std::vector<Vec3> x = a.positions_by_id(), y = b.positions_by_id();
-  for (std::size_t i = 0; i < x.size(); ++i) largest = std::max(largest, static_cast<double>((x[i] - y[i]).norm()));
+  for (std::size_t i = 0; i < x.size(); ++i)
+    largest = std::max(largest, static_cast<double>((x[i] - y[i]).norm()));
   return largest;
 }
 
@@ -125,10 +126,10 @@ TEST(paint, goes_with_its_particles) {
   const std::span<const ParticleId> ids = s.ids();
   for (std::size_t row = 0; row < ids.size(); ++row) {
     const ParticleId id = ids[row];
-    const float expected = id < 216                   ? along_x(block({-3, -3, 1}).positions[id])
-                           : id < 432                 ? 0.4f
-                           : id >= 440 && id <= 442   ? 1.0f
-                                                      : s.alphas()[row];
+    const float expected = id < 216                 ? along_x(block({-3, -3, 1}).positions[id])
+                           : id < 432               ? 0.4f
+                           : id >= 440 && id <= 442 ? 1.0f
+                                                    : s.alphas()[row];
     EXPECT_EQ(s.alphas()[row], expected) << id;
     EXPECT_TRUE(id < 216 || s.stiffnesses()[row] == 1.0f);
   }

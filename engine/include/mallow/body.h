@@ -18,16 +18,16 @@ struct Body {
   float spacing = 1.0f;               ///< distance of neighbouring points, h [m], > 0
   Vec3 velocity{0, 0, 0};             ///< of every point [m/s]
   std::vector<Vec3> velocities = {};  ///< of each point, added to `velocity`; empty or as long as `positions`
-  /// α of each point, in [0, 1], in place of the material's; empty or as long as `positions`. What is soft, or
-  /// flows, inside of what is not: regions count by the α of the particle that owns them and pairs of SPH by
-  /// the mean of the two, so that momentum is kept exactly. [model 2, section 7]
+  /// α of each point, in [0, 1], in place of the material's; empty or as long as `positions`. What is soft,
+  /// or flows, inside of what is not: regions count by the α of the particle that owns them and pairs of SPH
+  /// by the mean of the two, so that momentum is kept exactly. [model 2, section 7]
   std::vector<float> alpha = {};
-  /// Factor on the material's elastic modulus at each point, >= 0, up to what a step carries: (1 − α) times it
-  /// is bounded as Material::elastic_time_step says. Empty, where it is 1 everywhere, or as long as
+  /// Factor on the material's elastic modulus at each point, >= 0, up to what a step carries: (1 − α) times
+  /// it is bounded as Material::elastic_time_step says. Empty, where it is 1 everywhere, or as long as
   /// `positions`.
   std::vector<float> stiffness = {};
-  /// Of each point at the start [K], finite, where the material carries heat; empty: the material's. Else as long
-  /// as `positions`.
+  /// Of each point at the start [K], finite, where the material carries heat; empty: the material's. Else as
+  /// long as `positions`.
   std::vector<float> temperature = {};
   /// Acts on other bodies of its material that merge, and of its spacing, as on itself: two puddles become
   /// one. Bodies that do not merge touch.

@@ -133,9 +133,9 @@ struct Collider {
   /// By which the surface itself moves along, as a conveyor's belt does, while the shape stays [m/s]: what of
   /// it is along the normal counts nowhere.
   Vec3 surface_velocity{0, 0, 0};
-  float restitution = 0.0f;        ///< e in [0, 1]
-  float friction = 0.0f;           ///< μ_f >= 0
-  bool measure_load = false;       ///< sum up what particles do to it, see Simulation::load()
+  float restitution = 0.0f;   ///< e in [0, 1]
+  float friction = 0.0f;      ///< μ_f >= 0
+  bool measure_load = false;  ///< sum up what particles do to it, see Simulation::load()
   /// Where given, it moves through these poses, with the velocities that follow: evenly from one to the next,
   /// turning the shorter way round. Before the first and after the last it stands still.
   std::vector<PoseKeyframe> keyframes = {};

@@ -63,10 +63,10 @@ MALLOW_EXPORT Body read_points(const std::filesystem::path& file, float spacing)
 struct ParticleFrame {
   std::vector<Vec3> positions;
   std::vector<Vec3> velocities;
-  std::vector<std::uint32_t> bodies;  ///< body of each particle
-  double time = 0;                    ///< simulated time [s]
-  std::int64_t step = 0;              ///< steps taken
-  std::vector<ParticleId> ids = {};   ///< of each particle, by ascending slot; none: 0, 1, 2, ...
+  std::vector<std::uint32_t> bodies;     ///< body of each particle
+  double time = 0;                       ///< simulated time [s]
+  std::int64_t step = 0;                 ///< steps taken
+  std::vector<ParticleId> ids = {};      ///< of each particle, by ascending slot; none: 0, 1, 2, ...
   std::vector<float> alphas = {};        ///< of each particle, where some have their own; else none
   std::vector<float> temperatures = {};  ///< of each particle [K], where some carry heat; else none
 };
@@ -80,9 +80,9 @@ MALLOW_EXPORT ParticleFrame snapshot(const Simulation& simulation);
 MALLOW_EXPORT SurfaceParticles surface_particles(const ParticleFrame& frame, std::span<const float> spacings);
 
 /// Binary PLY with x y z vx vy vz group, which is the slot of the body, time and step as comments. Bodies are
-/// `uchar` where all are below 256, `uint` where not. A frame with ids has `id` and `generation` too, the slot
-/// of each particle and how many had it before, by which programs follow particles that come and go; likewise
-/// `alpha` and `temperature`.
+/// `uchar` where all are below 256, `uint` where not. A frame with ids has `id` and `generation` too, the
+/// slot of each particle and how many had it before, by which programs follow particles that come and go;
+/// likewise `alpha` and `temperature`.
 MALLOW_EXPORT void write_particles(const std::filesystem::path& file, const ParticleFrame& frame);
 /// What write_particles() wrote. Throws IoError.
 MALLOW_EXPORT ParticleFrame read_particles(const std::filesystem::path& file);
@@ -172,8 +172,8 @@ MALLOW_EXPORT void write_mesh_usda(const std::filesystem::path& file, const Mesh
 /// them. Material and Group are UInt8 where all are below 256, UInt32 where not.
 MALLOW_EXPORT void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh);
 
-/// VTK's XML PolyData, vertices with the point arrays Velocity, Group, which is the body, and Id, and Alpha and
-/// Temperature where the frame has them.
+/// VTK's XML PolyData, vertices with the point arrays Velocity, Group, which is the body, and Id, and Alpha
+/// and Temperature where the frame has them.
 MALLOW_EXPORT void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame& frame);
 /// OpenVDB points, see points_vdb() in mallow/level_set.h for the attributes and for what is thrown.
 /// voxel_size: [m], > 0; twice the spacing gives about 8 points a voxel.

@@ -37,8 +37,8 @@ struct Material {
   float cohesion = 0.0f;
   /// Coulomb's μ_f where it touches other bodies, >= 0; that of a pair is √(μ μ'). Colliders have their own.
   float friction = 0.5f;
-  /// Stress up to which it sticks to other bodies that touch it [Pa], >= 0; that of a pair is √(a a'). Sticking
-  /// particles hold against friction with as much more.
+  /// Stress up to which it sticks to other bodies that touch it [Pa], >= 0; that of a pair is √(a a').
+  /// Sticking particles hold against friction with as much more.
   float adhesion = 0.0f;
   /// Damping time of elasticity, τ [s], >= 0: the pull is that at x + τ v, so that a mode of frequency ω
   /// [rad/s] has a damping ratio of ω τ/2. With the longest step Δt and a = (1 − alpha) Δt²/(time_step
@@ -58,9 +58,9 @@ struct Material {
   /// kept and a rigid motion meets no force whatever it is; best a small share of the average number of
   /// neighbours. [model 2 with |N_i| regions; the idea of Steinemann et al. 2008]
   int region_stride = 1;
-  /// Of its particles at the start [K], or in any unit that starts anywhere; left out: it carries no heat. Heat
-  /// is conducted over the neighbours of SPH, which then are found in every step, and a body that carries heat
-  /// does not sleep. [Cleary & Monaghan 1999; model 2, section 7]
+  /// Of its particles at the start [K], or in any unit that starts anywhere; left out: it carries no heat.
+  /// Heat is conducted over the neighbours of SPH, which then are found in every step, and a body that
+  /// carries heat does not sleep. [Cleary & Monaghan 1999; model 2, section 7]
   std::optional<float> temperature = {};
   /// κ [W/(m K)], >= 0. Steps are cut into as many parts as it takes to be stable, 200 at most.
   float conductivity = 0.0f;
@@ -72,11 +72,12 @@ struct Material {
   std::optional<float> solidus = {};
   /// @copydoc solidus
   std::optional<float> liquidus = {};
-  /// To the air, of SolverConfig::air_temperature, where a surface touches no heated collider [W/(m² K)], >= 0.
+  /// To the air, of SolverConfig::air_temperature, where a surface touches no heated collider [W/(m² K)], >=
+  /// 0.
   float heat_transfer = 0.0f;
-  /// Alpha by temperature, in place of alpha over time: keys of (temperature [K], alpha in [0, 1]). Particles of a body
-  /// then differ in it, as with Body::alpha; where it is high they take on where they are as what they rest in,
-  /// so that what has melted sets in its new shape.
+  /// Alpha by temperature, in place of alpha over time: keys of (temperature [K], alpha in [0, 1]). Particles
+  /// of a body then differ in it, as with Body::alpha; where it is high they take on where they are as what
+  /// they rest in, so that what has melted sets in its new shape.
   std::optional<Schedule> alpha_by_temperature = {};
   /// μ by temperature [Pa s], >= 0, likewise, in place of viscosity.
   std::optional<Schedule> viscosity_by_temperature = {};

@@ -90,11 +90,11 @@ struct SceneCollider : Collider {
   std::vector<SceneKeyframe> scene_keyframes = {};  ///< what scene files make of `keyframes`, as of the pose
 };
 
-/// What particles of a body have of their own that are in a shape when the scene begins; of several shapes the
-/// last counts. Shapes are those of colliders: where these keep particles out is in them.
+/// What particles of a body have of their own that are in a shape when the scene begins; of several shapes
+/// the last counts. Shapes are those of colliders: where these keep particles out is in them.
 struct ScenePaint : SceneCollider {
-  std::optional<float> alpha = {};           ///< in [0, 1], see Body::alpha
-  std::optional<float> stiffness = {};       ///< >= 0, see Body::stiffness
+  std::optional<float> alpha = {};              ///< in [0, 1], see Body::alpha
+  std::optional<float> stiffness = {};          ///< >= 0, see Body::stiffness
   std::optional<float> paint_temperature = {};  ///< [K], see Body::temperature
 };
 
@@ -117,10 +117,10 @@ struct SceneBody {
 struct SceneEmitter : Emitter {
   std::string material = {};
   /// What scene files make of the pose: read_scene() sets both, print_scene() prints these.
-  Vec3 translate{0, 0, 0};  ///< [m]
-  Vec3 rotate{0, 0, 0};     ///< about x, then y, then z [degrees]
+  Vec3 translate{0, 0, 0};                          ///< [m]
+  Vec3 rotate{0, 0, 0};                             ///< about x, then y, then z [degrees]
   std::vector<SceneKeyframe> scene_keyframes = {};  ///< what scene files make of `keyframes`, as of the pose
-  int line = 0;             ///< of the scene file; 0 where it did not come from one
+  int line = 0;                                     ///< of the scene file; 0 where it did not come from one
 };
 
 /// A sink of a scene: particles that come into the box, or out of it, are removed.

@@ -193,8 +193,8 @@ class MALLOW_EXPORT Simulation {
   void set_alpha(std::span<const ParticleId> ids, float alpha);
   /// Factor on the modulus of particles from now on, see Body::stiffness. Throws as set_alpha() does.
   void set_stiffness(std::span<const ParticleId> ids, float stiffness);
-  /// Temperature of particles now [K], finite. Throws ConfigError, and changes nothing, where an id is not one
-  /// or its body carries no heat.
+  /// Temperature of particles now [K], finite. Throws ConfigError, and changes nothing, where an id is not
+  /// one or its body carries no heat.
   void set_temperature(std::span<const ParticleId> ids, float temperature);
   /// Temperature of a collider from now on, over time [K]; nullopt: no heat passes.
   void set_temperature(ColliderId collider, const std::optional<Schedule>& temperature);
@@ -323,8 +323,8 @@ class MALLOW_EXPORT Simulation {
 
   /// The row of a particle in every view. Throws ConfigError where there is none of this id, or no longer.
   std::size_t row(ParticleId id) const;
-  /// Heat of a body [J], above that of it solid at its solidus, or at 0 K where it has none; 0 where it carries
-  /// none. Summed in double.
+  /// Heat of a body [J], above that of it solid at its solidus, or at 0 K where it has none; 0 where it
+  /// carries none. Summed in double.
   double heat(BodyId body) const;
   /// Alpha of a particle now. Throws ConfigError as row() does.
   float alpha(ParticleId id) const;
