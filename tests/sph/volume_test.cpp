@@ -283,7 +283,7 @@ TEST(volume, is_kept_where_bodies_of_different_matter_touch_and_are_pinned) {
 TEST(volume, is_the_same_far_from_the_origin_and_in_other_units) {
   const auto worst = [](float scale, float far) {
     SolverConfig solver = config(2);
-    solver.support_radius *= scale;
+    solver.support_radius = *solver.support_radius * scale;
     solver.gravity *= scale;
     Simulation s(solver);
     s.add_collider({.shape = Plane{}, .friction = 0.3f});
