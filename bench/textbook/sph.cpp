@@ -95,10 +95,11 @@ void sum_accelerations(const SolverConfig& config, const std::vector<Group>& gro
   const bool printed = config.formulation == Formulation::printed;
   for (Particle& i : particles) {
     const Group& group = groups[i.group];
-    Vec same_group = Vec::Zero(), other_groups = Vec::Zero();
+    Vec same_group = Vec::Zero(), blended = Vec::Zero(), other_groups = Vec::Zero();
     // The print does not leave out j = i, whose viscosity is not zero there.
     if (printed)
       same_group = group.mass / i.density * printed_pair(kernels, i, i, i.pressure, group.viscosity);
+    blended = alpha_of(i, group) * same_group;
     for (const std::size_t id : i.neighbors) {
       const Particle& j = particles[id];
       const Group& group_j = groups[j.group];
@@ -111,10 +112,71 @@ void sum_accelerations(const SolverConfig& config, const std::vector<Group>& gro
       const double p_j = j.pressure * (touching ? group_j.contact_share : 1);
       const Vec force = printed ? printed_pair(kernels, i, j, p_j, viscosity)
                                 : conservative_pair(kernels, i, j, p_i + p_j, thick * viscosity);
-      (j.group == i.group ? same_group : other_groups) += group_j.mass / j.density * force;
+      const Vec added = group_j.mass / j.density * force;
+      (touching ? other_groups : same_group) += added;
+      if (!touching) blended += (alpha_of(i, group) + alpha_of(j, group)) / 2 * added;
     }
     i.sph_acceleration = same_group / i.density;
+    i.blended_acceleration = blended / i.density;
     i.external_acceleration += other_groups / i.density;
+  }
+}
+
+namespace {
+
+/// Σ |∇W|² over an infinite cubic lattice [1/m⁸].
+double lattice_gradients(double spacing, double support_radius) {
+  const Kernels kernels(support_radius);
+  const int reach = static_cast<int>(support_radius / spacing) + 1;
+  double sum = 0;
+  for (int x = -reach; x <= reach; ++x)
+    for (int y = -reach; y <= reach; ++y)
+      for (int z = -reach; z <= reach; ++z) {
+        const double r2 = spacing * spacing * (x * x + y * y + z * z);
+        if (r2 < support_radius * support_radius) sum += r2 * std::pow(kernels.poly6_gradient(r2), 2);
+      }
+  return sum;
+}
+
+}  // namespace
+
+void correct_volume(const SolverConfig& config, const std::vector<Group>& groups, double time_step,
+                    const std::vector<double>& share, const std::vector<Vec>& contacted,
+                    std::vector<Particle>& particles) {
+  const Kernels kernels(*config.support_radius);
+  const auto gradient = [&](const Particle& i, const Particle& j) {
+    const Vec d = i.position - j.position;
+    return Vec(kernels.poly6_gradient(d.squaredNorm()) * d);
+  };
+  const auto volume = [&](const Particle& p) { return groups[p.group].mass / groups[p.group].rest_density; };
+  std::vector<double> floors, multipliers;
+  for (const Group& group : groups)
+    floors.push_back(lattice_gradients(group.spacing, kernels.sigma) * group.mass /
+                     (group.rest_density * group.rest_density) / 2);
+  for (std::size_t k = 0; k < particles.size(); ++k) {
+    const Particle& i = particles[k];
+    const Group& group = groups[i.group];
+    double rate = 0, others = 0;
+    Vec sum = Vec::Zero();
+    for (const std::size_t id : i.neighbors) {
+      const Particle& j = particles[id];
+      const Vec g = volume(j) * gradient(i, j);
+      rate += (contacted[k] - contacted[id]).dot(g);
+      sum += g;
+      if (!j.pinned) others += g.squaredNorm() / groups[j.group].mass;
+    }
+    const double response = std::max(floors[i.group], sum.squaredNorm() / group.mass + others);
+    const double s = std::max(0.0, i.density / group.rest_density - 1 + time_step * rate);
+    multipliers.push_back(i.pinned ? 0 : share[i.group] * s / (2 * time_step * response));
+  }
+  for (std::size_t k = 0; k < particles.size(); ++k) {
+    Particle& i = particles[k];
+    if (i.pinned) continue;
+    for (const std::size_t id : i.neighbors) {
+      const Particle& j = particles[id];
+      i.velocity -=
+          (multipliers[k] * volume(j) + multipliers[id] * volume(i)) * gradient(i, j) / groups[i.group].mass;
+    }
   }
 }
 

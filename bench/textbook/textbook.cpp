@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mallow/errors.h"
+#include "textbook/plastic.h"
 #include "textbook/shape_matching.h"
 #include "textbook/sph.h"
 
@@ -67,6 +68,16 @@ void Textbook::pin(const Aabb& box, const Vec3& velocity) {
   }
 }
 
+void Textbook::paint(std::size_t id, double alpha, double stiffness) {
+  particles_.at(id).own_alpha = alpha;
+  particles_.at(id).stiffness = stiffness;
+}
+
+bool Textbook::is_painted() const {
+  return std::ranges::any_of(particles_,
+                             [](const Particle& p) { return p.own_alpha >= 0 || p.stiffness != 1; });
+}
+
 /// What the configs leave out follows from spacing and gravity, or from the fastest that moves.
 void Textbook::settle_defaults() {
   double spacing = groups_.front().spacing, speed = 0;
@@ -99,12 +110,19 @@ void Textbook::follow_alpha() {
   const double step = std::max(base_step_, longest_step_), speed = *config_.support_radius / step;
   for (Group& group : groups_) {
     group.alpha = alpha_at(group.material.alpha, time_);
+    group.most_alpha = group.most_elasticity = 0;
+    for (const std::size_t id : group.members) {
+      const double alpha = alpha_of(particles_[id], group);
+      group.most_alpha = std::max(group.most_alpha, alpha);
+      group.most_elasticity = std::max(group.most_elasticity, (1 - alpha) * particles_[id].stiffness);
+    }
     group.cohesion = group.material.cohesion;
     if (group.material.pressure_coefficient) {
       group.pressure_coefficient = *group.material.pressure_coefficient;
     } else {
-      group.contact_share = std::max(group.alpha, 0.2);
-      const double share = std::min(1.0, (2.6 - stiffness(group) * step * step) / 2);
+      group.contact_share = std::max(group.most_alpha, 0.2);
+      const double pull = group.most_elasticity * stiffness(group) * step * step;
+      const double share = std::min(1.0, (2.6 - pull) / 2);
       group.pressure_coefficient = share * speed * speed / group.contact_share;
       group.cohesion *= std::min(1.0, 0.08 * speed * speed / group.pressure_coefficient);
     }
@@ -116,7 +134,7 @@ Textbook::Step Textbook::step() {
   follow_alpha();
   Step step{.updated_references = update_references()};
   for (Particle& p : particles_) {
-    p.sph_acceleration = Vec::Zero();
+    p.sph_acceleration = p.blended_acceleration = Vec::Zero();
     p.external_acceleration = config_.gravity.cast<double>();
   }
   if (needs_sph()) {
@@ -126,7 +144,9 @@ Textbook::Step Textbook::step() {
   }
   choose_time_step(step);
   for (const Group& group : groups_) {
-    if (group.alpha < 1) match_shape(group, particles_);
+    if (!group.keeps_reference()) continue;
+    match_shape(group, particles_);
+    if (group.material.plastic_yield && group.alpha < 1) flow(group, step.time_step, particles_);
   }
   move_particles(step.time_step);
   for (Obstacle& obstacle : obstacles_) {
@@ -139,9 +159,10 @@ Textbook::Step Textbook::step() {
   return step;
 }
 
-/// Some acceleration of SPH counts: within a group that is not purely elastic, or between groups.
+/// Some acceleration of SPH counts: within a group that is not purely elastic, or between groups; or volumes
+/// are kept, for which densities are known.
 bool Textbook::needs_sph() const {
-  return groups_.size() > 1 || groups_.front().alpha > 0;
+  return groups_.size() > 1 || groups_.front().most_alpha > 0 || config_.volume_iterations > 0;
 }
 
 // Section 6 of the model [TK 3.2, eq. 14].
@@ -149,31 +170,39 @@ int Textbook::update_references() {
   if (!check_is_due()) return 0;
   int updated = 0;
   for (Group& group : groups_) {
-    const double threshold = group.update_threshold * (1 - group.alpha);
+    const double threshold = group.update_threshold * (1 - group.most_alpha);
     const double judged = std::exchange(group.judged_external, 0);
     group.external.clear();
-    if (!group.keeps_reference() || judged <= threshold) continue;
-    if (group.alpha < 1) catch_up_with_pull(group);
-    take_reference(group, particles_);
+    if (!group.keeps_reference()) continue;
+    const Material& material = group.material;
+    if ((!material.plastic_yield || material.update_threshold) && judged > threshold) {
+      kick_by_pull(group, 0.5);
+      rest_anew(group, judged, particles_);
+      kick_by_pull(group, -0.5);
+    } else if (material.plastic_yield && group.alpha < 1 && reframe_is_due(group, particles_)) {
+      reframe(group, particles_);
+    } else {
+      continue;
+    }
     ++updated;
   }
   return updated;
 }
 
 /// Velocities are those of half a step ago; what the old shape pulled since then goes into them.
-void Textbook::catch_up_with_pull(const Group& group) {
+void Textbook::kick_by_pull(const Group& group, double share) {
   match_shape(group, particles_);
   for (const std::size_t id : group.members) {
     Particle& p = particles_[id];
-    if (!p.pinned) p.velocity += (time_ - last_start_) / 2 * stiffness(group) * (p.goal - p.position);
+    if (!p.pinned) p.velocity += share * (time_ - last_start_) * stiffness(group) * p.pull;
   }
 }
 
-/// (1 − α)/(Δt0 Δt_SM) [1/s²].
+/// Of the pull, 1/(Δt0 Δt_SM) [1/s²].
 double Textbook::stiffness(const Group& group) const {
   double elastic_time_step = base_step_;
   if (group.material.elastic_time_step) elastic_time_step = *group.material.elastic_time_step;
-  return (1 - group.alpha) / (base_step_ * elastic_time_step);
+  return 1 / (base_step_ * elastic_time_step);
 }
 
 /// Multiples of the period, which times may miss by what their sums are off.
@@ -227,11 +256,11 @@ double Textbook::limited_time_step(double max_velocity) const {
     time_step = std::min(time_step, sigma * sigma * group.rest_density / (25 * group.viscosity));
     // x of pressure and a of shape matching as they act: x <= 1.4, 2 x + a <= 3.4, and x calmed by viscosity.
     const bool alone = groups_.size() == 1;
-    const double push = alone ? group.alpha : group.contact_share, drag = alone ? group.alpha : 1;
+    const double push = alone ? group.most_alpha : group.contact_share, drag = alone ? group.most_alpha : 1;
     const double x = push * group.pressure_coefficient / (sigma * sigma);
     if (x == 0) continue;
     const double y = 800 * drag * group.viscosity / group.rest_density / (sigma * sigma);
-    const double a = stiffness(group);
+    const double a = group.most_elasticity * stiffness(group);
     time_step = std::min({time_step, (y + std::sqrt(y * y + 0.2 * x)) / (2 * x), std::sqrt(1.4 / x),
                           std::sqrt(3.4 / (2 * x + a))});
   }
@@ -246,9 +275,10 @@ void Textbook::choose_time_step(Step& step) const {
     const Particle& p = particles_[id];
     if (p.pinned) continue;
     const Group& group = groups_[p.group];
-    const double share = group.material.pressure_coefficient ? 1 : group.alpha;
-    const double velocity =
-        (p.velocity + longest_step_ * (share * p.sph_acceleration + p.external_acceleration)).norm();
+    // All of it, unless k follows alpha, or particles differ in alpha.
+    const bool whole = group.material.pressure_coefficient && !is_painted();
+    const Vec& sph = whole ? p.sph_acceleration : p.blended_acceleration;
+    const double velocity = (p.velocity + longest_step_ * (sph + p.external_acceleration)).norm();
     // Not `>`: a velocity that is not a number must win, so that it is seen.
     if (velocity <= step.max_velocity || std::isnan(step.max_velocity)) continue;
     step.max_velocity = velocity;
@@ -262,31 +292,57 @@ void Textbook::choose_time_step(Step& step) const {
                   static_cast<std::uint32_t>(fastest), Phase::time_step);
 }
 
+/// What colliders make of its velocity, which came with `before`.
+Vec Textbook::contacted(const Particle& p, const Vec& before, double time_step) const {
+  const double spacing = groups_[p.group].spacing;
+  const ContactStep contact{
+      .time_step = time_step,
+      .contact_offset = config_.contact_offset ? double{*config_.contact_offset} : spacing / 2,
+      .max_push = *config_.support_radius / (10 * base_step_),
+      .gravity = config_.gravity.cast<double>()};
+  Vec velocity = p.velocity;
+  if (p.pinned) return velocity;
+  for (const Obstacle& obstacle : obstacles_)
+    velocity = resolve_contact(obstacle, contact, p.position, before, velocity);
+  return velocity;
+}
+
+// Section 2 of the second chapter.
+void Textbook::keep_volume(double time_step, const std::vector<Vec>& before) {
+  std::vector<double> share;
+  for (const Group& group : groups_) {
+    const double pull = group.most_elasticity * stiffness(group) * time_step * time_step;
+    share.push_back(std::clamp((2.8 - pull) / 2, 0.0, 1.0));
+  }
+  std::vector<Vec> w(particles_.size());
+  for (int iteration = 0; iteration < config_.volume_iterations; ++iteration) {
+    for (std::size_t id = 0; id < w.size(); ++id) w[id] = contacted(particles_[id], before[id], time_step);
+    correct_volume(config_, groups_, time_step, share, w, particles_);
+  }
+}
+
 // Sections 4 and 5 of the model [TK eq. 10, 11, 13].
 void Textbook::move_particles(double time_step) {
   // From the middle of the last step to the middle of this one.
   const double last_step = time_ - last_start_;
   const double pull_time = steps_ > 0 ? (last_step + time_step) / 2 : time_step;
+  std::vector<Vec> before = velocities();
   for (Particle& p : particles_) {
     const Group& group = groups_[p.group];
-    p.contact_acceleration = Vec::Zero();
     if (p.pinned) {
       p.velocity = p.pin_velocity;
-    } else {
-      const Vec before = p.velocity;
-      p.velocity += time_step * (p.external_acceleration + group.alpha * p.sph_acceleration);
-      if (group.alpha < 1) p.velocity += pull_time * stiffness(group) * (p.goal - p.position);
-      const Vec blended = p.velocity;
-      const ContactStep contact{
-          .time_step = time_step,
-          .contact_offset = config_.contact_offset ? double{*config_.contact_offset} : group.spacing / 2,
-          .max_push = *config_.support_radius / (10 * base_step_),
-          .gravity = config_.gravity.cast<double>()};
-      for (const Obstacle& obstacle : obstacles_)
-        p.velocity = resolve_contact(obstacle, contact, p.position, before, p.velocity);
-      p.contact_acceleration = (p.velocity - blended) / time_step;
+      continue;
     }
-    p.position += time_step * p.velocity;
+    p.velocity += time_step * (p.external_acceleration + p.blended_acceleration);
+    if (group.keeps_reference()) p.velocity += pull_time * stiffness(group) * p.pull;
+  }
+  keep_volume(time_step, before);
+  for (std::size_t id = 0; id < particles_.size(); ++id) {
+    Particle& p = particles_[id];
+    const Vec velocity = contacted(p, before[id], time_step);
+    p.contact_acceleration = (velocity - p.velocity) / time_step;
+    p.velocity = velocity;
+    p.position += time_step * velocity;
   }
 }
 

@@ -27,6 +27,8 @@ class Textbook {
   void add_collider(const Collider& collider) { obstacles_.push_back({.collider = collider}); }
   /// Particles that are in `box` now move with `velocity` [m/s] from now on.
   void pin(const Aabb& box, const Vec3& velocity = {0, 0, 0});
+  /// A particle has these of its own; alpha below 0: its group's.
+  void paint(std::size_t id, double alpha, double stiffness);
 
   struct Step {
     double time_step = 0;        ///< Δt taken [s]
@@ -51,16 +53,19 @@ class Textbook {
   void settle_defaults();
   void follow_alpha();
   bool needs_sph() const;
+  bool is_painted() const;
   bool counts_steps() const { return config_.update_interval && config_.time_step_factor == 1; }
   double passed_periods(double time) const;
   bool check_is_due() const;
-  void catch_up_with_pull(const Group& group);
+  void kick_by_pull(const Group& group, double share);
   double stiffness(const Group& group) const;
   int update_references();
   double mean_external_acceleration(const Group& group) const;
   void measure_external(double time_step);
   double limited_time_step(double max_velocity) const;
   void choose_time_step(Step& step) const;
+  Vec contacted(const Particle& p, const Vec& before, double time_step) const;
+  void keep_volume(double time_step, const std::vector<Vec>& before);
   void move_particles(double time_step);
 
   SolverConfig config_;

@@ -25,9 +25,13 @@ Textbook textbook_of(const Case& scene) {
   std::size_t group = 0;
   for (const Blob& blob : scene.blobs) {
     if (!blob.joins_the_one_before) group = textbook.add_group(blob.material);
+    const std::size_t first = textbook.size();
     textbook.add_body(
         {.positions = points_of(blob), .spacing = blob.spacing, .velocity = blob.velocity, .velocities = {}},
         group);
+    const std::vector<float> alphas = alphas_of(blob), stiffnesses = stiffnesses_of(blob);
+    for (std::size_t k = 0; k < alphas.size(); ++k)
+      textbook.paint(first + k, double{alphas[k]}, double{stiffnesses[k]});
   }
   for (const Collider& collider : scene.colliders) textbook.add_collider(collider);
   for (const Pinned& pin : scene.pins) textbook.pin(pin.box, pin.velocity);

@@ -1,0 +1,95 @@
+#include "textbook/plastic.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "textbook/cell_grid.h"
+#include "textbook/shape_matching.h"
+
+namespace mallow::textbook {
+namespace {
+
+/// A layer of particles has no strain across it.
+bool is_thin(const Region& region) {
+  const Matrix p = region.stretch * region.rest_moment * region.stretch.transpose();
+  return !(p.determinant() > 1e-4 * std::pow(p.trace() / 3, 3));
+}
+
+/// E
+Matrix elastic_strain(const Region& region) {
+  const Matrix f = region.moment * region.rest_moment.inverse() * region.stretch.inverse();
+  const Matrix turned = region.rotation.transpose() * f;
+  return (turned + turned.transpose()) / 2;
+}
+
+/// Whether two particles that have flowed by more than `flow` are nearer than `near` in one place and farther
+/// apart than `far` in the other.
+bool any_part_ways(const Group& group, const std::vector<Particle>& particles, double flow,
+                   Vec Particle::*here, double near, Vec Particle::*there, double far) {
+  CellGrid grid(near);
+  for (const std::size_t id : group.members)
+    if (particles[id].region.flow > flow) grid.insert(id, particles[id].*here);
+  bool found = false;
+  for (const std::size_t id : group.members) {
+    const Particle& i = particles[id];
+    if (i.region.flow <= flow) continue;
+    grid.for_each_near(i.*here,
+                       [&](std::size_t j) { found |= (i.*there - particles[j].*there).norm() > far; });
+  }
+  return found;
+}
+
+}  // namespace
+
+void flow(const Group& group, double time_step, std::vector<Particle>& particles) {
+  const double yield = *group.material.plastic_yield;
+  const double share =
+      group.material.plastic_creep ? 1 - std::exp(-*group.material.plastic_creep * time_step) : 1;
+  for (const std::size_t id : group.members) {
+    Region& region = particles[id].region;
+    if (is_thin(region)) continue;
+    const Matrix e = elastic_strain(region);
+    if (Eigen::SelfAdjointEigenSolver<Matrix>(e).eigenvalues().minCoeff() <= 0) continue;
+    const Matrix strain = e / std::cbrt(e.determinant()) - Matrix::Identity();
+    const double size = strain.norm();
+    if (size <= yield) continue;
+    const double y = std::min((1 - yield / size) * share, 0.5 / size);
+    Matrix g = Matrix::Identity() + y * strain;
+    g /= std::cbrt(g.determinant());
+    region.stretch = g * region.stretch;
+    region.flow += (g - Matrix::Identity()).norm();
+  }
+}
+
+bool reframe_is_due(const Group& group, const std::vector<Particle>& particles) {
+  const Material& material = group.material;
+  const double radius = group.region_radius, torn = (1 + double{material.tear_strain}) * radius;
+  const auto far = [&](std::size_t id) { return particles[id].region.flow > 0.5; };
+  return std::ranges::any_of(group.members, far) ||
+         any_part_ways(group, particles, 0, &Particle::reference, radius, &Particle::position, torn) ||
+         any_part_ways(group, particles, material.merge_flow, &Particle::position, group.spacing,
+                       &Particle::reference, radius);
+}
+
+void reframe(const Group& group, std::vector<Particle>& particles) {
+  match_shape(group, particles);
+  std::vector<Matrix> stretches;
+  for (const std::size_t id : group.members) {
+    const Region& region = particles[id].region;
+    stretches.push_back(Matrix::Identity());
+    if (is_thin(region)) continue;
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(elastic_strain(region));
+    const Vec found = solver.eigenvalues();
+    const double size = found.minCoeff() > 0 ? std::clamp(std::cbrt(found.prod()), 0.3, 1.25) : 1;
+    const Vec clipped = size * (found / size).cwiseMax(0.8).cwiseMin(1.25);
+    const Matrix axes = region.rotation * solver.eigenvectors();
+    stretches.back() = axes * clipped.cwiseInverse().asDiagonal() * axes.transpose();
+  }
+  take_reference(group, particles);
+  for (std::size_t k = 0; k < stretches.size(); ++k)
+    particles[group.members[k]].region.stretch = stretches[k];
+}
+
+}  // namespace mallow::textbook
