@@ -37,6 +37,21 @@ void derive_density(double support_radius, Group& group) {
   group.rest_density = material.rest_density ? *material.rest_density : group.mass * sum;
 }
 
+/// Mean of x² over the points of a lattice within a radius of one of them, itself included.
+double region_moment(double radius, double spacing) {
+  const int n = static_cast<int>(radius / spacing) + 1;
+  double sum = 0;
+  int count = 0;
+  for (int x = -n; x <= n; ++x)
+    for (int y = -n; y <= n; ++y)
+      for (int z = -n; z <= n; ++z)
+        if (spacing * std::sqrt(x * x + y * y + z * z) <= radius) {
+          sum += spacing * spacing * x * x;
+          ++count;
+        }
+  return sum / count;
+}
+
 }  // namespace
 
 std::size_t Textbook::add_group(const Material& material) {
@@ -198,8 +213,12 @@ void Textbook::kick_by_pull(const Group& group, double share) {
   }
 }
 
-/// Of the pull, 1/(Δt0 Δt_SM) [1/s²].
+/// Of the pull, 1/(Δt0 Δt_SM) [1/s²]; from Young's modulus Y/(ρ m2). [model 2, section 3]
 double Textbook::stiffness(const Group& group) const {
+  if (group.material.youngs_modulus) {
+    const double density = group.mass / std::pow(group.spacing, 3);
+    return *group.material.youngs_modulus / (density * region_moment(group.region_radius, group.spacing));
+  }
   double elastic_time_step = base_step_;
   if (group.material.elastic_time_step) elastic_time_step = *group.material.elastic_time_step;
   return 1 / (base_step_ * elastic_time_step);

@@ -278,8 +278,32 @@ double Oracle::mean_external_acceleration(std::size_t group) const {
   return count > 0 ? sum / count : 0;
 }
 
-// Of the pull [TK eq. 13].
+namespace {
+
+/// Mean of x² over the points of a lattice within a radius of one of them, itself included.
+double region_moment(double radius, double spacing) {
+  const int n = static_cast<int>(radius / spacing) + 1;
+  double sum = 0;
+  int count = 0;
+  for (int x = -n; x <= n; ++x)
+    for (int y = -n; y <= n; ++y)
+      for (int z = -n; z <= n; ++z)
+        if (spacing * std::sqrt(x * x + y * y + z * z) <= radius) {
+          sum += spacing * spacing * x * x;
+          ++count;
+        }
+  return sum / count;
+}
+
+}  // namespace
+
+// Of the pull [TK eq. 13; the second chapter, section 3].
 double Oracle::stiffness(const Group& group) const {
+  if (group.material.youngs_modulus) {
+    const double radius = group.material.region_radius.value_or(*config_.support_radius);
+    const double density = group.mass / std::pow(group.spacing, 3);
+    return *group.material.youngs_modulus / (density * region_moment(radius, group.spacing));
+  }
   const std::optional<float>& given = group.material.elastic_time_step;
   return 1 / (dt0_ * (given ? double{*given} : dt0_));
 }

@@ -46,6 +46,10 @@ SolverConfig with_offset(float contact_offset) {
 Material stuff(AlphaSchedule alpha) {
   return {.alpha = std::move(alpha), .update_threshold = 1.0f};
 }
+/// As stiff as pascals say.
+Material firm(float alpha, float youngs_modulus) {
+  return {.alpha = alpha, .update_threshold = 1.0f, .youngs_modulus = youngs_modulus};
+}
 /// Flows where it is strained.
 Material dough(AlphaSchedule alpha, float yield, std::optional<float> creep = {}) {
   return {.alpha = std::move(alpha), .plastic_yield = yield, .plastic_creep = creep};
@@ -100,6 +104,7 @@ std::vector<Case> paper_cases() {
       {.name = "creeping_dough_on_ball", .blobs = {{dough(0.7f, 0.01f, 0.4f), {0, 0, 3.8f}, {0, 0, -1.0f}}}, .colliders = {k_ball}, .solver = units(2.9f), .flows = true, .tolerance = 1e-3},
       {.name = "dough_hits_slope_and_is_taken_anew", .blobs = {{dough(0.0f, 0.05f), {0, 0, 4.2f}, {0, 0, -2.5f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1, .flows = true, .tolerance = 1e-3},
       {.name = "two_lumps_of_dough_merge", .blobs = {{dough(0.4f, 0.05f), {0, 0, 3.4f}, {0, 0, -0.2f}, {5, 5, 5}}, {.center = {0.3f, 0.4f, 8.8f}, .velocity = {0, 0, -2.0f}, .count = {5, 5, 5}, .joins_the_one_before = true}}, .colliders = {k_slope}, .solver = units(), .updates = 1, .flows = true, .tolerance = 1e-3},
+      {.name = "firm_jelly_on_slope", .blobs = {{firm(0.3f, 60.0f), {0, 0, 4.2f}, {0, 0, -1.5f}}}, .colliders = {k_slope}, .solver = units(), .updates = 1},
       {.name = "fluid_on_slope", .blobs = {{stuff(1.0f), {0, 0, 4.0f}, {0, 0, -1.0f}}}, .colliders = {k_slope}, .solver = units()},
       {.name = "syrup_on_ball", .blobs = {{{.alpha = 1.0f, .viscosity = 4}, {0, 0, 3.8f}, {0, 0, -1.0f}}}, .colliders = {k_ball}, .solver = units(), .limited = true, .tolerance = 5e-4},
       {.name = "fluid_in_tank", .blobs = {{stuff(1.0f), {0, 0, 3.6f}, {-0.8f, 0.3f, -0.5f}}}, .colliders = {k_tank}, .solver = units()},
