@@ -80,6 +80,8 @@ struct FieldTable<Material> {
             "40 times gravity, never with plastic_yield"},
       Field{"plastic_yield", &Material::plastic_yield, k_not_negative, "",
             "strain beyond which matter flows where it is", "nothing flows"},
+      Field{"plastic_yield_by_temperature", &Material::plastic_yield_by_temperature, k_not_negative, "",
+            "plastic_yield by temperature, [[temperature, strain], ...]", "plastic_yield"},
       Field{"plastic_creep", &Material::plastic_creep, k_positive, "1/s",
             "rate at which strain beyond plastic_yield flows", "at once"},
       Field{"merge_flow", &Material::merge_flow, k_not_negative, "",

@@ -32,13 +32,14 @@ void check(const AlphaSchedule& alpha, Checks& checks) {
 
 void check(const Material& material, Checks& checks) {
   check_fields("material.", material, checks);
-  if (material.plastic_creep && !material.plastic_yield)
+  if (material.plastic_creep && !flows(material))
     checks.problem("material.plastic_creep",
                    "is not allowed without plastic_yield: give the strain beyond which it flows, 0 or above");
   const bool melts = material.solidus && material.liquidus && *material.liquidus > *material.solidus;
   if (material.latent_heat > 0 && !melts)
     checks.problem("material.latent_heat", "needs a solidus, and a liquidus above it");
-  if (!material.temperature && (material.alpha_by_temperature || material.viscosity_by_temperature))
+  if (!material.temperature && (material.alpha_by_temperature || material.viscosity_by_temperature ||
+                                material.plastic_yield_by_temperature))
     checks.problem("material.temperature", "is missing: something follows it");
   if (material.youngs_modulus && material.elastic_time_step)
     checks.problem("material.youngs_modulus", "is not allowed beside elastic_time_step: give one of the two");
@@ -186,6 +187,7 @@ void check(const Body& body, Checks& checks) {
       check_value(field + '[' + std::to_string(first - values.begin()) + ']', *first, range, checks);
   };
   check_column("body.alpha", body.alpha, range_of(&Material::alpha));
+  check_column("body.plastic_yield", body.plastic_yield, k_not_negative);
   check_column("body.stiffness", body.stiffness, k_not_negative);
   check_column("body.temperature", body.temperature, k_finite);
   const auto reach = [](const Vec3& x) { return x.cwiseAbs().maxCoeff(); };

@@ -17,6 +17,10 @@ void check(const SolverConfig& config, Checks& checks);
 void check(InstructionLevel level, InstructionLevel best, Checks& checks);
 void check(const AlphaSchedule& alpha, Checks& checks);
 void check(const Material& material, Checks& checks);
+/// Whether regions flow where they are strained.
+inline bool flows(const Material& material) {
+  return material.plastic_yield || material.plastic_yield_by_temperature;
+}
 /// What shape matching pulls in a step at most, a = (1 − α) Δt0/Δt_SM. In linear theory it stays bounded
 /// below 4; rotation is not linear, and tumbling bodies gain 79% in 20,000 steps at 3.25, 6% at 3 and 2%
 /// at 2.5. [model 2, section 4 B]

@@ -14,12 +14,12 @@ namespace mallow {
 namespace {
 
 /// The columns that a point file may hold, in the order of a row's numbers below.
-constexpr std::array<const char*, 9> k_columns = {"x",  "y",     "z",         "vx",         "vy",
-                                                  "vz", "alpha", "stiffness", "temperature"};
+constexpr std::array<const char*, 10> k_columns = {
+    "x", "y", "z", "vx", "vy", "vz", "alpha", "stiffness", "plastic_yield", "temperature"};
 /// Where those begin that particles have of their own, and the members that they become.
 constexpr std::size_t k_own = 6;
-constexpr std::array<std::vector<float> Body::*, 3> k_own_members = {&Body::alpha, &Body::stiffness,
-                                                                     &Body::temperature};
+constexpr std::array<std::vector<float> Body::*, 4> k_own_members = {
+    &Body::alpha, &Body::stiffness, &Body::plastic_yield, &Body::temperature};
 
 /// What the columns that hold vectors are called by other programs: ParaView writes Points:0, Points_0 in
 /// newer versions, Velocity:0.

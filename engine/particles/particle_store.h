@@ -17,8 +17,10 @@ struct ParticleStore {
   Column<ParticleId> id;
   Column<std::uint16_t> pin;  ///< 0: free, else 1 + index of the pin; empty where nothing is pinned
   // What some body has by particle; empty where none has, else bodies without hold their material's.
-  Column<float> alpha;             ///< α, in [0, 1]
-  Column<float> stiffness;         ///< factor on the modulus, >= 0
+  Column<float> alpha;      ///< α, in [0, 1]
+  Column<float> stiffness;  ///< factor on the modulus, >= 0
+  Column<float>
+      plastic_yield;  ///< strain from which its region flows, >= 0; of no meaning where none is its own
   Column<float> temperature;       ///< T [K]; empty where nothing carries heat
   Column<float> temperature_rest;  ///< what that leaves out of a double [K]
   Slots slots;                     ///< id -> row
@@ -38,6 +40,7 @@ struct ParticleStore {
     visit(store.pin);
     visit(store.alpha);
     visit(store.stiffness);
+    visit(store.plastic_yield);
     visit(store.temperature);
     visit(store.temperature_rest);
   }

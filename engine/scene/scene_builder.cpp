@@ -183,6 +183,9 @@ void paint(const SceneBody& body, const Material& material, Body& points) {
   using namespace scene_file;
   paint_column(body, &ScenePaint::alpha, material.alpha.at(0), points, points.alpha);
   paint_column(body, &ScenePaint::stiffness, 1, points, points.stiffness);
+  const auto& yields = material.plastic_yield_by_temperature;
+  paint_column(body, &ScenePaint::plastic_yield,
+               yields ? yields->highest() : material.plastic_yield.value_or(0), points, points.plastic_yield);
   paint_column(body, &ScenePaint::paint_temperature, material.temperature.value_or(0), points,
                points.temperature);
 }

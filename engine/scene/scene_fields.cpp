@@ -80,6 +80,8 @@ BoundFields fields(ScenePaint& paint) {
       {"alpha", &paint.alpha, between(0, 1), "", "of the particles in it, for the whole run",
        "the material's"},
       {"stiffness", &paint.stiffness, k_not_negative, "", "factor on the elastic modulus in it", "1"},
+      {"plastic_yield", &paint.plastic_yield, k_not_negative, "", "strain beyond which matter in it flows",
+       "the material's"},
       {"temperature", &paint.paint_temperature, k_finite, "K", "of the particles in it at the start",
        "the material's"},
   };

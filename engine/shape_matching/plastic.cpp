@@ -65,7 +65,7 @@ bool any_part_ways(const VectorColumn& here, float near, const VectorColumn& the
 }  // namespace
 
 std::size_t PlasticColumns::bytes() const {
-  std::size_t sum = flow.bytes();
+  std::size_t sum = flow.bytes() + yield.bytes();
   for (const Column<float>& column : stretch) sum += column.bytes();
   return sum;
 }
@@ -159,8 +159,10 @@ void solve_plastic_regions(const MatchedBodies::Body& body, std::size_t begin, s
   const float share = !(time_step > 0)              ? 0.0f
                       : std::isinf(body.rule.creep) ? 1.0f
                                                     : -std::expm1(-body.rule.creep * time_step);
-  lanes.finish(body.input, {.yield = body.rule.yield, .share = share}, begin, end, rotation,
-               shape.sums.data(), stretch, shape.plastic.flow.data());
+  const Column<float>& yields = shape.plastic.yield;
+  lanes.finish(body.input,
+               {.yield = body.rule.yield, .yields = yields.empty() ? nullptr : yields.data(), .share = share},
+               begin, end, rotation, shape.sums.data(), stretch, shape.plastic.flow.data());
 }
 
 }  // namespace mallow

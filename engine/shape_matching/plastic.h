@@ -27,6 +27,7 @@ inline constexpr float k_far_flow = 0.5f;
 struct PlasticColumns {
   std::array<Column<float>, 9> stretch;  ///< S_j, row by row; what flows keeps its determinant
   Column<float> flow;                    ///< κ_j since the reference shape was taken
+  Column<float> yield;                   ///< strain from which it flows; empty where it is the same for all
 
   std::size_t bytes() const;
 };

@@ -123,10 +123,11 @@ void flow_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, cons
   const LaneMask upright = thick & (e.xx > 0.0f) & (minors.zz > 0.0f) & (det > 0.0f);
   const Symmetric strain = times_less_identity(inverse_cube_root(upright ? det : all_lanes(1.0f)), e);
   const Lanes size = norm(strain);
+  const Lanes yield = rule.yields ? load(rule.yields + j) : all_lanes(rule.yield);
   // Not where it is infinite, whatever is wrong there.
-  const LaneMask flows = upright & (size > rule.yield) & (size < 1e30f);
+  const LaneMask flows = upright & (size > yield) & (size < 1e30f);
   if (!any(flows)) return;
-  const Lanes y = smaller((1.0f - rule.yield / size) * rule.share, k_most_flow / size);
+  const Lanes y = smaller((1.0f - yield / size) * rule.share, k_most_flow / size);
   const Symmetric g = plus_identity(y, strain);
   const Lanes scale = inverse_cube_root(flows ? determinant(g, cofactors(g)) : all_lanes(1.0f));
   const Symmetric change = times_less_identity(scale, g);

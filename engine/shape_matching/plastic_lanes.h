@@ -20,8 +20,8 @@ inline constexpr float k_thin = 1e-4f;
 /// S⁻¹ is needed Ê, e   | of a step     | E/det(E)^⅓, |Ê − I| G      | of a step     | I + y (Ê − I), scaled
 /// to det 1; y = (1 − yield/e) share
 struct FlowInput {
-  /// Strain from which a region flows. One number for all; where it is to differ, a column beside it.
-  float yield;
+  float yield;          ///< strain from which regions flow
+  const float* yields;  ///< where they differ; null: `yield` for all
   float share;  ///< of what is beyond, that flows in this step: 1 − exp(−creep Δt); 0: nothing flows
 };
 struct PlasticLanes {

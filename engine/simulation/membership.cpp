@@ -156,11 +156,12 @@ BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name)
   body.spacing = points.spacing;
   body.shape.region_radius = region_radius(s.config, material.settings, body.spacing);
   body.shape.region_stride = material.settings.region_stride;
-  body.shape.flows = material.settings.plastic_yield.has_value();
+  body.shape.flows = flows(material.settings);
   check_modulus(s.config, material.settings, body.spacing, body.name, checks);
   checks.finish();
   derive_density(s.config, body);
   check_elasticity(s, body, points);
+  refuse_yields(body, points);
   refuse_temperatures(body, points);
   insert_points(s, checked_points(s, body, points), points, body);
   const std::uint64_t number = s.body_slots.take();

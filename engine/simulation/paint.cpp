@@ -92,11 +92,40 @@ void paint(Simulation::State& s, std::span<const ParticleId> ids, float value, c
   }
 }
 
+/// What a body yields at where nothing else is said.
+float yield_of(const Material& material) {
+  return material.plastic_yield_by_temperature ? material.plastic_yield_by_temperature->highest()
+                                               : material.plastic_yield.value_or(0.0f);
+}
+
 }  // namespace
+
+void refuse_yields(const BodyState& body, const Body& points) {
+  if (points.plastic_yield.empty() || flows(body.material->settings)) return;
+  throw ConfigError("body.plastic_yield", "is not allowed: material '" + body.material->name +
+                                              "' does not flow, as it has no plastic_yield");
+}
+
+/// The same of the strain from which regions flow, which is a column of its own.
+void paint_yields(Simulation::State& s, BodyState& body, std::size_t begin, const Body& points) {
+  const Material& settings = body.material->settings;
+  if (!points.plastic_yield.empty() || settings.plastic_yield_by_temperature) {
+    s.store.plastic_yield.resize(s.store.size());
+    if (!body.paints_yield)
+      std::fill(s.store.plastic_yield.begin() + body.begin, s.store.plastic_yield.begin() + body.end,
+                yield_of(settings));
+    body.paints_yield = true;
+  }
+  if (!body.paints_yield) return;
+  for (std::size_t row = begin; row < body.end; ++row)
+    s.store.plastic_yield[row] =
+        points.plastic_yield.empty() ? yield_of(settings) : points.plastic_yield[row - begin];
+}
 
 void paint_rows(Simulation::State& s, BodyState& body, std::size_t begin, const Body& points) {
   if (!points.alpha.empty() || body.material->settings.alpha_by_temperature) body.paints_alpha = true;
   if (!points.stiffness.empty()) body.paints_stiffness = true;
+  paint_yields(s, body, begin, points);
   if (body.is_painted()) make_columns(s);
   if (!s.is_painted()) return;
   const float alpha = body.material->settings.alpha.at(s.time);
@@ -167,6 +196,17 @@ void check_elasticities(const Simulation::State& s) {
   }
 }
 
+namespace {
+
+void limit_regions(const ParticleStore& store, BodyState& body) {
+  Column<float>& yield = body.shape.plastic.yield;
+  yield.resize(body.paints_yield ? body.shape.region_weight.size() : 0);
+  for (std::size_t j = 0; j < yield.size(); ++j)
+    yield[j] = store.plastic_yield[body.begin + body.shape.owner(j)];
+}
+
+}  // namespace
+
 void weigh_regions(const ParticleStore& store, BodyState& body) {
   ShapeMatching& shape = body.shape;
   shape.elasticity.resize(body.is_painted() ? shape.region_weight.size() : 0);
@@ -177,9 +217,11 @@ void weigh_regions(const ParticleStore& store, BodyState& body) {
 }
 
 void weigh_regions(Simulation::State& s) {
-  for (BodyState* body : s.awake)
+  for (BodyState* body : s.awake) {
+    if (body->matches_shape() && body->shape.flows) limit_regions(s.store, *body);
     if (body->matches_shape() && (body->is_painted() || !body->shape.elasticity.empty()))
       weigh_regions(s.store, *body);
+  }
 }
 
 bool update_part(Simulation::State& s, BodyState& body) {

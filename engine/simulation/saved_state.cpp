@@ -74,6 +74,7 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   archive(body.yielded);
   archive(body.paints_alpha);
   archive(body.paints_stiffness);
+  archive(body.paints_yield);
   archive(body.is_heated);
   for (auto* vector : {&body.rigid.center, &body.rigid.velocity, &body.rigid.spin})
     archive.array(vector->data(), 3);
@@ -195,7 +196,7 @@ std::vector<ShapeSizes> unpack_bodies(const SavedState& saved, Simulation::State
       const Material& settings = body.material->settings;
       body.shape.region_radius = region_radius(state.config, settings, body.spacing);
       body.shape.region_stride = settings.region_stride;
-      body.shape.flows = settings.plastic_yield.has_value();
+      body.shape.flows = flows(settings);
     });
   });
   return sizes;
@@ -413,6 +414,9 @@ void unpack_particles(const SavedState& saved, Simulation::State& state) {
   });
   unpack_painted(saved, "alphas", n, range_of(&Material::alpha), store.alpha);
   unpack_painted(saved, "stiffnesses", n, k_not_negative, store.stiffness);
+  unpack_painted(saved, "plastic_yields", n, k_not_negative, store.plastic_yield);
+  if (std::ranges::any_of(state.bodies, &BodyState::paints_yield) && store.plastic_yield.empty())
+    throw ConfigError("saved state, chunk 'plastic_yields'", "there must be some");
   unpack_painted(saved, "temperatures", n, k_finite, store.temperature);
   unpack_painted(saved, "temperature_rests", n, k_finite, store.temperature_rest);
   const bool heated = std::ranges::any_of(state.bodies, &BodyState::is_heated);
@@ -536,6 +540,7 @@ SavedState Simulation::save() const {
   add(packed_column("pinned", s.store.pin));
   add(packed_column("alphas", s.store.alpha));
   add(packed_column("stiffnesses", s.store.stiffness));
+  add(packed_column("plastic_yields", s.store.plastic_yield));
   add(packed_column("temperatures", s.store.temperature));
   add(packed_column("temperature_rests", s.store.temperature_rest));
   add(packed("references", [&](PackingArchive& archive) {

@@ -81,6 +81,7 @@ struct BodyState {
   double mean_speed = 0;  ///< of its particles, after the last step [m/s]
   Aabb box = {};          ///< around its particles while it sleeps [m]
   bool paints_alpha = false, paints_stiffness = false;  ///< its particles have their own
+  bool paints_yield = false;                            ///< likewise, or follow temperatures in it
   bool is_heated = false;                               ///< its particles have a temperature
   BlendRange blend;                                     ///< of one that paints
   bool grew = true;                                     ///< has particles that prepare() has not seen
@@ -322,11 +323,14 @@ void thin_by_heat(Simulation::State& state);
 void conduct_heat(Simulation::State& state, float time_step);
 /// Temperatures of particles that have none yet; what follows from the materials of heated bodies.
 void prepare_heat(Simulation::State& state);
+/// Throws ConfigError where points have a yield of their own and their body does not flow.
+void refuse_yields(const BodyState& body, const Body& points);
 /// Throws ConfigError where points have temperatures and their body carries no heat.
 void refuse_temperatures(const BodyState& body, const Body& points);
 /// Rows [begin, end) of a body, its last ones, are as warm as points say.
 void warm_rows(Simulation::State& state, BodyState& body, std::size_t begin, const Body& points);
-/// alpha, stiffness of particles -> e_j of the regions of bodies that paint. [model 2, section 7]
+/// alpha, stiffness, yield of particles -> e_j and yield of the regions of bodies that paint. [model 2,
+/// section 7]
 void weigh_regions(Simulation::State& state);
 /// mean |a_ext| -> reference shapes that give way, their rows sorted; regions that are due; the bodies whose
 /// shapes are matched in this step. Returns how many gave way. [TK 3.2, model 6]

@@ -67,7 +67,9 @@ void prepare_heat(Simulation::State& s) {
     // A material may have come to carry heat, and to follow it, since the body was added.
     if (body.material->carries_heat() && !body.is_heated) warm_rows(s, body, body.begin, {});
     body.is_heated = body.material->carries_heat();
-    if (body.is_heated && body.material->settings.alpha_by_temperature && !body.paints_alpha) {
+    const Material& settings = body.material->settings;
+    if (body.is_heated && ((settings.alpha_by_temperature && !body.paints_alpha) ||
+                           (settings.plastic_yield_by_temperature && !body.paints_yield))) {
       paint_rows(s, body, body.begin, {});
       body.grew = body.grew || body.shape.reference.size() != body.size();
     }
@@ -113,6 +115,14 @@ void follow_temperatures(Simulation::State& s) {
   if (std::ranges::any_of(s.bodies,
                           [&](const BodyState& body) { return body.is_heated && follows(*body.material); }))
     s.blend_changed = true;
+  const auto softens = [](const MaterialState& material) {
+    return material.settings.plastic_yield_by_temperature.has_value();
+  };
+  for_rows_of(s, softens, [&](const BodyState& body, std::size_t begin, std::size_t end) {
+    const Schedule& yield = *body.material->settings.plastic_yield_by_temperature;
+    for (std::size_t row = begin; row < end; ++row)
+      s.store.plastic_yield[row] = yield.at(static_cast<double>(s.store.temperature[row]));
+  });
 }
 
 void thin_by_heat(Simulation::State& s) {

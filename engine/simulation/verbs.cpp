@@ -60,7 +60,7 @@ void follow_regions(Simulation::State& s, BodyState& body) {
   const Material& settings = body.material->settings;
   ShapeMatching& shape = body.shape;
   const float radius = region_radius(s.config, settings, body.spacing);
-  const bool flows = settings.plastic_yield.has_value();
+  const bool flows = mallow::flows(settings);
   if (shape.region_radius == radius && shape.region_stride == settings.region_stride && shape.flows == flows)
     return;
   CarriedRegions carried;

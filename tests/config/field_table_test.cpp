@@ -151,7 +151,8 @@ TEST(field_table, states_of_version_9_hold_these_settings_in_this_order) {
       "neighbor_slack "
       "memory_limit");
   EXPECT_EQ(names_in_states<Material>(),
-            "alpha update_threshold plastic_yield plastic_creep merge_flow tear_strain pressure_coefficient "
+            "alpha update_threshold plastic_yield plastic_yield_by_temperature plastic_creep merge_flow "
+            "tear_strain pressure_coefficient "
             "viscosity elastic_time_step youngs_modulus particle_mass "
             "rest_density cohesion friction adhesion damping_time deformation_damping region_radius "
             "region_stride temperature conductivity specific_heat latent_heat solidus liquidus heat_transfer "

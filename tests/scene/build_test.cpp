@@ -288,6 +288,7 @@ support_radius = 2.1
 [[material]]
 name = "jelly"
 alpha = 0.5
+plastic_yield = 0.1
 temperature = 300
 [[body]]
 material = "jelly"

@@ -38,6 +38,7 @@ name = "jelly \"red\""
 alpha = [[0.0, 0.1], [1.5, 1]]
 update_threshold = 1.5
 plastic_yield = 0.0625
+plastic_yield_by_temperature = [[303, 0.5], [309, 0.25]]
 plastic_creep = 0.5
 merge_flow = 0.25
 tear_strain = 0.75
@@ -69,7 +70,7 @@ material = "jelly \"red\""
 group = "g"
 velocity = [1, 2, 3]
 box = { count = [2, 3, 4], spacing = 0.1, corner = [5, 6, 7], jitter = 0.0625 }
-paint = [{ sphere = { radius = 2 }, translate = [5, 6, 7], rotate = [0, 90, 0], alpha = 0.5, stiffness = 0.25, temperature = 310 },
+paint = [{ sphere = { radius = 2 }, translate = [5, 6, 7], rotate = [0, 90, 0], alpha = 0.5, stiffness = 0.25, plastic_yield = 0.125, temperature = 310 },
          { plane = {}, alpha = 0.75 }]
 [[body]]
 material = "jelly \"red\""

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -200,6 +201,72 @@ TEST(paint, is_refused_where_it_is_out_of_range_or_too_stiff) {
   EXPECT_THROW(s.set_alpha(std::vector<ParticleId>{7, 999}, 1.0f), ConfigError);
   EXPECT_EQ(s.alpha(7), 0.5f);
   EXPECT_EQ(s.state_hash(), hash);
+}
+
+/// Strain that stays in the left and the right half of a bar that was pulled to 1.2 of its length and let go.
+std::array<double, 2> kept_strains(const Material& material, const Body& bar) {
+  SolverConfig solver = config();
+  solver.sleep_speed = 0.0f;
+  Simulation s(solver);
+  s.add_body(bar, material);
+  s.pin(Aabb{{-1, -9, -9}, {3, 9, 9}}, {0, 0, 0});
+  const PinId end = s.pin(Aabb{{33, -9, -9}, {37, 9, 9}}, {0, 0, 0});
+  s.move_pin(end, {6, 0, 0}, 150);
+  s.advance(200);
+  s.unpin(end);
+  s.advance(300);
+  const std::vector<Vec3> now = s.positions_by_id();
+  const auto mean_x = [&](float from, float to) {
+    double sum = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (bar.positions[i].x() > from && bar.positions[i].x() < to) sum += double{now[i].x()}, ++count;
+    return sum / count;
+  };
+  const auto strain = [&](float from) {
+    return (mean_x(from + 8, from + 10) - mean_x(from, from + 2)) / 8 - 1;
+  };
+  return {strain(6), strain(20)};
+}
+
+Body bar_of(std::vector<float> Body::*column, float left, float right) {
+  Body bar = sample(Lattice{.count = {36, 6, 6}});
+  for (const Vec3& x : bar.positions) (bar.*column).push_back(x.x() < 18 ? left : right);
+  return bar;
+}
+
+TEST(paint, of_yield_lets_flow_what_yields_less_and_no_more) {
+  const Material material{.plastic_yield = 0.05f, .damping_time = 0.1f};
+  const auto [left, right] = kept_strains(material, bar_of(&Body::plastic_yield, 0.05f, 1000.0f));
+  EXPECT_GT(left, 0.05);
+  EXPECT_NEAR(right, 0, 0.005);
+  Simulation s(config());
+  EXPECT_THROW(s.add_body(bar_of(&Body::plastic_yield, 0.05f, 1.0f), Material{}), ConfigError)
+      << "nothing flows in it";
+}
+
+TEST(paint, of_temperature_lets_flow_what_is_warm) {
+  const Material material{.plastic_yield_by_temperature = Schedule{{300, 1000}, {310, 0.05f}},
+                          .damping_time = 0.1f,
+                          .temperature = 300.0f};
+  const auto [left, right] = kept_strains(material, bar_of(&Body::temperature, 320, 295));
+  EXPECT_GT(left, 0.05);
+  EXPECT_NEAR(right, 0, 0.005);
+}
+
+TEST(paint, of_yield_goes_on_with_the_same_bits_after_a_restore) {
+  const auto start = [] {
+    Simulation s(config());
+    s.add_body(stirred(bar_of(&Body::plastic_yield, 0.01f, 1000.0f), 0.5f, 0.02f),
+               {.plastic_yield = 0.02f, .plastic_creep = 0.5f});
+    return s;
+  };
+  Simulation whole = start(), part = start();
+  for (int k = 0; k < 120; ++k) whole.step();
+  for (int k = 0; k < 70; ++k) part.step();
+  Simulation rest = Simulation::restore(part.save(), 1);
+  for (int k = 0; k < 50; ++k) rest.step();
+  EXPECT_EQ(whole.state_hash(), rest.state_hash());
 }
 
 }  // namespace paint_test

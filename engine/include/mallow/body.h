@@ -22,6 +22,10 @@ struct Body {
   /// or flows, inside of what is not: regions count by the α of the particle that owns them and pairs of SPH
   /// by the mean of the two, so that momentum is kept exactly. [model 2, section 7]
   std::vector<float> alpha = {};
+  /// Material::plastic_yield at each point, >= 0, in place of the material's, which must have one: what is
+  /// very large never flows. Regions flow by that of the particle that owns them. Empty, or as long as
+  /// `positions`.
+  std::vector<float> plastic_yield = {};
   /// Factor on the material's elastic modulus at each point, >= 0, up to what a step carries: (1 − α) times
   /// it is bounded as Material::elastic_time_step says. Empty, where it is 1 everywhere, or as long as
   /// `positions`.

@@ -28,6 +28,8 @@ struct Material {
   /// then, and what is farther apart than region_radius is not. Left out: nothing flows, only
   /// update_threshold changes shapes. [model 2, section 5]
   std::optional<float> plastic_yield = {};
+  /// The same by temperature, in place of plastic_yield: keys of (temperature [K], strain >= 0).
+  std::optional<Schedule> plastic_yield_by_temperature = {};
   /// Rate at which strain beyond plastic_yield flows [1/s], > 0: a plastic viscosity of E/(2 plastic_creep).
   /// Left out: at once, so that no strain stays beyond it. Asks for plastic_yield.
   std::optional<float> plastic_creep = {};

@@ -95,6 +95,7 @@ struct SceneCollider : Collider {
 struct ScenePaint : SceneCollider {
   std::optional<float> alpha = {};              ///< in [0, 1], see Body::alpha
   std::optional<float> stiffness = {};          ///< >= 0, see Body::stiffness
+  std::optional<float> plastic_yield = {};      ///< >= 0, see Body::plastic_yield
   std::optional<float> paint_temperature = {};  ///< [K], see Body::temperature
 };
 
