@@ -9,6 +9,7 @@ namespace mallow {
 inline SolverConfig with_paper_settings(SolverConfig config) {
   if (!config.time_step) config.time_step = 0.15f;
   if (!config.update_period && !config.update_interval) config.update_interval = 60;
+  if (!config.volume_iterations) config.volume_iterations = 0;
   return config;
 }
 inline Material with_paper_settings(Material material) {

@@ -44,7 +44,8 @@ struct FieldTable<SolverConfig> {
       Field{"wall_pressure", &Config::wall_pressure, k_any, "",
             "colliders count in the density of fluids and press back; false in the paper's scenes"},
       Field{"volume_iterations", &Config::volume_iterations, between(0, 50), "",
-            "most iterations a step that keep matter from being pressed together; 0: pressure alone does"},
+            "most iterations a step that keep matter from being pressed together; 0: pressure alone does",
+            "2 with plastic_yield, else 0"},
       Field{"volume_tolerance", &Config::volume_tolerance, between(0, 1), "",
             "they end at this mean compression; 0: all are taken"},
       Field{

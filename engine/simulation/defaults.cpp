@@ -35,6 +35,12 @@ constexpr double k_cohesive = 0.08;
 /// alpha acts: with k for alpha 0.05 an impact shortened steps to a quarter, and densities of 1.8 stayed.
 constexpr float k_least_alpha = 0.2f;
 
+/// Iterations of the volume constraint where matter flows. A cube of 10 cm of clay without alpha, dropped
+/// from 20 cm, ends in crumbs up to 3.5 m off without, and within 30 cm with 2. With alpha from 0.4,
+/// toothpaste at spacings of 10 and 6.3 mm ends at heights 8% apart with none, 2% with 1, 2, 3, or to a mean
+/// of 0.1%.
+constexpr int k_flow_iterations = 2;
+
 double length(const Vec3& v) {
   return v.cast<double>().norm();
 }
@@ -72,6 +78,10 @@ float default_kinematic_viscosity(const SceneScale& scale, float time_step) {
   const double h = static_cast<double>(scale.spacing), g = length(scale.gravity);
   if (g > 0) return static_cast<float>(k_viscosity * h * std::sqrt(g * h));
   return static_cast<float>(k_viscosity_of_step * h * h / static_cast<double>(time_step));
+}
+
+int default_volume_iterations(bool flows) {
+  return flows ? k_flow_iterations : 0;
 }
 
 double full_neighbors(float radius, float spacing) {

@@ -69,6 +69,7 @@ void correct_volume(Simulation::State& state, float time_step, StepReport& repor
   for (const BodyState* body : state.awake)
     state.volume.groups[body->sph_group].relaxation = volume_relaxation(state, *body, time_step);
   const double tolerance = static_cast<double>(state.config.volume_tolerance);
+  const int most = state.volume_iterations();
   begin_volume(step, state.sph, state.execution, state.volume);
   for (int& taken = report.volume_iterations;; ++taken) {
     const VectorColumn& contacted = find_contacted(state, time_step);
@@ -77,9 +78,9 @@ void correct_volume(Simulation::State& state, float time_step, StepReport& repor
     report.mean_compression = found.mean;
     report.largest_compression = found.largest;
     if (found.largest == 0 || (tolerance > 0 && found.mean <= tolerance)) break;
-    if (taken == state.config.volume_iterations) break;
+    if (taken == most) break;
     correct_velocities(step, state.sph, state.execution, state.volume, state.store.next_velocity);
-    if (tolerance == 0 && taken + 1 == state.config.volume_iterations) {
+    if (tolerance == 0 && taken + 1 == most) {
       ++taken;
       break;
     }

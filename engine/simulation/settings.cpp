@@ -177,6 +177,12 @@ float Simulation::State::deformation_damping(const BodyState& body) const {
   return k_calming / (scene_step() * (1 + ratio * ratio));
 }
 
+int Simulation::State::volume_iterations() const {
+  const bool flows = std::ranges::any_of(
+      bodies, [](const BodyState& body) { return body.material->settings.plastic_yield.has_value(); });
+  return config.volume_iterations.value_or(default_volume_iterations(flows));
+}
+
 double update_period(const Simulation::State& state) {
   const SolverConfig& config = state.config;
   if (config.update_period) return static_cast<double>(*config.update_period);

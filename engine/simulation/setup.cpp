@@ -87,7 +87,7 @@ void describe_bodies(Simulation::State& state) {
            .contact_share = 1,
            .viscosity = body.viscosity,
            .cohesion = 0});
-      if (state.config.volume_iterations > 0)
+      if (state.volume_iterations() > 0)
         state.volume.groups.push_back(volume_group(sph.groups.back(), body.spacing, sph.support_radius));
     }
     sph.bodies.push_back({body.end, body.sph_group});

@@ -265,9 +265,11 @@ struct Simulation::State {
   /// Some acceleration of SPH counts: pairs within a body that is not purely elastic, or between bodies where
   /// those are kept apart by pressure.
   bool needs_sph() const;
+  /// Of a step, at most: as given, or what bodies that flow ask for.
+  int volume_iterations() const;
   /// Velocities are changed so that densities stay, whatever alpha is.
   bool keeps_volume() const {
-    return config.volume_iterations > 0 &&
+    return volume_iterations() > 0 &&
            std::ranges::any_of(bodies, [](const BodyState& body) { return body.moves(); });
   }
   /// There are bodies that do not merge, and contact keeps them apart.

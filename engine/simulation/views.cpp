@@ -224,6 +224,7 @@ SimulationInfo Simulation::info() {
   info.longest_step = s.longest_step();
   info.update_period = update_period(s);
   info.unlimited_step = unlimited_step(s);
+  info.volume_iterations = s.volume_iterations();
   info.warnings = warnings(s);
   for (const BodyState& body : s.bodies) {
     info.bytes += body.shape.bytes();

@@ -42,7 +42,7 @@ class Warnings {
       look_at_neighbors(body);
       look_at_volume(body);
     }
-    if (state_.config.volume_tolerance > 0 && state_.config.volume_iterations == 0)
+    if (state_.config.volume_tolerance > 0 && state_.volume_iterations() == 0)
       list_.push_back(
           "solver.volume_tolerance ends volume iterations, of which there are none: give volume_iterations");
     if (state_.step == 0 && state_.bodies.size() > 1) look_at_overlaps();
@@ -131,7 +131,7 @@ class Warnings {
 
   /// What is as stiff as a step can carry leaves no room for another spring.
   void look_at_volume(const BodyState& body) {
-    if (state_.config.volume_iterations == 0) return;
+    if (state_.volume_iterations() == 0) return;
     const float share = 2 * volume_relaxation(state_, body, state_.longest_step());
     if (share < k_least_share)
       add(body, "elasticity and damping are so stiff for a step of ", state_.longest_step(),

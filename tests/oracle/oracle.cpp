@@ -478,7 +478,7 @@ void Oracle::sum_accelerations() {
 
 // Section 3.
 bool Oracle::sph_acts() const {
-  return groups_.size() > 1 || groups_.front().most_alpha > 0 || config_.volume_iterations > 0;
+  return groups_.size() > 1 || groups_.front().most_alpha > 0 || volume_iterations() > 0;
 }
 
 double Oracle::max_velocity() const {

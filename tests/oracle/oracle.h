@@ -143,6 +143,7 @@ class Oracle {
   Vec pair_acceleration(const Particle& i, const Particle& j) const;
   void sum_accelerations();
   bool sph_acts() const;
+  int volume_iterations() const;
   double max_velocity() const;
   double time_step(double max_velocity) const;
   void match_shapes();

@@ -26,6 +26,13 @@ double half_space_slope(double d, double sigma) {
 
 }  // namespace
 
+// Left out: 2 where something flows.
+int Oracle::volume_iterations() const {
+  const bool flows = std::ranges::any_of(
+      groups_, [](const Group& group) { return group.material.plastic_yield.has_value(); });
+  return config_.volume_iterations.value_or(flows ? 2 : 0);
+}
+
 // Reads x, ρ, v' and walls; writes v'.
 void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
   const double sigma = *config_.support_radius;
@@ -39,7 +46,7 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
   };
   std::vector<Vec> w(n);
   std::vector<double> lambda(n);
-  for (int iteration = 0; iteration < config_.volume_iterations; ++iteration) {
+  for (int iteration = 0; iteration < volume_iterations(); ++iteration) {
     for (std::size_t i = 0; i < n; ++i) {
       w[i] = particles_[i].v;
       for (const Obstacle& obstacle : obstacles_)

@@ -319,6 +319,31 @@ TEST(volume, iterations_end_at_the_tolerance_and_are_none_where_nothing_is_press
   EXPECT_GT(most, 3);
 }
 
+TEST(volume, iterations_are_two_where_a_body_flows_unless_they_are_given) {
+  const auto iterations = [](std::optional<float> yield, std::optional<int> given) {
+    Simulation s({.volume_iterations = given});
+    s.add_body(sample(Lattice{.count = {4, 4, 4}}), {.plastic_yield = yield});
+    const int most = s.info().volume_iterations;
+    s.add_collider({.shape = Plane{.offset = 0.6f}});  // what is pressed takes all of them
+    EXPECT_EQ(s.step().volume_iterations, most);
+    return most;
+  };
+  EXPECT_EQ(iterations(0.1f, {}), 2);
+  EXPECT_EQ(iterations({}, {}), 0);
+  EXPECT_EQ(iterations(0.1f, 0), 0);
+  EXPECT_EQ(iterations(0.1f, 3), 3);
+  EXPECT_EQ(iterations({}, 1), 1);
+  Simulation later({});  // what comes later asks for them too, and what goes no more
+  later.add_body(sample(Lattice{.count = {4, 4, 4}}), {});
+  EXPECT_EQ(later.info().volume_iterations, 0);
+  const BodyId paste =
+      later.add_body(sample(Lattice{.count = {4, 4, 4}, .corner = {0, 0, 20}}), {.plastic_yield = 0.1f});
+  later.step();
+  EXPECT_EQ(later.info().volume_iterations, 2);
+  later.remove_body(paste);
+  EXPECT_EQ(later.info().volume_iterations, 0);
+}
+
 TEST(volume, warns_of_a_tolerance_of_nothing_and_of_bodies_too_stiff_for_it) {
   const auto warnings = [](const SolverConfig& solver, float elastic_time_step) {
     Simulation s(solver);

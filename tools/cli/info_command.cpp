@@ -83,6 +83,16 @@ void print_times(const Scene& scene, const SimulationInfo& info) {
               steps, steps == 1 ? "" : "s", scene.run.frames * frame);
 }
 
+/// How many iterations keep matter from being pressed together, and why.
+void print_volume(const Scene& scene, const SimulationInfo& info) {
+  if (info.volume_iterations > 0)
+    std::printf("volume           kept by %d iteration%s a step%s, %s\n", info.volume_iterations,
+                info.volume_iterations == 1 ? "" : "s", scene.solver.volume_tolerance > 0 ? " at most" : "",
+                scene.solver.volume_iterations ? "as given" : "as a body flows by plastic_yield");
+  else
+    std::printf("volume           by pressure alone\n");
+}
+
 void info(const InfoOptions& options) {
   const Scene scene = read_scene(options.scene);
   if (options.print) {
@@ -112,6 +122,7 @@ void info(const InfoOptions& options) {
   std::printf("memory           %.1f MiB\n", static_cast<double>(info.bytes) / (1024.0 * 1024.0));
   std::printf("support radius   %g m, %s\n", static_cast<double>(info.support_radius),
               scene.solver.support_radius ? "as given" : "from the largest spacing");
+  print_volume(scene, info);
   print_times(scene, info);
   print_bodies(info);
   if (shape_matching) print_stiffness(info);

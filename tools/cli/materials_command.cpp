@@ -25,7 +25,9 @@ void list_materials() {
     print_modulus(material, alpha);
     std::printf(" %16.4g  %s\n", static_cast<double>(material.rest_density.value_or(0)), preset.about);
   }
-  std::printf("\nIn a scene: material = \"honey\" of a body or an emitter, in metres and under 9.81 m/s2.\n");
+  std::printf(
+      "\nIn a scene: material = \"honey\" of a body or an emitter, in metres and under 9.81 m/s2.\n"
+      "A picture of cubes of them all, dropped, squeezed and on a slope: data/pictures/materials.jpg\n");
 }
 
 }  // namespace

@@ -57,6 +57,10 @@ MALLOW_EXPORT float default_pressure_coefficient(float support_radius, float alp
 /// step carries the pressure above: stiff pressure without viscosity gains energy.
 MALLOW_EXPORT float default_kinematic_viscosity(const SceneScale& scale, float time_step);
 
+/// Of SolverConfig: 2 where some body flows by Material::plastic_yield, else 0. What has flowed under a blow
+/// does not spring back, and where nothing keeps its volume it stays pressed together.
+MALLOW_EXPORT int default_volume_iterations(bool flows);
+
 /// Neighbours of a particle within a body that fills all of the radius, itself not counted: 4/3 π (r/h)³.
 MALLOW_EXPORT double full_neighbors(float radius, float spacing);
 

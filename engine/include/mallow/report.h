@@ -145,6 +145,7 @@ struct SimulationInfo {
   double update_period = 0;  ///< between checks of the reference shapes, where no step is shortened [s]
   /// The longest step that no limit would shorten, as fast as things are now [s]; infinite where no SPH acts.
   double unlimited_step = 0;
+  int volume_iterations = 0;  ///< a step, at most, that keep matter from being pressed together
   /// What can be run, but is hardly meant: a sentence each that names body, setting and value.
   std::vector<std::string> warnings;
 };
