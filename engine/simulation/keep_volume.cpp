@@ -36,19 +36,6 @@ constexpr double k_most_relaxation = 0.5;
 /// what a step carries, as it does there.
 constexpr double k_together = 2.8;
 
-/// What walls got goes where their pressure went.
-void add_wall_loads(Simulation::State& state, double time_step) {
-  const std::vector<ColliderLoad>& given = state.volume.wall_loads;
-  Walls& walls = state.sph.walls;
-  for (std::size_t k = 0; k < given.size(); ++k) {
-    walls.partial_loads[k].impulse += given[k].impulse / time_step;
-    walls.partial_loads[k].torque += given[k].torque / time_step;
-    if (state.moving.loads.empty()) continue;
-    state.moving.loads[k % walls.loads.size()].impulse += given[k].impulse;
-    state.moving.loads[k % walls.loads.size()].torque += given[k].torque;
-  }
-}
-
 }  // namespace
 
 float volume_relaxation(const Simulation::State& state, const BodyState& body, float time_step) {
@@ -85,7 +72,7 @@ void correct_volume(Simulation::State& state, float time_step, StepReport& repor
       break;
     }
   }
-  add_wall_loads(state, static_cast<double>(time_step));
+  add_wall_loads(state, state.volume.wall_loads, time_step);
   remember_predicted(state.execution, state.store, state.moving);
 }
 

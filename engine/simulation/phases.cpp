@@ -100,12 +100,18 @@ void reframe(Simulation::State& state, BodyState& body) {
 /// What became of the parts of a body, whose regions are built anew.
 void tell_parts(Simulation::State& state, const BodyState& body) {
   Parts &before = state.parts_before, &after = state.parts_after;
-  find_parts(body.shape, after);
   const auto tell = [&](BodyEvent::Kind kind) {
     state.events.push_back({.kind = kind, .body = body.id, .parts = after.count});
   };
   if (any_in_two(before, after)) tell(BodyEvent::Kind::torn);
   if (any_in_two(after, before)) tell(BodyEvent::Kind::merged);
+}
+
+/// Whether a body that has yielded is still in one part: then it comes to rest as one. Nobody has followed
+/// its rigid motion while it was not.
+void judge_parts(Simulation::State& state, BodyState& body, bool was_apart) {
+  body.apart = state.parts_after.count != 1;
+  if (was_apart && !body.apart) measure_rigid(state, body);
 }
 
 }  // namespace
@@ -119,7 +125,7 @@ int update_references(Simulation::State& state) {
         static_cast<double>(body.material->update_threshold * (1.0f - body.most_alpha()));
     const bool yields = check && body.follows_threshold() && body.judged_external > threshold;
     const bool reframes = check && !yields && flows(body) && frame_is_due(state, body);
-    const bool had_regions = body.matches_shape() && body.shape.built;
+    const bool had_regions = body.matches_shape() && body.shape.built, was_apart = body.apart;
     const auto due = [&] { return body.matches_shape() && !body.shape.built; };
     // A reference shape outlives the step: nothing that is not finite may get into it.
     if (yields || reframes || due()) check_damage(state);
@@ -132,11 +138,15 @@ int update_references(Simulation::State& state) {
         take_reference(state, body);
         if (had_regions) sort_parts(state.region_scratch.pillars.order.span(), state.parts_before);
       }
-      body.yielded = true;
+      body.apart = true;
       state.events.push_back({BodyEvent::Kind::yielded, body.id});
       ++updated;
     }
-    if (due()) build_regions(state.execution, state.region_scratch, body.shape);
+    const bool builds = due();
+    if (builds) build_regions(state.execution, state.region_scratch, body.shape);
+    if (!body.apart || !(yields || reframes || builds) || !body.shape.built) continue;
+    find_parts(body.shape, state.parts_after);
+    judge_parts(state, body, was_apart);
     if ((yields || reframes) && had_regions) tell_parts(state, body);
   }
   state.matched.clear();
@@ -200,6 +210,27 @@ void press_walls(Simulation::State& state) {
                .pin = store.pin.empty() ? nullptr : store.pin.data(),
                .all_loads = state.reports_contacts()},
               state.placed_colliders, state.execution, sph.walls);
+}
+
+void add_wall_loads(Simulation::State& state, const std::vector<ColliderLoad>& given, float time_step) {
+  Walls& walls = state.sph.walls;
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    walls.partial_loads[k].impulse += given[k].impulse / static_cast<double>(time_step);
+    walls.partial_loads[k].torque += given[k].torque / static_cast<double>(time_step);
+    if (state.moving.loads.empty()) continue;
+    state.moving.loads[k % walls.loads.size()].impulse += given[k].impulse;
+    state.moving.loads[k % walls.loads.size()].torque += given[k].torque;
+  }
+}
+
+void rub_walls(Simulation::State& state, float time_step) {
+  ParticleStore& store = state.store;
+  rub_walls({.position = store.position,
+             .before = store.velocity,
+             .pin = store.pin.empty() ? nullptr : store.pin.data(),
+             .time_step = time_step},
+            state.placed_colliders, state.execution, state.sph.walls, store.next_velocity);
+  add_wall_loads(state, state.sph.walls.rubbed, time_step);
 }
 
 void call_force(Simulation::State& state) {

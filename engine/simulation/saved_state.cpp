@@ -71,7 +71,7 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
     archive(external.mean);
   });
   archive(body.grew);
-  archive(body.yielded);
+  archive(body.apart);
   archive(body.paints_alpha);
   archive(body.paints_stiffness);
   archive(body.paints_yield);

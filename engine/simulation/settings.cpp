@@ -171,7 +171,7 @@ void resolve_pressures(Simulation::State& state) {
 
 float Simulation::State::deformation_damping(const BodyState& body) const {
   if (body.material->settings.deformation_damping) return *body.material->settings.deformation_damping;
-  if (body.yielded) return 0;
+  if (body.apart) return 0;
   const float ratio =
       static_cast<float>(body.rigid.deformation_speed) * scene_step() / (k_calm_speed * body.spacing);
   return k_calming / (scene_step() * (1 + ratio * ratio));

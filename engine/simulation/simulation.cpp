@@ -52,12 +52,13 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
   timer.lap(Phase::goals);
 
   // a, g − x -> v', contact, v' -> x': in one loop where nothing stands between them. [TK eq. 10 to 13]
-  if ((s.keeps_volume() || s.bodies_touch()) && !s.awake.empty()) {
+  if ((s.keeps_volume() || s.bodies_touch() || s.walls()) && !s.awake.empty()) {
     move_bodies(s, step.time_step, {.predict = true});  // a, g − x -> v'
     timer.lap(Phase::motion);
     if (s.keeps_volume()) correct_volume(s, step.time_step, report);  // ρ, v' -> v' that keep ρ
     timer.lap(Phase::volume);
     if (s.bodies_touch()) resolve_touching(s, step.time_step);  // x, v' -> v' of what touches
+    if (s.walls()) rub_walls(s, step.time_step);  // a^wall, v' -> v' that friction of walls slows
     timer.lap(Phase::body_contact);
     move_bodies(s, step.time_step, {.collide = true, .advance = true});  // contact with colliders, v' -> x'
   } else {

@@ -70,7 +70,7 @@ struct BodyState {
   double step_external = 0;        ///< mean |a_ext| in the step under way [m/s²]
   bool measures_external = false;  ///< in it
   RigidMotion rigid;               ///< kept where deformations are damped towards it
-  bool yielded = false;            ///< its reference shape was updated since it was built
+  bool apart = false;              ///< its reference shape was updated, and it may be in several parts
   bool enabled = true;             ///< see Simulation::enable()
   std::uint64_t user_data = 0;
   std::optional<double> hit_impulse;  ///< see Simulation::report_contacts(): what says it there [N s]
@@ -348,6 +348,10 @@ void rest_bodies(Simulation::State& state, float time_step);
 void find_walls(Simulation::State& state);
 /// densities -> accelerations by the pressure of walls, and what these get of it.
 void press_walls(Simulation::State& state);
+/// What walls got besides, by block of them and in it by collider [N s], goes where their pressure went.
+void add_wall_loads(Simulation::State& state, const std::vector<ColliderLoad>& given, float time_step);
+/// predicted velocities, what walls have pushed with -> those that their friction has slowed.
+void rub_walls(Simulation::State& state, float time_step);
 /// positions, velocities -> user accelerations.
 void call_force(Simulation::State& state);
 /// positions, velocities -> those at which shapes are matched, x + τ v: the positions themselves where

@@ -1,6 +1,5 @@
 #include "sph/volume.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <numbers>
 
@@ -39,10 +38,10 @@ VolumeInput input(const Sph& sph, const Volume& volume, float time_step) {
 }
 
 /// Calls body(wall) for every wall of every particle; those of a row are in one block.
-template <class Body>
-void for_each_wall(const Walls& walls, const Execution& execution, const Body& body) {
+template <class AnyWalls, class Body>
+void for_each_wall(AnyWalls& walls, const Execution& execution, const Body& body) {
   parallel_for(execution.threads, walls.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
-    for (const Walls::Wall& wall : walls.walls[number]) body(wall, walls.bodies[block.range], number);
+    for (auto& wall : walls.walls[number]) body(wall, walls.bodies[block.range], number);
   });
 }
 
@@ -60,13 +59,6 @@ void begin_walls(const Sph& sph, const Execution& execution, Volume& volume) {
   });
 }
 
-Vec3 velocity_at(const ContactSurface& surface, const Vec3& x) {
-  const Vec3 velocity(surface.velocity);
-  if (!surface.turns) return velocity;
-  return velocity + Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(surface.spin) *
-                        (x - Vec3(surface.translation));
-}
-
 /// dS/dt of the walls that colliders with these velocities are.
 void find_wall_rates(const VolumeStep& step, const VectorColumn& velocity, const Sph& sph,
                      const Execution& execution, Volume& volume) {
@@ -80,27 +72,24 @@ void find_wall_rates(const VolumeStep& step, const VectorColumn& velocity, const
 }
 
 /// λ is in sorted order: by row only where there are walls.
-void push_by_walls(const VolumeStep& step, const Sph& sph, const Execution& execution, Volume& volume,
+void push_by_walls(const VolumeStep& step, Sph& sph, const Execution& execution, Volume& volume,
                    VectorColumn& velocity) {
   parallel_for(execution.threads, sph.grid.order.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       volume.multiplier_by_row[sph.grid.order[i]] = volume.multiplier[i];
   });
-  for_each_wall(
-      sph.walls, execution, [&](const Walls::Wall& wall, const WalledBody& body, std::size_t block) {
-        const std::uint32_t row = wall.row;
-        if (step.pin && step.pin[row] != 0) return;
-        const float across = k_mirrored * volume.multiplier_by_row[row] * wall.slope / body.mass;
-        const Vec3 along = pushed_along(wall, sph.walls.share[row], volume.changes.get(row));
-        const Vec3 change = across * wall.normal + along;
-        velocity.set(row, velocity.get(row) + change);
-        if (volume.wall_loads.empty()) return;
-        ColliderLoad& load = volume.wall_loads[block * step.colliders.size() + wall.collider];
-        const Eigen::Vector3d given = -static_cast<double>(body.mass) * change.cast<double>();
-        const Vec3 arm = step.position.get(row) - Vec3(step.colliders[wall.collider].surface.translation);
-        load.impulse += given;
-        load.torque += arm.cast<double>().cross(given);
-      });
+  for_each_wall(sph.walls, execution, [&](Walls::Wall& wall, const WalledBody& body, std::size_t block) {
+    const std::uint32_t row = wall.row;
+    if (step.pin && step.pin[row] != 0) return;
+    const float across = k_mirrored * volume.multiplier_by_row[row] * wall.slope / body.mass;
+    const Vec3 along = pushed_along(wall, sph.walls.share[row], volume.changes.get(row));
+    const Vec3 change = across * wall.normal + along;
+    wall.across += across / step.time_step;
+    velocity.set(row, velocity.get(row) + change);
+    if (volume.wall_loads.empty()) return;
+    add_load(body.mass, change, step.position.get(row), step.colliders[wall.collider],
+             volume.wall_loads[block * step.colliders.size() + wall.collider]);
+  });
 }
 
 }  // namespace
@@ -159,7 +148,7 @@ Compression find_compression(const VolumeStep& step, const VectorColumn& velocit
   return all;
 }
 
-void correct_velocities(const VolumeStep& step, const Sph& sph, const Execution& execution, Volume& volume,
+void correct_velocities(const VolumeStep& step, Sph& sph, const Execution& execution, Volume& volume,
                         VectorColumn& velocity) {
   const VolumeInput in = input(sph, volume, step.time_step);
   const VolumeLanes& lanes = MALLOW_SELECT(execution.level, volume_lanes);

@@ -60,7 +60,7 @@ Compression find_compression(const VolumeStep& step, const VectorColumn& velocit
                              const Execution& execution, Volume& volume);
 /// λ -> v' that compress less. A wall pushes as if the particle's own λ were behind it, and along as
 /// press_walls() does.
-void correct_velocities(const VolumeStep& step, const Sph& sph, const Execution& execution, Volume& volume,
+void correct_velocities(const VolumeStep& step, Sph& sph, const Execution& execution, Volume& volume,
                         VectorColumn& velocity);
 
 }  // namespace mallow

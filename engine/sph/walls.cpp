@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "sph/kernel_functions.h"
 
@@ -45,7 +46,7 @@ class WalledBlock {
     }
     const float left = 1 - covered;
     walls_.push_back({near.row, near.collider, last, left * share, left * half_space_gradient(q) / radius_,
-                      left * half_space_slope(q) / radius_, near.normal});
+                      left * half_space_slope(q) / radius_, near.distance, near.normal});
     last = static_cast<std::uint32_t>(walls_.size());
   }
 
@@ -129,6 +130,20 @@ Vec3 pushed_along(const Walls::Wall& wall, float share, const Vec3& by_neighbors
   return ratio * (by_neighbors - by_neighbors.dot(wall.normal) * wall.normal);
 }
 
+Vec3 velocity_at(const ContactSurface& surface, const Vec3& x) {
+  const Vec3 velocity(surface.velocity);
+  if (!surface.turns) return velocity;
+  return velocity + Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(surface.spin) *
+                        (x - Vec3(surface.translation));
+}
+
+void add_load(float mass, const Vec3& change, const Vec3& x, const PlacedCollider& collider,
+              ColliderLoad& load) {
+  const Eigen::Vector3d given = -static_cast<double>(mass) * change.cast<double>();
+  load.impulse += given;
+  load.torque += Vec3(x - Vec3(collider.surface.translation)).cast<double>().cross(given);
+}
+
 void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders, const Execution& execution,
                  Walls& walls) {
   const std::size_t count = in.all_loads || any_measures_load(colliders) ? colliders.size() : 0;
@@ -137,7 +152,7 @@ void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders,
   walls.partial_loads.assign(count * walls.blocks.blocks.size(), {});
   parallel_for(execution.threads, walls.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     const WalledBody& body = walls.bodies[block.range];
-    for (const Walls::Wall& wall : walls.walls[number]) {
+    for (Walls::Wall& wall : walls.walls[number]) {
       const std::uint32_t row = wall.row;
       const float rho = in.density[row];
       const float excess = std::max(rho - body.group->rest_density, 0.0f);
@@ -147,19 +162,55 @@ void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders,
       const Vec3 push = in.alpha ? Vec3(in.alpha[row] * across * wall.normal + along)
                                  : Vec3(body.alpha * (across * wall.normal + along));
       walls.acceleration.set(row, walls.acceleration.get(row) + push);
-      const bool loads = in.all_loads || colliders[wall.collider].measures_load;
-      if (!loads || (in.pin && in.pin[row] != 0)) continue;
-      ColliderLoad& load = walls.partial_loads[number * count + wall.collider];
-      const Eigen::Vector3d given = -static_cast<double>(body.mass) * push.cast<double>();
-      const Vec3 arm = in.position.get(row) - Vec3(colliders[wall.collider].surface.translation);
-      load.impulse += given;
-      load.torque += arm.cast<double>().cross(given);
+      wall.across = (in.alpha ? in.alpha[row] : body.alpha) * across;
+      if ((in.all_loads || colliders[wall.collider].measures_load) && !(in.pin && in.pin[row] != 0))
+        add_load(body.mass, push, in.position.get(row), colliders[wall.collider],
+                 walls.partial_loads[number * count + wall.collider]);
     }
   });
   for (std::size_t k = 0; k < walls.partial_loads.size(); ++k) {
     walls.loads[k % count].impulse += walls.partial_loads[k].impulse;
     walls.loads[k % count].torque += walls.partial_loads[k].torque;
   }
+}
+
+namespace {
+
+/// What friction makes of a velocity where a wall has pushed with `push` in the step [m/s].
+Vec3 rubbed_by(const Walls::Wall& wall, const ContactSurface& surface, float push, const Vec3& x,
+               const Vec3& before, const Vec3& v) {
+  Vec3 u = velocity_at(surface, x - wall.distance * wall.normal);
+  if (surface.carries) u += Vec3(surface.along);
+  const auto slides = [&](const Vec3& w) { return Vec3(w - w.dot(wall.normal) * wall.normal); };
+  const Vec3 way = slides(v - u);
+  const float square = way.squaredNorm(), most = surface.friction * push;
+  if (!(square > 0)) return Vec3(0, 0, 0);
+  float taken = std::min(1.0f, most / std::sqrt(square));
+  const float along = way.dot(slides(before - u));
+  if (along < 0) taken = std::min(taken, std::max(0.0f, 1 + along / square));
+  return -taken * way;
+}
+
+}  // namespace
+
+void rub_walls(const RubInput& in, std::span<const PlacedCollider> colliders, const Execution& execution,
+               Walls& walls, VectorColumn& velocity) {
+  walls.rubbed.assign(walls.partial_loads.size(), {});
+  const std::size_t count = walls.loads.size();
+  parallel_for(execution.threads, walls.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
+    for (const Walls::Wall& wall : walls.walls[number]) {
+      const std::uint32_t row = wall.row;
+      const PlacedCollider& collider = colliders[wall.collider];
+      if (!(wall.across > 0) || !(collider.surface.friction > 0) || (in.pin && in.pin[row] != 0)) continue;
+      const Vec3 x = in.position.get(row), v = velocity.get(row);
+      const Vec3 change =
+          rubbed_by(wall, collider.surface, in.time_step * wall.across, x, in.before.get(row), v);
+      velocity.set(row, v + change);
+      if (count > 0)
+        add_load(walls.bodies[block.range].mass, change, x, collider,
+                 walls.rubbed[number * count + wall.collider]);
+    }
+  });
 }
 
 }  // namespace mallow

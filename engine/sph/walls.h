@@ -45,13 +45,16 @@ struct Walls {
     std::uint32_t before;   ///< the one before it of this row, counted from 1; 0: none
     float share, gradient;  ///< S and B, what other walls cover left out
     float slope;            ///< −dS/dd of it [1/m]
+    float distance;         ///< of the particle from it [m]
     Vec3 normal;            ///< n
+    float across = 0;       ///< with what it has pushed the particle across in this step [m/s²]
   };
   std::vector<WalledBody> bodies;
   RangeBlocks blocks;
   std::vector<std::vector<NearWall>> near;
   std::vector<std::vector<Wall>> walls;
   std::vector<ColliderLoad> partial_loads;  ///< by block, and in it by collider
+  std::vector<ColliderLoad> rubbed;         ///< likewise, what their friction gave [N s]
 
   void release();
   std::size_t bytes() const;
@@ -74,8 +77,26 @@ struct WallInput {
 /// Beside a push across of a wall, what its matter would add along it to what a particle gets from its
 /// neighbours, of which it sees `share`, the S of all walls, too little.
 Vec3 pushed_along(const Walls::Wall& wall, float share, const Vec3& by_neighbors);
+/// Velocity of the point of a collider that is at x, with what it carries along [m/s].
+Vec3 velocity_at(const ContactSurface& surface, const Vec3& x);
+/// What a collider gets of a particle of `mass` at x whose velocity it changed.
+void add_load(float mass, const Vec3& change, const Vec3& x, const PlacedCollider& collider,
+              ColliderLoad& load);
 /// ρ, a^SPH -> a^wall and loads. A negative pressure counts as none: walls hold nothing back.
 void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders, const Execution& execution,
                  Walls& walls);
+
+/// What friction of walls reads, by row of the store.
+struct RubInput {
+  const VectorColumn& position;
+  const VectorColumn& before;  ///< v at the start of the step
+  const std::uint16_t* pin;    ///< rows whose pin is not 0 do not rub; null: all do
+  float time_step;             ///< Δt [s]
+};
+/// v' -> v' that the friction of what walls have pushed with has slowed, and loads: contact finds less to do
+/// by as much as they pushed, and its friction with it. As there, it takes at most what slides, and leaves
+/// what the step has turned round already. [model 2, section 4 A]
+void rub_walls(const RubInput& in, std::span<const PlacedCollider> colliders, const Execution& execution,
+               Walls& walls, VectorColumn& velocity);
 
 }  // namespace mallow

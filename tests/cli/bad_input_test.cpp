@@ -24,6 +24,8 @@ TEST_F(cli_bad_input, command_line_that_makes_no_sense) {
   expect_refused(run({"--frames", "many"}), {"--frames"});
   expect_refused(run({"--frames", "1", "--steps", "1"}), {"--steps", "--frames"});
   expect_refused(run({"--threads", "100000"}), {"--threads"});
+  expect_refused(run({"--no-surfaces"}), {"--no-surfaces", "did you mean --no-surface?"});
+  expect_refused(run({"--ot", at("run")}), {"did you mean --out?"});
   expect_refused(run_mallow({"sample", at("m.off")}), {"--count", "--spacing"});
   expect_refused(run_mallow({"sample", at("m.off"), "--count", "9", "--out", at("p.xyz")}), {".csv", ".ply"});
 }

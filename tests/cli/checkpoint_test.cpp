@@ -103,7 +103,7 @@ TEST_F(cli_checkpoint, interrupted_run_goes_on_to_the_same_bytes) {
   ASSERT_TRUE(wait_for(folder_ / "halves/particles/frame_000002.ply"));
   running.send(SIGINT);
   Outcome outcome = running.wait();
-  ASSERT_EQ(outcome.exit_code, 1) << outcome.err;
+  ASSERT_EQ(outcome.exit_code, 128 + SIGINT) << outcome.err;
   EXPECT_NE(outcome.err.find("to go on: mallow run --resume " + at("halves")), std::string::npos)
       << outcome.err;
   EXPECT_EQ(read_json(at("halves/report.json")).at("complete"), false);
@@ -113,7 +113,7 @@ TEST_F(cli_checkpoint, interrupted_run_goes_on_to_the_same_bytes) {
     Running again({"run", "--resume", at("halves"), "--threads", std::to_string(threads)});
     ASSERT_TRUE(wait_for(folder_ / "halves/particles/frame_000040.ply"));
     again.send(SIGTERM);
-    ASSERT_EQ(again.wait().exit_code, 1);
+    ASSERT_EQ(again.wait().exit_code, 128 + SIGTERM);
   }
   outcome = resume("halves", {"--threads", "1"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -127,7 +127,7 @@ TEST_F(cli_checkpoint, run_of_so_many_steps_goes_on_to_the_same_state) {
   Running running({"run", scene_, "--steps", "2000", "--out", at("out"), "--no-images", "--no-surface"});
   ASSERT_TRUE(wait_for(folder_ / "out/particles/frame_000003.ply"));
   running.send(SIGINT);
-  ASSERT_EQ(running.wait().exit_code, 1);
+  ASSERT_EQ(running.wait().exit_code, 128 + SIGINT);
   ASSERT_EQ(resume("out", {"--state-out", at("state.csv")}).exit_code, 0);
   EXPECT_EQ(read_text(at("state.csv")), read_text(at("whole.csv")));
   EXPECT_EQ(names_in(at("out")), (std::vector<std::string>{".mallow-run", "checkpoint", "particles",
@@ -198,7 +198,9 @@ TEST_F(cli_checkpoint, warns_of_a_scene_that_has_changed_and_moves_as_before) {
   const Outcome outcome = run_mallow({"run", at("changed.toml"), "--resume", at("out"), "--frames", "6",
                                       "--set", "solver.gravity=[0.0, 0.0, -1.0]"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const char* line : {"material[0].alpha is 0.4, was 0.7: without effect", "solver.gravity is"})
+  const std::string whose = at("changed.toml") + " is not as the scene that the run began with";
+  for (const std::string& line : {std::string("material[0].alpha is 0.4, was 0.7: without effect"),
+                                  std::string("solver.gravity is"), whose})
     EXPECT_NE(outcome.err.find(line), std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.err.find("time_step"), std::string::npos) << outcome.err;
   expect_same_run("out", "whole");

@@ -75,6 +75,17 @@ Momenta momenta(const Simulation& s) {
   return sum;
 }
 
+TEST(damping, by_default_brings_what_has_yielded_to_rest_where_it_is_in_one_part) {
+  Simulation s({.time_step = k_step, .support_radius = 2.1f, .gravity = {0, 0, -0.3f}, .threads = 1});
+  s.add_body(sample(Lattice{.count = {8, 8, 8}, .corner = {-4, -4, 12}, .jitter = 0.1f}),
+             {.alpha = 0.3f, .update_threshold = 1.2f});
+  s.add_collider({.shape = Plane{}, .friction = 0.5f});
+  int updates = 0;
+  while (s.time() < 150) updates += s.step().updated_references;
+  EXPECT_GT(updates, 0);
+  EXPECT_EQ(s.step().awake_bodies, 0u);
+}
+
 TEST(damping, towards_the_rigid_motion_keeps_momentum_and_spin) {
   for (const float rate : {0.1f, 1.0f, 5.0f}) {
     Simulation s = stretched({.deformation_damping = rate}, {0.1f, 0.05f, 0.2f});

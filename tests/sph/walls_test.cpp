@@ -243,6 +243,60 @@ TEST(wall_pressure, lets_a_block_float_as_deep_as_archimedes_says) {
   EXPECT_LT(velocity.norm(), 0.05);
 }
 
+/// A soft block on a floor under gravity that is tilted by 30 degrees, friction 0.3.
+Simulation sliding_block(SolverConfig solver, float alpha, const Vec3& belt = {0, 0, 0}, bool tilted = true) {
+  solver.gravity = tilted ? Vec3(0.5f * k_gravity, 0, -0.866f * k_gravity) : Vec3(0, 0, -k_gravity);
+  Simulation s(solver);
+  s.add_body(sample(Lattice{.count = {8, 8, 8}, .corner = {0, 0, 0.5f}, .jitter = 0.1f}), {.alpha = alpha});
+  Collider floor{.shape = Plane{}, .friction = 0.3f, .measure_load = true};
+  floor.surface_velocity = belt;
+  s.add_collider(floor);
+  return s;
+}
+double mean_velocity(const Simulation& s) {
+  return s.velocities().eigen().col(0).cast<double>().mean();
+}
+
+TEST(wall_pressure, lets_a_soft_block_slide_down_a_slope_as_coulomb_says) {
+  const double slides = static_cast<double>(k_gravity) * (0.5 - 0.3 * 0.866);
+  for (const int iterations : {0, 1})
+    for (const float alpha : {0.1f, 0.4f, 0.7f}) {
+      SolverConfig solver = config();
+      solver.volume_iterations = iterations;
+      Simulation s = sliding_block(solver, alpha);
+      s.advance(15);
+      const double before = mean_velocity(s), from = s.time();
+      s.advance(30);
+      EXPECT_NEAR((mean_velocity(s) - before) / (s.time() - from), slides, 0.06 * slides)
+          << alpha << ' ' << iterations;
+    }
+}
+
+TEST(wall_pressure, rubs_as_much_in_shorter_steps) {
+  const auto slid = [](float time_step) {
+    SolverConfig solver = config();
+    solver.time_step = time_step;
+    Simulation s = sliding_block(solver, 0.4f);
+    s.advance(45);
+    return mean_velocity(s);
+  };
+  EXPECT_NEAR(slid(0.075f), slid(0.15f), 0.03 * slid(0.15f));
+}
+
+TEST(wall_pressure, lets_a_belt_carry_a_soft_block_and_feel_as_much) {
+  SolverConfig solver = config();
+  solver.volume_iterations = 1;
+  Simulation s = sliding_block(solver, 0.4f, {-50, 0, 0}, false);
+  double given = 0;
+  for (int k = 0; k < 200; ++k) {
+    s.step();
+    given += s.load(ColliderId{0}).impulse.x();
+  }
+  const double momentum = 512 * mean_velocity(s);
+  EXPECT_NEAR(given + momentum, 0, 1e-4 * std::abs(momentum));
+  EXPECT_NEAR(momentum, -512 * 0.3 * static_cast<double>(k_gravity) * s.time(), 0.08 * std::abs(momentum));
+}
+
 TEST(wall_pressure, gives_the_same_bits_for_any_number_of_threads_and_level) {
   const auto hash = [](int threads, InstructionLevel level) {
     SolverConfig solver = config(true, threads);

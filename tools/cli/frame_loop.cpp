@@ -13,8 +13,8 @@ std::size_t for_each_frame(const std::vector<int>& frames, const char* verb,
   program::watch_for_interrupt();
   program::Progress progress(verb, static_cast<long long>(frames.size()), "frames");
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (program::interrupted())
-      throw program::RunFailure("interrupted after " + std::to_string(i) + " frames");
+    if (const int signal = program::interrupted())
+      throw program::Interrupted("interrupted after " + std::to_string(i) + " frames", signal);
     work(frames[i]);
     progress.show(static_cast<long long>(i) + 1);
   }

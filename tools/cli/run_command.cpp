@@ -159,8 +159,8 @@ bool counts_when_resumed(const std::string& key) {
 }
 
 /// Takes over what counts of a scene that is not the checkpoint's any more, and says on stderr what differs.
-/// own: it is the scene.toml of the run, which then says again how the run began.
-void take_changes(const Scene& now, bool own, Scene& scene) {
+/// own: it is the scene.toml of the run, which then says again how the run began. file: where it was read.
+void take_changes(const Scene& now, bool own, const std::string& file, Scene& scene) {
   std::string said;
   bool put_back = false;
   for (const SceneChange& change : scene_changes(scene, now)) {
@@ -172,8 +172,9 @@ void take_changes(const Scene& now, bool own, Scene& scene) {
   }
   if (put_back) said += "\n  scene.toml is put back to what has an effect";
   if (!said.empty())
-    print_warning(now.file.string() +
-                  " has changed since the run began; the motion continues as it began:" + said);
+    print_warning(
+        file + (own ? " has changed since the run began" : " is not as the scene that the run began with") +
+        "; the motion continues as it began:" + said);
   scene.surface = now.surface;
   scene.render = now.render;
   for (std::size_t i = 0; i < std::min(scene.colliders.size(), now.colliders.size()); ++i)
@@ -197,7 +198,7 @@ Run resume(const RunOptions& options, int threads) {
   now.allow_outside_paths = true;  // what it names is not read: the particles are there
   const Scene scene_now = read_scene(now);
   refuse_inputs(options, scene_now);
-  take_changes(cache.moved_here(scene_now), own, saved.scene);
+  take_changes(cache.moved_here(scene_now), own, now.file, saved.scene);
   if (options.frames) saved.scene.run.frames = *options.frames;
 
   Run run{std::move(saved.scene), saved.plan,      std::move(saved.report), std::move(saved.simulation),
@@ -244,9 +245,10 @@ void simulate(Run& run, const program::Cache* cache) {
       program::run_frames(run.scene, *run.simulation, run.skins, run.plan, cache, run.report, callbacks);
   if (end == program::RunEnd::complete) return;
   const std::string said = "interrupted after " + std::to_string(run.report.steps) + " steps";
-  throw program::RunFailure(cache ? said + "; to go on: mallow run --resume " +
-                                        program::shell_word(cache->folder().string())
-                                  : said);
+  throw program::Interrupted(
+      cache ? said + "; to go on: mallow run --resume " + program::shell_word(cache->folder().string())
+            : said,
+      program::interrupted());
 }
 
 /// Motion, surfaces, pictures and film; the report says what was done, also when this throws.
@@ -297,6 +299,7 @@ void run(const RunOptions& options) {
     } catch (const std::exception&) {
       // Where the disk is full the report written at the start stays, and it says that the run did not end.
     }
+    if (dynamic_cast<const program::Interrupted*>(&failure)) throw;
     throw program::RunFailure(failure.what());
   }
   print_result(out, run.report);

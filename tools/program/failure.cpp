@@ -9,6 +9,7 @@ namespace mallow::program {
 namespace {
 
 int exit_code(const std::exception& error) {
+  if (const auto* const told = dynamic_cast<const Interrupted*>(&error)) return told->exit_code;
   const bool in_step = dynamic_cast<const StepError*>(&error);
   return dynamic_cast<const Error*>(&error) && !in_step ? k_exit_bad_input : k_exit_run_failed;
 }

@@ -17,6 +17,13 @@ class RunFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A run that was told to end, by Ctrl-C or a signal like it: exit code as shells have it.
+class Interrupted : public RunFailure {
+ public:
+  Interrupted(const std::string& message, int signal) : RunFailure(message), exit_code(128 + signal) {}
+  int exit_code;
+};
+
 /// What main() of a program returns: the exit code that `work` gives, or that of what it throws, which is
 /// said on standard error behind the program's name. Standard output that cannot be written is a failure too.
 int run_main(const std::string& name, const std::function<int()>& work);

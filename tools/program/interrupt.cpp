@@ -5,10 +5,10 @@
 namespace mallow::program {
 namespace {
 
-volatile std::sig_atomic_t asked_to_stop = 0;
+volatile std::sig_atomic_t asked_by = 0;
 
 void ask_to_stop(int signal) {
-  asked_to_stop = 1;
+  asked_by = signal;
   std::signal(signal, SIG_DFL);
 }
 
@@ -19,8 +19,8 @@ void watch_for_interrupt() {
   std::signal(SIGTERM, ask_to_stop);
 }
 
-bool interrupted() {
-  return asked_to_stop != 0;
+int interrupted() {
+  return asked_by;
 }
 
 }  // namespace mallow::program

@@ -77,8 +77,8 @@ struct Material {
   float damping_time = 0.0f;
   /// Rate at which particles take on their body's motion as a rigid whole, ζ [1/s], >= 0: damps slow modes,
   /// keeps momentum and spin. Left out: what hardly moves comes to rest, at 0.3/time_step, and what moves
-  /// faster than 0.02 spacings in a time_step is left alone more and more; a body whose reference shape was
-  /// updated, and which may have come apart, is not damped. [model 2, section 4 B]
+  /// faster than 0.02 spacings in a time_step is left alone more and more; a body that has come apart, as
+  /// BodyEvent::torn tells, is not damped. [model 2, section 4 B]
   std::optional<float> deformation_damping = {};
   /// Radius of the shape matching regions [m], > 0; left out: the solver's support_radius. [TK eq. 7]
   std::optional<float> region_radius = {};
