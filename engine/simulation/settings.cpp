@@ -178,9 +178,9 @@ float Simulation::State::deformation_damping(const BodyState& body) const {
 }
 
 int Simulation::State::volume_iterations() const {
-  const bool flows = std::ranges::any_of(
-      bodies, [](const BodyState& body) { return body.material->settings.plastic_yield.has_value(); });
-  return config.volume_iterations.value_or(default_volume_iterations(flows));
+  const bool any_flows =
+      std::ranges::any_of(bodies, [](const BodyState& body) { return flows(body.material->settings); });
+  return config.volume_iterations.value_or(default_volume_iterations(any_flows));
 }
 
 double update_period(const Simulation::State& state) {

@@ -78,14 +78,14 @@ class Warnings {
   /// What can flow nowhere.
   void look_at_flow(const BodyState& body) {
     if (!body.shape.flows) return;
-    const float yield = *body.material->settings.plastic_yield;
     if (!body.keeps_reference())
-      return add(body, "plastic_yield ", yield, " has no effect where alpha is 1: a fluid flows by itself");
+      return add(body, "plastic_yield has no effect where alpha is 1: a fluid flows by itself");
     if (!body.shape.built) return;
     for (std::size_t j = 0; j < body.shape.region_weight.size(); ++j)
       if (!is_thin(stretched_moment(body.shape, j))) return;
-    add(body, "plastic_yield ", yield,
-        " has no effect, as its particles are one layer, or a line: they have no strain across; two layers "
+    add(body,
+        "plastic_yield has no effect, as its particles are one layer, or a line: they have no strain across; "
+        "two layers "
         "do");
   }
 
