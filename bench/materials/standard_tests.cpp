@@ -83,7 +83,8 @@ TestRun run(const StandardTest& test) {
   Simulation simulation = build(scene, test.threads);
   const SimulationInfo info = simulation.info();
   const BodyInfo& body = info.bodies.front();
-  const bool keeps = body.alpha < 1 && !scene.materials.front().material.update_threshold;
+  const Material& material = scene.materials.front().material;
+  const bool keeps = body.alpha < 1 && !material.update_threshold && !material.plastic_yield;
   const double modulus = static_cast<double>((1 - body.alpha) * body.youngs_modulus);
   TestRun result{.spacing = static_cast<double>(body.spacing),
                  .time_step = static_cast<double>(info.time_step),

@@ -15,6 +15,7 @@ SolverConfig solver(float gravity = 0) {
           .support_radius = 2.1f,
           .gravity = {0, 0, -gravity},
           .update_period = 3.0f,
+          .volume_iterations = 0,
           .sleep_speed = 0.0f,
           .threads = 2};
 }

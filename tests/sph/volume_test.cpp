@@ -334,7 +334,7 @@ TEST(volume, iterations_are_two_where_a_body_flows_unless_they_are_given) {
   EXPECT_EQ(iterations(0.1f, 3), 3);
   EXPECT_EQ(iterations({}, 1), 1);
   Simulation later({});  // what comes later asks for them too, and what goes no more
-  later.add_body(sample(Lattice{.count = {4, 4, 4}}), {});
+  later.add_body(sample(Lattice{.count = {4, 4, 4}}), Material{});
   EXPECT_EQ(later.info().volume_iterations, 0);
   const BodyId paste =
       later.add_body(sample(Lattice{.count = {4, 4, 4}, .corner = {0, 0, 20}}), {.plastic_yield = 0.1f});
