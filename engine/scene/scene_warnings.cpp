@@ -38,6 +38,23 @@ std::string in_pascals(const Scene& scene) {
   return {};
 }
 
+/// What flows by less than this share of what it will, hardly flows.
+constexpr double k_least_flow = 0.01;
+
+/// Creep so slow that a run shows none.
+void look_at_creep(const Scene& scene, double seconds, std::vector<std::string>& all) {
+  for (const SceneMaterial& material : scene.materials) {
+    if (!material.material.plastic_yield || !material.material.plastic_creep) continue;
+    const auto creep = static_cast<double>(*material.material.plastic_creep);
+    if (-std::expm1(-creep * seconds) >= k_least_flow) continue;
+    std::ostringstream text;
+    text << "material '" << material.name << "': plastic_creep " << creep << " 1/s takes " << 1 / creep
+         << " s to flow, and the run covers " << seconds
+         << " s: it flows by less than a hundredth of what it would; raise plastic_creep, or leave it out";
+    all.push_back(text.str());
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info) {
@@ -48,6 +65,7 @@ std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info
   const double frames = scene.run.frames, frame = frame_time(scene, info);
   const double seconds = frames * frame;
   if (scene.run.frames == 0) return all;
+  look_at_creep(scene, seconds, all);
   const double gravity = static_cast<double>(scene.solver.gravity.norm());
   double spacing = std::numeric_limits<double>::infinity();
   for (const BodyInfo& body : info.bodies) spacing = std::min(spacing, static_cast<double>(body.spacing));

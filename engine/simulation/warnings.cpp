@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <sstream>
 
@@ -48,6 +49,7 @@ class Warnings {
     if (state_.step == 0 && state_.bodies.size() > 1) look_at_overlaps();
     if (state_.step == 0)
       for (const BodyState& body : state_.bodies) look_at_colliders(body);
+    std::ranges::copy(source_warnings(state_), std::back_inserter(list_));
     return std::move(list_);
   }
 

@@ -400,7 +400,7 @@ void Oracle::find_walls(Particle& p) const {
       }
       const double left = 1 - across * p.wall_share - (farther ? alike : 0);
       p.walls.push_back({left * share, left * half_space_gradient(d, sigma), n, d, left,
-                         obstacle.collider.velocity.cast<double>()});
+                         obstacle.collider.velocity.cast<double>(), obstacle.collider.friction});
       p.wall_share += share - across * share * p.wall_share - alike * std::min(share, p.wall_share);
     }
   }
@@ -663,6 +663,18 @@ void Oracle::touch(const Obstacle& obstacle, const Particle& particle, const Vec
   }
 }
 
+/// Friction of what walls have pushed with, which contact does not see.
+void Oracle::rub(const Vec& before, Particle& p) {
+  for (const Particle::Wall& wall : p.walls) {
+    const auto along = [&](const Vec& w) { return Vec(w - w.dot(wall.normal) * wall.normal); };
+    const Vec w_t = along(p.v - wall.velocity), v_t = along(before - wall.velocity);
+    if (w_t.norm() == 0) continue;
+    double c = std::min(1.0, wall.friction * wall.push / w_t.norm());
+    if (w_t.dot(v_t) < 0) c = std::min(c, std::max(0.0, 1 + w_t.dot(v_t) / w_t.squaredNorm()));
+    p.v -= c * w_t;
+  }
+}
+
 // Section 4.
 void Oracle::move(double dt) {
   // The pull's: from the middle of the last step to the middle of this one.
@@ -677,12 +689,15 @@ void Oracle::move(double dt) {
       continue;
     }
     p.v += dt * p.external + dt * p.blended;
+    const double pressure = group.pressure_coefficient * std::max(0.0, p.density - group.rest_density);
+    for (Particle::Wall& wall : p.walls) wall.push = dt * alpha_of(p) * pressure / p.density * wall.gradient;
     if (!is_always_fluid(group)) p.v += pull_time * stiffness(group) * p.pull;
   }
   keep_volume(dt, before);
   for (std::size_t id = 0; id < particles_.size(); ++id) {
     Particle& p = particles_[id];
     const Vec free = p.v;
+    if (!p.pinned) rub(before[id], p);
     for (const Obstacle& obstacle : obstacles_)
       if (!p.pinned) touch(obstacle, p, before[id], dt, p.v);
     p.contact = (p.v - free) / dt;

@@ -41,6 +41,8 @@ struct Particle {
     double distance;  ///< [m]
     double left;      ///< the share of it that others do not cover
     Vec velocity;     ///< [m/s]
+    double friction;
+    double push = 0;  ///< what it has given across in this step [m/s]
   };
   std::vector<Wall> walls = {};
   double wall_share = 0;  ///< of the kernel's volume, of all walls
@@ -147,6 +149,7 @@ class Oracle {
   double max_velocity() const;
   double time_step(double max_velocity) const;
   void match_shapes();
+  static void rub(const Vec& before, Particle& p);
   void touch(const Obstacle& obstacle, const Particle& particle, const Vec& before, double dt, Vec& v) const;
   void keep_volume(double dt, const std::vector<Vec>& before);
   void move(double dt);

@@ -85,7 +85,8 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
             (lambda[k] * volume(j) + lambda[l] * volume(i)) * poly6_gradient(i.x - j.x, sigma) / mass(i);
       }
       i.v += pushed;
-      for (const Particle::Wall& wall : i.walls) {
+      for (Particle::Wall& wall : i.walls) {
+        wall.push -= 2 * lambda[k] * wall_gradient(wall).dot(wall.normal) / mass(i);
         // What is behind a wall has the particle's own λ, and moves with its neighbours along it.
         const Vec along = pushed - pushed.dot(wall.normal) * wall.normal;
         i.v += wall.share / std::max(0.5, 1 - i.wall_share) * along -

@@ -81,5 +81,84 @@ TEST_F(scene_warnings, name_a_density_that_is_in_grams_by_cubic_centimetre) {
   EXPECT_TRUE(warns(warnings_of(read(text)), "a rest density of 1 kg/m3 is given"));
 }
 
+/// The same with other lines of the material, and more sections.
+std::string jelly(const std::string& material, const std::string& more = "") {
+  std::string text = falling("0.1", "0.21", "-9.81", "frame_time = 0.0333333\n");
+  const std::string alpha = "alpha = 0.3";
+  text.replace(text.find(alpha), alpha.size(), material);
+  return text + more;
+}
+
+TEST_F(scene_warnings, name_an_emitter_whose_mouth_is_inside_a_collider) {
+  const auto above = [&](const std::string& height) {
+    return warnings_of(
+        read(jelly("alpha = 0.3",
+                   "[[collider]]\nplane = { normal = [0, 0, 1], offset = 0.0 }\n[[emitter]]\nmaterial = "
+                   "\"jelly\"\nradius = 0.3\nspacing = 0.1\ntranslate = [5, 0, " +
+                       height + "]\nspeed = 1.0\n")));
+  };
+  EXPECT_TRUE(warns(above("-0.2"), "leave its emitter inside collider 0"));
+  EXPECT_FALSE(warns(above("0.1"), "emitter")) << "the layers that it holds may be";
+}
+
+TEST_F(scene_warnings, name_an_emitter_of_one_particle_a_layer) {
+  const auto wide = [&](const std::string& radius) {
+    return warnings_of(read(jelly("alpha = 0.3", "[[emitter]]\nmaterial = \"jelly\"\nradius = " + radius +
+                                                     "\nspacing = 0.1\ntranslate = [5, 0, 5]\n")));
+  };
+  EXPECT_TRUE(warns(wide("0.03"), "one particle each"));
+  EXPECT_FALSE(warns(wide("0.2"), "one particle each"));
+}
+
+TEST_F(scene_warnings, name_a_sink_that_takes_all_at_once) {
+  const auto sink = [&](const std::string& min, const std::string& outside) {
+    return warnings_of(read(jelly("alpha = 0.3", "[[sink]]\nbox = { min = " + min +
+                                                     ", max = [9, 9, 9] }\noutside = " + outside + "\n")));
+  };
+  EXPECT_TRUE(warns(sink("[-9, -9, -9]", "false"), "removed at once"));
+  EXPECT_FALSE(warns(sink("[-9, -9, -9]", "true"), "removed at once"));
+  EXPECT_TRUE(warns(sink("[8, 8, 8]", "true"), "removed at once"));
+  EXPECT_FALSE(warns(sink("[8, 8, 8]", "false"), "removed at once"));
+}
+
+TEST_F(scene_warnings, name_heat_that_does_nothing) {
+  EXPECT_TRUE(warns(warnings_of(read(jelly("conductivity = 1.0"))), "conductivity 1 has no effect"));
+  const std::string melts =
+      "temperature = 290.0\nconductivity = 1.0\nalpha_by_temperature = [[300.0, 0.1], [310.0, 1.0]]";
+  EXPECT_TRUE(warns(warnings_of(read(jelly(melts))), "alpha stays 0.1"));
+  EXPECT_FALSE(
+      warns(warnings_of(read(jelly(melts, "[[collider]]\nplane = { offset = -1.0 }\ntemperature = 350.0\n"))),
+            "alpha stays"));
+}
+
+TEST_F(scene_warnings, name_what_acts_on_nothing) {
+  EXPECT_TRUE(warns(warnings_of(read(jelly("alpha = 1.0\nyoungs_modulus = 1000.0"))), "youngs_modulus"));
+  EXPECT_FALSE(warns(warnings_of(read(jelly("alpha = 0.9\nyoungs_modulus = 1000.0"))), "youngs_modulus"));
+  std::string printed = jelly("alpha = 0.0");
+  printed.replace(0, 8, "[solver]\nformulation = \"printed\"");
+  EXPECT_TRUE(warns(warnings_of(read(printed)), "has no effect where alpha is 0"));
+}
+
+TEST_F(scene_warnings, name_creep_that_takes_longer_than_the_run) {
+  const std::string flows = "alpha = 0.3\nplastic_yield = 0.05\nplastic_creep = ";
+  EXPECT_TRUE(warns(warnings_of(read(jelly(flows + "0.001"))), "plastic_creep"));
+  EXPECT_FALSE(warns(warnings_of(read(jelly(flows + "1.0"))), "plastic_creep"));
+}
+
+TEST_F(scene_warnings, name_parts_that_pass_through_each_other) {
+  const auto of = [&](float alpha, float gap) {
+    Simulation s({.support_radius = 0.21f, .gravity = {0, 0, -9.81f}});
+    Body body = sample(Lattice{.count = {4, 4, 4}, .spacing = 0.1f});
+    const Body other = sample(Lattice{.count = {4, 4, 4}, .spacing = 0.1f, .corner = {0, 0, 0.3f + gap}});
+    body.positions.insert(body.positions.end(), other.positions.begin(), other.positions.end());
+    s.add_body(body, {.alpha = alpha, .plastic_yield = 0.05f});
+    s.prepare();
+    return s.info().warnings;
+  };
+  EXPECT_TRUE(warns(of(0, 1), "its 2 parts pass through each other"));
+  EXPECT_FALSE(warns(of(0.3f, 1), "parts pass"));
+  EXPECT_FALSE(warns(of(0, 0.1f), "parts pass"));
+}
+
 }  // namespace warnings_test
 }  // namespace mallow
