@@ -80,7 +80,7 @@ double most_modulus(const SolverConfig& config, const Material& material, float 
   if (!(share > 0)) return std::numeric_limits<double>::infinity();
   const double step = static_cast<double>(config.time_step_factor) * static_cast<double>(*config.time_step);
   const double time = static_cast<double>(material.damping_time);
-  return static_cast<double>(k_stiffest) * stiffness_scale(config, material, spacing) /
+  return static_cast<double>(most_pull(material)) * stiffness_scale(config, material, spacing) /
          (share * step * (step + 2 * time));
 }
 
@@ -98,7 +98,7 @@ void check_modulus(const SolverConfig& config, const Material& material, float s
     const double factor = static_cast<double>(config.time_step_factor);
     const double step =
         step_of_pull(pull_rate(config, material, spacing), static_cast<double>(material.damping_time),
-                     static_cast<double>(k_stiffest));
+                     static_cast<double>(most_pull(material)));
     std::ostringstream text;
     text.precision(3);
     text << *material.youngs_modulus << " is not allowed in body '" << name << "', whose spacing is "
