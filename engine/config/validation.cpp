@@ -71,7 +71,7 @@ void check_damping(const SolverConfig& config, const Material& material, const s
     checks.problem(key, text.str());
   };
   const double time = static_cast<double>(material.damping_time);
-  const double most_time = 0.5 * step * (static_cast<double>(most_pull(material)) / pull - 1);
+  const double most_time = 0.5 * step * (static_cast<double>(k_stiffest) / pull - 1);
   if (time > most_time) refuse("material.damping_time", time, most_time);
   constexpr double k_linear = 0.9;
   const double most_share = 2 - 0.5 * pull * (1 + 2 * time / step) / k_linear;
@@ -116,9 +116,9 @@ void check_elasticity(const SolverConfig& config, const Material& material, floa
   const double damped = 1 + 2 * static_cast<double>(material.damping_time) / step;
   const double rate = static_cast<double>(material.deformation_damping.value_or(0.0f));
   constexpr double k_linear = 0.9, k_rounding = 1e-5;
-  const double most_of_step =
-      std::min(static_cast<double>(most_pull(material)), 2 * k_linear * (2 + std::expm1(-rate * step))) /
-      damped;
+  const double most_of_step = std::min(
+      std::min(static_cast<double>(k_stiffest), 2 * k_linear * (2 + std::expm1(-rate * step))) / damped,
+      static_cast<double>(most_pull(material)));
   const double most = most_of_step * base * elastic_step / (step * step);
   if (static_cast<double>(share) <= most * (1 + k_rounding)) return;
   std::ostringstream text;
