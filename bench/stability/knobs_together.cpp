@@ -107,7 +107,7 @@ class Together {
             s.colliders.clear();
           },
           [](Setup& s) { stir(s, 2.0f); });
-      add("dropped", knobs, 0.03, [](Setup& s) {
+      add("dropped", knobs, 0.06, [](Setup& s) {
         s.body = sample(Lattice{.count = {5, 5, 5}, .corner = {0, 0, 4}, .jitter = 0.05f});
         s.colliders[0].restitution = 1;
       });
