@@ -1,20 +1,25 @@
 #include "materials/materials_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "bars/bar.h"
 #include "harness/command.h"
 #include "mallow/errors.h"
 #include "mallow/materials.h"
+#include "materials/numbers.h"
 #include "materials/standard_tests.h"
 
 namespace mallow::bench {
 namespace {
 
 constexpr const char* k_bars = "bars";  // among the names of materials
+constexpr std::pair<const char*, void (*)(int, const AddNumber&)> k_numbers[] = {
+    {"volume", measure_volume}, {"yield", measure_yield}, {"heat", measure_heat}};
 constexpr double k_refined[] = {1, 1.5, 2};
 constexpr double k_steps[] = {0.25, 0.5, 1, 2};
 
@@ -86,13 +91,21 @@ void measure_material(const std::string& material, const MaterialsOptions& optio
 
 void run_materials(const MaterialsOptions& options) {
   std::vector<std::string> known{k_bars};
+  for (const auto& [name, measure] : k_numbers) known.emplace_back(name);
   for (const MaterialPreset& preset : material_presets()) known.emplace_back(preset.name);
   const std::vector<std::string> names = chosen("--materials", options.materials, known);
   Results results("materials", options.output, options.threads,
                   {{"materials", options.materials}, {"coarse", options.coarse}});
   for (const std::string& name : names) {
+    const auto* const numbers = std::ranges::find(k_numbers, name, [](const auto& one) { return one.first; });
     if (name == k_bars)
       measure_bars(results, options.threads);
+    else if (numbers != std::end(k_numbers))
+      numbers->second(options.threads,
+                      [&](const char* test, const std::string& setting, const Measured& measured) {
+                        results.add(row(test, setting, 1, 0.15, measured));
+                        stop_if_interrupted(results);
+                      });
     else
       measure_material(name, options, results);
   }
@@ -114,7 +127,9 @@ void add_materials_command(CLI::App& app) {
   const auto options = std::make_shared<MaterialsOptions>();
   CLI::App* command = add_command(app, "materials", "What materials do beside what their numbers say",
                                   *options, [options] { run_materials(*options); });
-  command->add_option("--materials", options->materials, "Some of them, or bars, in place of all")
+  command
+      ->add_option("--materials", options->materials,
+                   "Some of them, or bars, volume, yield, heat, in place of all")
       ->delimiter(',');
   command->add_flag("--coarse", options->coarse, "At one spacing only");
 }

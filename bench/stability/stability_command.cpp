@@ -21,6 +21,7 @@ struct StabilityOptions : CommonOptions {
   int steps = 300;
   int long_steps = 1'000'000;
   bool thin = false;
+  std::string extremes;  ///< a part of the names of those to run, without the grid; empty: all
 };
 
 /// Trials that run before the command looks whether it was asked to stop.
@@ -103,10 +104,13 @@ Json rows_of(const Results& results, const std::string& kind) {
 }
 
 void run_stability(const StabilityOptions& options) {
-  const StabilityGrid grid = options.thin ? thin_grid() : full_grid();
+  StabilityGrid grid = options.thin ? thin_grid() : full_grid();
+  if (!options.extremes.empty()) grid.alphas.clear();
   Results results("stability", options.output, options.threads,
                   {{"steps", options.steps}, {"long_steps", options.long_steps}, {"trials", grid.size()}});
-  const std::vector<Extreme> list = extremes(options.long_steps);
+  std::vector<Extreme> list = extremes(options.long_steps);
+  std::erase_if(list,
+                [&](const Extreme& one) { return one.name.find(options.extremes) == std::string::npos; });
   const std::vector<Outcome> ends =
       run_all("extreme", list.size(), options.threads, results, [&](std::size_t i) { return list[i].trial; });
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -119,7 +123,7 @@ void run_stability(const StabilityOptions& options) {
               [&](std::size_t i) { return falling_cube(grid_point(grid, i), options.steps); });
   add_grid(grid, outcomes, results);
   results.close();
-  write_map(results.file(".svg"), grid, outcomes);
+  if (grid.size() > 0) write_map(results.file(".svg"), grid, outcomes);
 
   const std::vector<TableColumn> verdicts = {
       {"stable", "stable"}, {"limited", "limited"}, {"refused", "refused"}, {"unstable", "unstable"}};
@@ -155,6 +159,8 @@ void add_stability_command(CLI::App& app) {
   command->add_option("--long-steps", options->long_steps, "Steps of the cube that rests")
       ->check(CLI::Range(1, 100'000'000))
       ->capture_default_str();
+  command->add_option("--extremes", options->extremes,
+                      "Only extremes whose names have this in them, and no grid");
   command->add_flag("--thin", options->thin, "A grid of few values, for a look");
 }
 

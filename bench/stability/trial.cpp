@@ -35,6 +35,19 @@ Sums sums(const Simulation& simulation, const Trial& trial) {
 /// Steps from one look at the conserved energy to the next, which takes longer than a step.
 constexpr int k_look_interval = 5;
 
+/// The state after so many steps, which are taken on other threads, and by a restored simulation from the
+/// middle on.
+std::uint64_t hash_again(const Trial& trial, int steps) {
+  Simulation simulation = trial.build();
+  simulation.prepare();
+  for (int step = 0; step < steps; ++step) {
+    if (step == steps / 2) simulation = Simulation::restore(simulation.save(), 3);
+    if (trial.before_step) trial.before_step(simulation, step);
+    simulation.step();
+  }
+  return simulation.state_hash();
+}
+
 double ratio(double value, double reference) {
   return reference > 0 ? value / reference : value;
 }
@@ -75,6 +88,11 @@ Outcome run(const Trial& trial) {
     } catch (const StepError& error) {
       outcome.verdict = Verdict::refused;
       outcome.message = error.what();
+    }
+    if (trial.compares_bits && outcome.steps == trial.steps &&
+        hash_again(trial, trial.steps) != simulation.state_hash()) {
+      outcome.verdict = Verdict::unstable;
+      outcome.message = "other threads and a restored state end in other bits";
     }
     const Sums end = sums(simulation, trial);
     if (!end.finite) outcome.verdict = Verdict::unstable;

@@ -20,7 +20,7 @@ const char* name(Verdict verdict);
 
 /// A simulation that is pushed to where it might break.
 struct Trial {
-  std::function<Simulation()> build;
+  std::function<Simulation()> build = {};
   int steps = 300;
   /// Called before every step.
   std::function<void(Simulation&, int step)> before_step = {};
@@ -37,6 +37,9 @@ struct Trial {
   /// Energy is what Simulation::energy() says a step conserves, looked at every few steps, not ½ m v² + m g
   /// z.
   bool by_conserved_energy = false;
+  /// It is run once more with other threads, saved and restored half way: what ends in other bits is
+  /// unstable.
+  bool compares_bits = false;
 };
 
 struct Outcome {

@@ -71,7 +71,8 @@ Material with_quality(const Material& material, const SolverConfig& config, Qual
   if (p.time_step > 1 && config.time_step && material.elastic_time_step) {
     // Rather softer than unstable.
     const float factor = with_quality(config, quality).time_step_factor;
-    const float softest = (1 - material.alpha.lowest()) * factor * factor * *config.time_step / k_stiffest;
+    const float softest =
+        (1 - material.alpha.lowest()) * factor * factor * *config.time_step / most_pull(material);
     result.elastic_time_step = std::max(*material.elastic_time_step, softest);
   }
   result.region_stride = std::max(material.region_stride, p.region_stride);

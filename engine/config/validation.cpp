@@ -82,7 +82,7 @@ void check_damping(const SolverConfig& config, const Material& material, const s
 
 void check_stiffness(const SolverConfig& config, const Material& material, const std::string& name,
                      Checks& checks) {
-  constexpr double k_most = static_cast<double>(k_stiffest);
+  const double most = static_cast<double>(most_pull(material));
   constexpr double k_rounding = 1e-5;  // of what is typed with six digits
   // What a modulus asks for is known once bodies are there: check_modulus().
   if (material.alpha.keys().empty() || material.youngs_modulus) return;
@@ -90,21 +90,21 @@ void check_stiffness(const SolverConfig& config, const Material& material, const
   // Left out, Δt_SM is Δt0, whatever that is; given, it is judged once that is known.
   if (material.elastic_time_step && !config.time_step) return;
   const double factor = static_cast<double>(config.time_step_factor);
-  const double share = (1 - static_cast<double>(material.alpha.lowest())) * factor * factor / k_most;
+  const double share = (1 - static_cast<double>(material.alpha.lowest())) * factor * factor / most;
   std::ostringstream text;
   if (!material.elastic_time_step) {
     if (share <= 1 + k_rounding) return;
     text << config.time_step_factor << not_allowed_in(name)
-         << ": (1 - alpha) time_step_factor^2 must be at most " << k_most
+         << ": (1 - alpha) time_step_factor^2 must be at most " << most
          << ", as elasticity would gain energy; at alpha " << material.alpha.lowest() << " at most "
-         << std::sqrt(k_most / (1 - static_cast<double>(material.alpha.lowest())));
+         << std::sqrt(most / (1 - static_cast<double>(material.alpha.lowest())));
     checks.problem("solver.time_step_factor", text.str());
     return;
   }
   const double least = share * static_cast<double>(*config.time_step);
   if (static_cast<double>(*material.elastic_time_step) >= least * (1 - k_rounding)) return;
   text << *material.elastic_time_step << not_allowed_in(name) << ": at least (1 - alpha) "
-       << (factor == 1 ? "" : "time_step_factor^2 ") << "solver.time_step/" << k_most << " = " << least
+       << (factor == 1 ? "" : "time_step_factor^2 ") << "solver.time_step/" << most << " = " << least
        << ", as a stiffer body would gain energy; lower solver.time_step (now " << *config.time_step << ")";
   checks.problem("material.elastic_time_step", text.str());
 }
@@ -117,9 +117,10 @@ void check_elasticity(const SolverConfig& config, const Material& material, floa
   const double damped = 1 + 2 * static_cast<double>(material.damping_time) / step;
   const double rate = static_cast<double>(material.deformation_damping.value_or(0.0f));
   constexpr double k_linear = 0.9, k_rounding = 1e-5;
-  const double most_pull =
-      std::min(static_cast<double>(k_stiffest), 2 * k_linear * (2 + std::expm1(-rate * step))) / damped;
-  const double most = most_pull * base * elastic_step / (step * step);
+  const double most_of_step = std::min(
+      std::min(static_cast<double>(k_stiffest), 2 * k_linear * (2 + std::expm1(-rate * step))) / damped,
+      static_cast<double>(most_pull(material)));
+  const double most = most_of_step * base * elastic_step / (step * step);
   if (static_cast<double>(share) <= most * (1 + k_rounding)) return;
   std::ostringstream text;
   text << "makes (1 - alpha) times stiffness " << share << " at some particle: at most " << most

@@ -102,12 +102,20 @@ LaneBytes solve_lanes(const ShapeInput& in, std::size_t j, int iterations, const
   return bytes(~good);
 }
 
+Lanes mean_extent(const Symmetric& moment) {
+  return trace(moment) * (1.0f / 3.0f);
+}
+Lanes cube(const Lanes& value) {
+  return value * value * value;
+}
+
 /// S and κ after this step. m: M, r: R, all row by row.
 void flow_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, const Lanes* m, const Lanes* r,
                 const Lanes* s, float* const* stretch, float* flow) {
-  const Symmetric p = stretched_moment(s, load_moment(in, j)), adjoint = cofactors(p);
-  const Lanes extent = trace(p) * (1.0f / 3.0f), volume = determinant(p, adjoint);
-  const LaneMask thick = volume > k_thin * extent * extent * extent;
+  const Symmetric b = load_moment(in, j), p = stretched_moment(s, b), adjoint = cofactors(p);
+  const Lanes volume = determinant(p, adjoint);
+  const LaneMask thick = (volume > k_thin * cube(mean_extent(p))) &
+                         (determinant(b, cofactors(b)) > k_single_layer * cube(mean_extent(b)));
   const Lanes inverse = thick ? 1.0f / volume : Lanes{};
   Lanes n[9], f[9];  // Rᵀ M, and that times the cofactors of P
   for (int i = 0; i < 3; ++i)

@@ -62,8 +62,8 @@ void paint(Simulation::State& s, std::span<const ParticleId> ids, float value, c
   }
   checks.finish();
   if (ids.empty()) return;
+  blend_bodies(s);  // which releases columns that nobody uses, so it comes first
   make_columns(s);
-  blend_bodies(s);
   std::vector<float> former;
   std::vector<BodyState*> changed;
   for (const ParticleId id : ids) {

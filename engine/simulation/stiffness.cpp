@@ -80,8 +80,9 @@ double most_modulus(const SolverConfig& config, const Material& material, float 
   if (!(share > 0)) return std::numeric_limits<double>::infinity();
   const double step = static_cast<double>(config.time_step_factor) * static_cast<double>(*config.time_step);
   const double time = static_cast<double>(material.damping_time);
-  return static_cast<double>(k_stiffest) * stiffness_scale(config, material, spacing) /
-         (share * step * (step + 2 * time));
+  const double pull = std::max((step + 2 * time) / static_cast<double>(k_stiffest),
+                               step / static_cast<double>(most_pull(material)));
+  return stiffness_scale(config, material, spacing) / (share * step * pull);
 }
 
 double modulus_time_step(const SolverConfig& config, const Material& material, float spacing) {
@@ -96,9 +97,10 @@ void check_modulus(const SolverConfig& config, const Material& material, float s
   const double most = most_modulus(config, material, spacing);
   if (static_cast<double>(*material.youngs_modulus) > most * (1 + k_rounding)) {
     const double factor = static_cast<double>(config.time_step_factor);
-    const double step =
-        step_of_pull(pull_rate(config, material, spacing), static_cast<double>(material.damping_time),
-                     static_cast<double>(k_stiffest));
+    const double rate = pull_rate(config, material, spacing);
+    const double step = std::min(
+        step_of_pull(rate, static_cast<double>(material.damping_time), static_cast<double>(k_stiffest)),
+        step_of_pull(rate, 0, static_cast<double>(most_pull(material))));
     std::ostringstream text;
     text.precision(3);
     text << *material.youngs_modulus << " is not allowed in body '" << name << "', whose spacing is "

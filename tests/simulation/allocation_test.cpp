@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <new>
 #include <ostream>
+#include <string>
 
 #include "allocation_counter.h"
 #include "mallow/mallow.h"
@@ -53,12 +54,18 @@ TEST(allocation_counter, sees_every_way_to_allocate) {
   EXPECT_EQ(counts([] { return nullptr; }, free_malloc), 0u);
 }
 
+/// What bodies do beside what each of them does.
+enum class Also { nothing, keeps_volume, yields, painted, heated, all };
+
 struct Setup {
   int threads;
   float alpha;
   float neighbor_slack;
+  Also also = Also::nothing;
+  bool does(Also what) const { return also == what || also == Also::all; }
   friend void PrintTo(const Setup& setup, std::ostream* out) {
-    *out << setup.threads << " threads, alpha " << setup.alpha << ", slack " << setup.neighbor_slack;
+    *out << setup.threads << " threads, alpha " << setup.alpha << ", slack " << setup.neighbor_slack
+         << ", also " << static_cast<int>(setup.also);
   }
 };
 
@@ -67,15 +74,31 @@ struct Setup {
 /// Reference shapes are never updated. Contacts are told of on two threads.
 Simulation scene(const Setup& setup) {
   Simulation s({.support_radius = 2.1f,
-                .update_interval = 7,
+                // Checks list what has flowed, which allocates.
+                .update_interval = setup.does(Also::yields) ? 1'000'000 : 7,
+                .volume_iterations = setup.does(Also::keeps_volume) ? 2 : 0,
                 .neighbor_slack = setup.neighbor_slack,
                 .threads = setup.threads});
   const auto cube = [](int side, const Vec3& corner) {
     return sample(Lattice{.count = {side, side, side}, .corner = corner, .jitter = 0.1f});
   };
-  const Material material{.alpha = setup.alpha, .update_threshold = 1e6f, .viscosity = 0.5f};
-  s.add_body(cube(9, {0, 0, 0.5f}), material);
-  s.add_body(cube(7, {1, 1, 10.5f}), material);
+  Material material{.alpha = setup.alpha, .update_threshold = 1e6f, .viscosity = 0.5f};
+  if (setup.does(Also::yields)) material.plastic_yield = 0.3f;
+  if (setup.does(Also::heated)) {
+    material.temperature = 300.0f;
+    material.conductivity = 1;
+    material.heat_transfer = 1;
+    material.alpha_by_temperature = Schedule{{280, 0}, {320, setup.alpha}};
+    material.viscosity_by_temperature = Schedule{{280, 1}, {320, 0.5f}};
+  }
+  for (Body body : {cube(9, {0, 0, 0.5f}), cube(7, {1, 1, 10.5f})}) {
+    for (const Vec3& x : body.positions) {
+      if (!setup.does(Also::painted)) break;
+      body.stiffness.push_back(x.y() < 4 ? 1.0f : 0.5f);
+      if (!setup.does(Also::heated)) body.alpha.push_back(x.x() < 4 ? 0.0f : setup.alpha);
+    }
+    s.add_body(body, material);
+  }
   s.add_collider({.shape = Plane{}, .friction = 0.3f});
   s.add_collider({.shape = Box{{-2, -2, -2}, {11, 11, 40}, true}, .friction = 0.3f});
   s.add_collider(
@@ -105,15 +128,21 @@ TEST_P(steady_step, allocates_nothing) {
   }
 }
 
+std::string setup_name(const testing::TestParamInfo<Setup>& test) {
+  constexpr const char* k_also[] = {"", "_keeps_volume", "_yields", "_painted", "_heated", "_all"};
+  const Setup& s = test.param;
+  return std::to_string(s.threads) + "_threads_alpha_" + std::to_string(static_cast<int>(10 * s.alpha)) +
+         "_tenths" + (s.neighbor_slack > 0 ? "_with_slack" : "") + k_also[static_cast<int>(s.also)];
+}
+
 INSTANTIATE_TEST_SUITE_P(, steady_step,
                          testing::Values(Setup{1, 0.5f, 0}, Setup{2, 0.5f, 0}, Setup{2, 0.5f, 0.2f},
-                                         Setup{2, 0, 0}, Setup{2, 1, 0}, Setup{2, 1, 0.2f}),
-                         [](const auto& test) {
-                           const Setup& s = test.param;
-                           return std::to_string(s.threads) + "_threads_alpha_" +
-                                  std::to_string(static_cast<int>(10 * s.alpha)) + "_tenths" +
-                                  (s.neighbor_slack > 0 ? "_with_slack" : "");
-                         });
+                                         Setup{2, 0, 0}, Setup{2, 1, 0}, Setup{2, 1, 0.2f},
+                                         Setup{2, 0, 0, Also::keeps_volume},
+                                         Setup{2, 0.5f, 0, Also::keeps_volume}, Setup{2, 0, 0, Also::yields},
+                                         Setup{2, 0.5f, 0, Also::painted}, Setup{2, 0.5f, 0, Also::heated},
+                                         Setup{2, 0.5f, 0, Also::all}, Setup{2, 0.5f, 0.2f, Also::all}),
+                         setup_name);
 
 }  // namespace allocation_test
 }  // namespace mallow

@@ -24,16 +24,22 @@ class Caller {
                         .threads = threads};
     config.sleep_speed = 0.2f;  // so that bodies sleep and wake often
     config.sleep_time = 1.0f;
+    config.volume_iterations = static_cast<int>(seed % 3);  // in two of three
     s_ = std::make_unique<Simulation>(config);
     s_->add_collider({.shape = Box{{-20, -20, 0}, {20, 20, 80}, true}, .friction = 0.5f});
-    for (const float alpha : {0.0f, 0.5f, 1.0f}) s_->add_material({.alpha = alpha, .viscosity = 0.5f});
+    for (const float alpha : {0.0f, 0.5f, 1.0f})
+      s_->add_material({.alpha = alpha,
+                        .viscosity = 0.5f,
+                        .temperature = seed % 2 ? 300.0f : std::optional<float>{},
+                        .conductivity = 1,
+                        .specific_heat = 1});
     add_body();
   }
 
   void call() {
     const std::vector<BodyId> bodies = s_->bodies();
     const auto body = [&] { return bodies[pick(bodies.size())]; };
-    switch (pick(20)) {
+    switch (pick(24)) {
       case 0:
       case 1:
         if (bodies.size() < 12) add_body();
@@ -89,6 +95,17 @@ class Caller {
       case 12: {
         Material material{.alpha = 0.5f * static_cast<float>(pick(3)), .viscosity = 0.5f};
         if (pick(3) == 0) material.region_radius = 1.7f;
+        if (pick(2) == 0) material.plastic_yield = 0.1f * static_cast<float>(pick(3));
+        if (material.plastic_yield && pick(2) == 0) material.plastic_creep = 0.5f;
+        if (pick(4) == 0) material.damping_time = 0.05f;
+        if (s_->material_settings(MaterialId{0}).temperature) {
+          material.temperature = 300.0f;
+          material.conductivity = 1;
+          material.specific_heat = 1;
+          if (pick(3) == 0)
+            material.alpha_by_temperature = Schedule{{300, material.alpha.lowest()}, {400, 1}};
+          if (pick(3) == 0) material.viscosity_by_temperature = Schedule{{300, 1}, {400, 0.1f}};
+        }
         s_->set_material(MaterialId{static_cast<std::uint32_t>(pick(3))}, material);
         break;
       }
@@ -142,6 +159,31 @@ class Caller {
         else
           s_->report_contacts(body(), 0.0);
         break;
+      case 20:
+        try {
+          s_->set_alpha(some_of(body()), 0.5f * static_cast<float>(pick(3)));
+        } catch (const ConfigError&) {
+          // Too stiff, or alpha follows temperature.
+        }
+        break;
+      case 21:
+        try {
+          s_->set_stiffness(some_of(body()), 0.5f * static_cast<float>(pick(4)));
+        } catch (const ConfigError&) {
+          // Too stiff, or alpha follows temperature.
+        }
+        break;
+      case 22:
+        try {
+          s_->set_temperature(some_of(body()), number(1000));
+        } catch (const ConfigError&) {
+          // It carries no heat.
+        }
+        break;
+      case 23:
+        s_->set_temperature(s_->collider_ids().front(),
+                            pick(2) == 0 ? std::nullopt : std::optional<Schedule>(number(1000)));
+        break;
       default:
         break;
     }
@@ -176,6 +218,12 @@ class Caller {
  private:
   std::size_t pick(std::size_t below) { return random_() % below; }
   float number(float most) { return most * (static_cast<float>(random_() % 2001) / 1000 - 1); }
+  std::vector<ParticleId> some_of(BodyId body) {
+    const Simulation::Rows rows = s_->rows(body);
+    std::vector<ParticleId> ids;
+    for (std::size_t row = rows.begin + pick(3); row < rows.end; row += 3) ids.push_back(s_->ids()[row]);
+    return ids;
+  }
   static Body cube(int n, const Vec3& corner) {
     return sample(Lattice{.count = {n, n, n}, .corner = corner, .jitter = 0.05f});
   }
@@ -183,7 +231,12 @@ class Caller {
     const MaterialId material{static_cast<std::uint32_t>(pick(3))};
     const int side = 2 + static_cast<int>(pick(5));
     try {
-      s_->add_body(cube(side, {number(12), number(12), 10 + number(5)}), material);
+      Body body = cube(side, {number(12), number(12), 10 + number(5)});
+      for (std::size_t i = 0; i < body.positions.size() && side == 4; ++i) {
+        body.alpha.push_back(i % 2 == 0 ? 0.0f : 1.0f);
+        body.stiffness.push_back(i % 3 == 0 ? 0.1f : 1.0f);
+      }
+      s_->add_body(body, material);
     } catch (const ConfigError&) {
       // Something is there already.
     }

@@ -49,14 +49,15 @@ struct Material {
   /// μ [Pa s], >= 0. Left out: as thick as looks the same at any size, see default_kinematic_viscosity().
   /// [TK eq. 2]
   std::optional<float> viscosity = {};
-  /// Δt_SM [s], > 0, at least (1 − alpha) time_step_factor² time_step/2.5, as a stiffer body would gain
-  /// energy; left out: from youngs_modulus, or else the solver's time_step. [TK eq. 13; model 2, section 4 B]
+  /// Δt_SM [s], > 0, at least (1 − alpha) time_step_factor² time_step/2.5, with plastic_yield /2, as a
+  /// stiffer body would gain energy; left out: from youngs_modulus, or else the solver's time_step. [TK eq.
+  /// 13; model 2, section 4 B]
   std::optional<float> elastic_time_step = {};
   /// Young's modulus Y at alpha 0 [Pa], > 0, in place of elastic_time_step: the stiffness in force is
   /// (1 − alpha) Y, Poisson's ratio 0 but for what pressure adds, and neither spacing nor steps change it.
-  /// Steps carry (1 − alpha) Y time_step_factor² time_step² up to 2.5 ρ m2, ρ the mass by h³ and m2 the mean
-  /// of x² over a region; a time_step that is left out is shortened to 1 of it, see TimeStepSource::modulus.
-  /// [model 2, section 3]
+  /// Steps carry (1 − alpha) Y time_step_factor² time_step² up to 2.5 ρ m2, with plastic_yield 2 ρ m2, ρ the
+  /// mass by h³ and m2 the mean of x² over a region; a time_step that is left out is shortened to 1 of it,
+  /// see TimeStepSource::modulus. [model 2, section 3]
   std::optional<float> youngs_modulus = {};
   /// m [kg], > 0. Left out: follows from rest_density; 1 if that is left out too.
   std::optional<float> particle_mass = {};

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "materials/standard_tests.h"
+
+namespace mallow::bench {
+
+/// Takes a number of a test at a setting: "dropped", "alpha 0.3, 2 iterations".
+using AddNumber = std::function<void(const char* test, const std::string& setting, const Measured&)>;
+
+/// In units of a spacing of 1, a support radius of 2.1 and a step of 0.15 s.
+/// Cubes dropped and squeezed, and a pool, at 0 to 3 volume iterations and at a tolerance.
+void measure_volume(int threads, const AddNumber& add);
+/// Bars stretched beyond yield, and a dent.
+void measure_yield(int threads, const AddNumber& add);
+/// A slab, a half space, a melting front and a cube in the air.
+void measure_heat(int threads, const AddNumber& add);
+
+}  // namespace mallow::bench
