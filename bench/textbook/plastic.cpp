@@ -11,10 +11,14 @@
 namespace mallow::textbook {
 namespace {
 
-/// A layer of particles has no strain across it.
 bool is_thin(const Region& region) {
   const Matrix p = region.stretch * region.rest_moment * region.stretch.transpose();
   return !(p.determinant() > 1e-4 * std::pow(p.trace() / 3, 3));
+}
+
+/// A layer of particles, which says nothing of strain across it.
+bool is_single_layer(const Region& region) {
+  return !(region.rest_moment.determinant() > 0.1 * std::pow(region.rest_moment.trace() / 3, 3));
 }
 
 /// E
@@ -49,7 +53,7 @@ void flow(const Group& group, double time_step, std::vector<Particle>& particles
       group.material.plastic_creep ? 1 - std::exp(-*group.material.plastic_creep * time_step) : 1;
   for (const std::size_t id : group.members) {
     Region& region = particles[id].region;
-    if (is_thin(region)) continue;
+    if (is_thin(region) || is_single_layer(region)) continue;
     const Matrix e = elastic_strain(region);
     if (Eigen::SelfAdjointEigenSolver<Matrix>(e).eigenvalues().minCoeff() <= 0) continue;
     const Matrix strain = e / std::cbrt(e.determinant()) - Matrix::Identity();

@@ -567,6 +567,11 @@ bool is_thin(const Particle& j) {
   return !(p.determinant() > 1e-4 * std::pow(p.trace() / 3, 3));
 }
 
+/// Such as a layer of particles, which says nothing of strain across it.
+bool is_single_layer(const Particle& j) {
+  return !(j.rest_moment.determinant() > 0.1 * std::pow(j.rest_moment.trace() / 3, 3));
+}
+
 /// E of a region.
 Matrix elastic_strain(const Particle& j) {
   const Matrix f = j.moment * j.rest_moment.inverse() * j.stretch.inverse();
@@ -580,7 +585,7 @@ Matrix elastic_strain(const Particle& j) {
 void Oracle::flow(double dt) {
   for (Particle& j : particles_) {
     const Material& material = groups_[j.group].material;
-    if (!material.plastic_yield || groups_[j.group].alpha == 1 || is_thin(j)) continue;
+    if (!material.plastic_yield || groups_[j.group].alpha == 1 || is_thin(j) || is_single_layer(j)) continue;
     const Matrix e = elastic_strain(j);
     if (Eigen::SelfAdjointEigenSolver<Matrix>(e).eigenvalues().minCoeff() <= 0) continue;
     const Matrix strain = e / std::cbrt(e.determinant()) - Matrix::Identity();

@@ -146,8 +146,10 @@ TEST_F(scene_warnings, name_creep_that_takes_longer_than_the_run) {
 }
 
 TEST_F(scene_warnings, name_parts_that_pass_through_each_other) {
-  const auto of = [&](float alpha, float gap) {
-    Simulation s({.support_radius = 0.21f, .gravity = {0, 0, -9.81f}});
+  const auto of = [&](float alpha, float gap, std::optional<int> iterations = 0) {
+    SolverConfig solver{.support_radius = 0.21f, .gravity = {0, 0, -9.81f}};
+    solver.volume_iterations = iterations;
+    Simulation s(solver);
     Body body = sample(Lattice{.count = {4, 4, 4}, .spacing = 0.1f});
     const Body other = sample(Lattice{.count = {4, 4, 4}, .spacing = 0.1f, .corner = {0, 0, 0.3f + gap}});
     body.positions.insert(body.positions.end(), other.positions.begin(), other.positions.end());
@@ -157,6 +159,7 @@ TEST_F(scene_warnings, name_parts_that_pass_through_each_other) {
   };
   EXPECT_TRUE(warns(of(0, 1), "its 2 parts pass through each other"));
   EXPECT_FALSE(warns(of(0.3f, 1), "parts pass"));
+  EXPECT_FALSE(warns(of(0, 1, {}), "parts pass")) << "their volume keeps them apart";
   EXPECT_FALSE(warns(of(0, 0.1f), "parts pass"));
 }
 
