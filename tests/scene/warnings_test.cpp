@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "scene/scene_fixture.h"
 
