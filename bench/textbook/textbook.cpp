@@ -331,7 +331,8 @@ void Textbook::keep_volume(double time_step, const std::vector<Vec>& before) {
   std::vector<double> share;
   for (const Group& group : groups_) {
     const double pull = group.most_elasticity * stiffness(group) * time_step * time_step;
-    share.push_back(std::clamp((2.8 - pull) / 2, 0.0, 1.0));
+    const double wide = std::min(1.0, 2.5 * group.spacing / double{*config_.support_radius});
+    share.push_back(wide * wide * wide * std::clamp((2.8 - pull) / 2, 0.0, 1.0));
   }
   std::vector<Vec> w(particles_.size());
   for (int iteration = 0; iteration < config_.volume_iterations; ++iteration) {

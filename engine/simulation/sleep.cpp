@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/bounds.h"
+#include "mallow/defaults.h"
 #include "simulation/state.h"
 
 namespace mallow {
@@ -12,7 +13,18 @@ namespace {
 /// Of what is left out: speed in spacings in a Δt0, time in Δt0.
 constexpr float k_sleep_speed = 0.005f, k_sleep_time = 60;
 
+/// Flows on however slowly it does: a fluid thicker than the default, or what creeps under any load.
+bool creeps(const Simulation::State& state, const BodyState& body) {
+  constexpr float k_thick = 2;
+  const Material& material = body.material->settings;
+  if (body.keeps_reference()) return material.plastic_creep && material.plastic_yield == 0.0f;
+  const float density = body.mass / (body.spacing * body.spacing * body.spacing);
+  return body.viscosity > k_thick * density * default_kinematic_viscosity(state.scale, state.scene_step());
+}
+
+/// 0: it does not sleep.
 double sleep_speed(const Simulation::State& state, const BodyState& body) {
+  if (!state.config.sleep_speed && creeps(state, body)) return 0;
   return static_cast<double>(
       state.config.sleep_speed.value_or(k_sleep_speed * body.spacing / state.scene_step()));
 }

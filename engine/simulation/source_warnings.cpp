@@ -104,6 +104,11 @@ class SourceWarnings {
     if (!material.temperature && material.conductivity > 0)
       add("body '", body.name, "': conductivity ", material.conductivity,
           " has no effect, as it carries no heat; give material.temperature");
+    const bool follows = material.alpha_by_temperature || material.viscosity_by_temperature ||
+                         material.plastic_yield_by_temperature;
+    if (material.temperature && follows && material.conductivity == 0)
+      add("body '", body.name,
+          "': no heat passes through it, as its conductivity is 0; give material.conductivity");
     if (!material.temperature || !material.alpha_by_temperature) return;
     const std::vector<ScheduleKey>& keys = material.alpha_by_temperature->keys();
     const float least = material.alpha_by_temperature->lowest(),

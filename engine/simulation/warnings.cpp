@@ -5,8 +5,10 @@
 #include <sstream>
 
 #include "colliders/shapes.h"
+#include "core/bounds.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
+#include "simulation/stiffness.h"
 
 namespace mallow {
 namespace {
@@ -19,6 +21,12 @@ constexpr float k_least_density = 5, k_most_density = 30000;
 constexpr double k_short_steps = 0.5;
 /// Neighbours that slow a step down and show nothing: those of ten spacings.
 constexpr double k_many_neighbors = 4000;
+/// Support radius in spacings beyond which what flows no longer keeps its volume.
+constexpr float k_wide_radius = 3.6f;
+/// Strain by the own weight from which on a body is hardly meant to stand.
+constexpr float k_own_weight = 0.5f;
+/// Damping times as long as so many steps that follow from them.
+constexpr float k_long_damping = 3;
 /// Spacings within which there are the six nearest and the twelve of diagonals: fewer hold no body together.
 constexpr float k_least_radius = 1.45f;
 /// Of what an iteration of the volume constraint may do, a share that hardly shows.
@@ -40,6 +48,8 @@ class Warnings {
       look_at_flow(body);
       look_at_density(body);
       look_at_limits(body);
+      look_at_weight(body);
+      look_at_damping(body);
       look_at_neighbors(body);
       look_at_volume(body);
     }
@@ -135,11 +145,35 @@ class Warnings {
   void look_at_volume(const BodyState& body) {
     if (state_.volume_iterations() == 0) return;
     const float share = 2 * volume_relaxation(state_, body, state_.longest_step());
-    if (share < k_least_share)
+    if (share < k_least_share && !(state_.support_radius() > k_wide_radius * body.spacing))
       add(body, "elasticity and damping are so stiff for a step of ", state_.longest_step(),
           " s that a volume iteration takes ", share,
           " of its share; raise material.elastic_time_step, or lower solver.time_step and give "
           "material.elastic_time_step");
+  }
+
+  /// Where elasticity alone bears it.
+  void look_at_weight(const BodyState& body) {
+    const float modulus =
+        state_.stiffness(body, 1 - body.most_alpha()) *
+        static_cast<float>(stiffness_scale(state_.config, body.material->settings, body.spacing));
+    const Aabb box = box_around(state_.store.position, body.begin, body.end);
+    const float height =
+        (box.max - box.min).cwiseAbs().dot(state_.config.gravity.cwiseAbs().stableNormalized());
+    const float weight =
+        body.mass / (body.spacing * body.spacing * body.spacing) * state_.config.gravity.norm() * height;
+    if (!body.matches_shape() || body.most_alpha() > 0.2f || !(weight > k_own_weight * modulus)) return;
+    add(body, "its own weight presses with ", weight, " Pa, where it is as stiff as ", modulus,
+        " Pa: it ends as a layer; raise material.youngs_modulus, or lower solver.time_step where that is "
+        "left out");
+  }
+
+  void look_at_damping(const BodyState& body) {
+    const float time = body.material->settings.damping_time;
+    if (state_.time_step_source != TimeStepSource::modulus || !(time > k_long_damping * state_.base_step()))
+      return;
+    add(body, "damping_time ", time, " s shortens every step to ", state_.base_step(),
+        " s, as a step carries no stronger damper; lower it");
   }
 
   void look_at_neighbors(const BodyState& body) {
@@ -152,8 +186,14 @@ class Warnings {
         add(body, field, ' ', radius, " is ", radius / body.spacing, " spacings: about ", std::round(each),
             " neighbours each, where 30 to 80 are usual; so few hold no body together, 2.1 spacings do");
     };
-    if (state_.needs_sph() || state_.keeps_volume())
+    if (state_.needs_sph() || state_.keeps_volume()) {
       look("support_radius", state_.support_radius(), state_.store.size());
+      if (state_.support_radius() > k_wide_radius * body.spacing && body.size() > 1)
+        add(body, "support_radius ", state_.support_radius(), " is ", state_.support_radius() / body.spacing,
+            " of its spacings: it loses volume, and what rests on it, where 2 to 3 are usual; give bodies of "
+            "one scene "
+            "alike spacings");
+    }
     if (body.keeps_reference()) look("the radius of its regions,", body.shape.region_radius, body.size());
   }
 

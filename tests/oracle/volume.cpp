@@ -72,7 +72,10 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       others /= std::max(0.5, 1 - i.wall_share);
       const double response = std::max(floor, gradient.squaredNorm() / mass(i) + others);
       const double s = std::max(0.0, i.density / group.rest_density - 1 + dt * rate);
-      const double share = std::clamp((2.8 - group.most_elasticity * stiffness(group) * dt * dt) / 2, 0.0, 1.0);
+      const double wide = std::min(1.0, 2.5 * group.spacing / sigma);
+      const double share =
+          wide * wide * wide *
+          std::clamp((2.8 - group.most_elasticity * stiffness(group) * dt * dt) / 2, 0.0, 1.0);
       lambda[k] = i.pinned ? 0 : share * s / (2 * dt * response);
     }
     for (std::size_t k = 0; k < n; ++k) {

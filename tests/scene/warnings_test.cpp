@@ -164,5 +164,32 @@ TEST_F(scene_warnings, name_parts_that_pass_through_each_other) {
   EXPECT_FALSE(warns(of(0, 0.1f), "parts pass"));
 }
 
+TEST_F(scene_warnings, name_bodies_that_their_own_weight_flattens_and_spacings_that_differ_too_much) {
+  const auto of = [&](const Material& material, float coarse) {
+    Simulation s({.gravity = {0, 0, -9.81f}});
+    s.add_body(sample(Lattice{.count = {6, 6, 6}, .spacing = 0.005f}), material);
+    s.add_body(sample(Lattice{.count = {4, 4, 4}, .spacing = coarse, .corner = {0.2f, 0, 0}}),
+               {.alpha = 1.0f, .rest_density = 1000});
+    s.prepare();
+    return s.info().warnings;
+  };
+  const Material soft{.youngs_modulus = 100, .rest_density = 1000},
+      firm{.youngs_modulus = 5000, .rest_density = 1000};
+  EXPECT_TRUE(warns(of(soft, 0.005f), "its own weight presses with"));
+  EXPECT_FALSE(warns(of(firm, 0.005f), "its own weight presses with"));
+  Material damped = firm;
+  damped.damping_time = 0.05f;
+  EXPECT_TRUE(warns(of(damped, 0.005f), "damping_time 0.05 s shortens every step"));
+  EXPECT_FALSE(warns(of(firm, 0.005f), "damping_time"));
+  Material flowing = firm;
+  flowing.plastic_yield = 0.05f;
+  EXPECT_TRUE(warns(of(flowing, 0.012f), "of its spacings: it loses volume"));
+  EXPECT_FALSE(warns(of(flowing, 0.006f), "of its spacings: it loses volume"));
+  Material melting = firm;
+  melting.temperature = 300.0f;
+  melting.alpha_by_temperature = Schedule{{300, 0}, {310, 1}};
+  EXPECT_TRUE(warns(of(melting, 0.005f), "no heat passes through it"));
+}
+
 }  // namespace warnings_test
 }  // namespace mallow

@@ -209,5 +209,18 @@ TEST(sleep, leaves_bodies_that_are_not_enabled_out_of_everything) {
   EXPECT_TRUE(s.is_enabled(ghost));
 }
 
+// At the speed at which others sleep honey flows.
+TEST(sleep, takes_nothing_that_still_creeps) {
+  const auto lasts = [](const Material& material) {
+    Simulation s(solver());
+    const BodyId body = s.add_body(cube(5, {0, 0, 0}), material);
+    s.add_collider({.shape = Plane{}, .friction = 0.5f});
+    for (int k = 0; k < 1500; ++k) s.step();
+    return s.is_awake(body);
+  };
+  EXPECT_TRUE(lasts({.alpha = 1.0f, .viscosity = 20}));
+  EXPECT_FALSE(lasts({.alpha = 0.0f}));
+}
+
 }  // namespace sleep_test
 }  // namespace mallow

@@ -389,5 +389,22 @@ TEST(volume, lets_what_rests_fall_asleep_and_wakes_what_is_hit) {
   EXPECT_EQ(awake, 3u);
 }
 
+// With the whole share at 4 spacings and more a body at rest threw itself about, at up to 28 m/s in metres.
+TEST(volume, leaves_what_rests_at_rest_whatever_the_support_radius) {
+  for (const float radius : {2.1f, 3.0f, 3.5f, 4.0f, 4.5f, 5.0f, 6.3f}) {
+    SolverConfig solver = config(2);
+    solver.support_radius = radius;
+    Simulation s(solver);
+    s.add_collider({.shape = Plane{}, .friction = 0.5f});
+    Material material{.alpha = 0.3f, .update_threshold = 1e6f};
+    material.region_radius = 2.1f;
+    s.add_body(sample(Lattice{.count = {8, 8, 8}, .jitter = 0.2f}), material);
+    for (int k = 0; k < 600; ++k) s.step();
+    float fastest = 0;
+    for (const Vec3& v : s.velocities_by_id()) fastest = std::max(fastest, v.norm());
+    EXPECT_LT(fastest, 1e-3f) << radius;
+  }
+}
+
 }  // namespace volume_test
 }  // namespace mallow
