@@ -147,22 +147,25 @@ void solve_plastic_regions(const MatchedBodies::Body& body, std::size_t begin, s
   float* stretch[9];
   for (std::size_t k = 0; k < 4; ++k) rotation[k] = shape.rotation[k].data();
   for (std::size_t k = 0; k < 9; ++k) stretch[k] = shape.plastic.stretch[k].data();
-  lanes.solve(body.input, begin, end, iterations, stretch, shape.sums.data(), rotation,
-              shape.undecided.data());
-  for (std::size_t j = begin; j < end; ++j)
-    if (shape.undecided[j]) solve_exactly(j, stretched_moment(shape, j).trace(), shape);
-  if (body.reframed)
-    for (std::size_t j = begin; j < end; ++j)
-      (*body.reframed)[j] =
-          reframed_stretch(front_matrix(shape, j), rotation_of(shape, j), stretched_moment(shape, j));
   // What is beyond yield flows at once where the rate is infinite: then no product with it is taken.
   const float share = !(time_step > 0)              ? 0.0f
                       : std::isinf(body.rule.creep) ? 1.0f
                                                     : -std::expm1(-body.rule.creep * time_step);
   const Column<float>& yields = shape.plastic.yield;
-  lanes.finish(body.input,
-               {.yield = body.rule.yield, .yields = yields.empty() ? nullptr : yields.data(), .share = share},
-               begin, end, rotation, shape.sums.data(), stretch, shape.plastic.flow.data());
+  const FlowInput rule{
+      .yield = body.rule.yield, .yields = yields.empty() ? nullptr : yields.data(), .share = share};
+  float *const sums = shape.sums.data(), *const flow = shape.plastic.flow.data();
+  std::uint8_t* const undecided = shape.undecided.data();
+  // Whoever asks for strains reads M, of all of them.
+  lanes.solve(body.input, body.reframed ? nullptr : &rule, begin, end, iterations, sums, rotation, stretch,
+              flow, undecided);
+  for (std::size_t j = begin; j < end; ++j)
+    if (undecided[j] == k_open) solve_exactly(j, stretched_moment(shape, j).trace(), shape);
+  if (body.reframed)
+    for (std::size_t j = begin; j < end; ++j)
+      (*body.reframed)[j] =
+          reframed_stretch(front_matrix(shape, j), rotation_of(shape, j), stretched_moment(shape, j));
+  lanes.finish(body.input, rule, begin, end, undecided, rotation, sums, stretch, flow);
 }
 
 }  // namespace mallow

@@ -82,26 +82,6 @@ Symmetric load_moment(const ShapeInput& in, std::size_t j) {
           load(in.moment[3] + j), load(in.moment[4] + j), load(in.moment[5] + j)};
 }
 
-/// As solve_lanes() of rotation_lanes.cpp.
-LaneBytes solve_lanes(const ShapeInput& in, std::size_t j, int iterations, const float* const* stretch,
-                      float* rows, float* const* rotation) {
-  Lanes sums[12], a[12], m[12], s[9], moment[6], q[4];
-  load_transposed(rows, k_row, 12, sums);
-  const LaneVec3 center = get(WholeRows{j}, in.center);
-  for (int k = 0; k < 6; ++k) moment[k] = load(in.moment[k] + j);
-  for (int k = 0; k < 4; ++k) q[k] = load(rotation[k] + j);
-  for (int k = 0; k < 9; ++k) s[k] = load(stretch[k] + j);
-  region_matrices(in.frame_rotation, sums, center, moment, a);
-  multiply_transposed(a, s, m);
-  const Symmetric stretched = stretched_moment(s, load_moment(in, j));
-  Lanes turned[4] = {q[0], q[1], q[2], q[3]};
-  const LaneMask good = newton(m, trace(stretched), iterations, turned);
-  for (int k = 0; k < 4; ++k) store(good ? turned[k] : q[k], rotation[k] + j);
-  for (int k = 9; k < 12; ++k) m[k] = sums[k];
-  store_transposed(m, 12, k_row, rows);
-  return bytes(~good);
-}
-
 Lanes mean_extent(const Symmetric& moment) {
   return trace(moment) * (1.0f / 3.0f);
 }
@@ -146,15 +126,27 @@ void flow_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, cons
   store(flows ? before + norm(change) : before, flow + j);
 }
 
-void finish_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, const float* const* rotation,
-                  float* rows, float* const* stretch, float* flow) {
-  Lanes sums[12], s[9], q[4], r[9], turned[k_row];
-  load_transposed(rows, k_row, 12, sums);
-  const LaneVec3 center = get(WholeRows{j}, in.center);
-  for (int k = 0; k < 4; ++k) q[k] = load(rotation[k] + j);
-  for (int k = 0; k < 9; ++k) s[k] = load(stretch[k] + j);
-  rotation_matrices(q, r);
-  multiply(r, s, turned);
+/// What a region is read as, and S that it flows by.
+struct Stretched {
+  LaneVec3 center;
+  Lanes rotation[4], stretch[9];
+};
+Stretched load_stretched(const ShapeInput& in, std::size_t j, const float* const* rotation,
+                         const float* const* stretch) {
+  Stretched region;
+  region.center = get(WholeRows{j}, in.center);
+  for (int k = 0; k < 4; ++k) region.rotation[k] = load(rotation[k] + j);
+  for (int k = 0; k < 9; ++k) region.stretch[k] = load(stretch[k] + j);
+  return region;
+}
+
+/// sums: M and the last three sums.
+void finish_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, const Stretched& region,
+                  const Lanes* sums, float* rows, float* const* stretch, float* flow) {
+  Lanes r[9], turned[k_row];
+  const LaneVec3& center = region.center;
+  rotation_matrices(region.rotation, r);
+  multiply(r, region.stretch, turned);
   // Plus 0, or what is not a number where the weight is infinite and the quotient would hide it.
   const Lanes weight = load(in.region_weight + j), inverse = 1.0f / weight + (weight - weight);
   for (int i = 0; i < 3; ++i) {
@@ -164,7 +156,32 @@ void finish_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, co
     turned[9 + i] = sums[9 + i] * inverse - (row[0] * center.x + row[1] * center.y + row[2] * center.z);
   }
   weigh_and_store(in, j, ~LaneMask{}, turned, rows);
-  if (rule.share > 0) flow_lanes(in, rule, j, sums, r, s, stretch, flow);
+  if (rule.share > 0) flow_lanes(in, rule, j, sums, r, region.stretch, stretch, flow);
+}
+
+/// As solve_lanes() of rotation_lanes.cpp. Where all are decided, they are finished as they lie in registers.
+LaneBytes solve_lanes(const ShapeInput& in, const FlowInput* rule, std::size_t j, int iterations, float* rows,
+                      float* const* rotation, float* const* stretch, float* flow) {
+  Lanes sums[12], a[12], m[12], moment[6];
+  load_transposed(rows, k_row, 12, sums);
+  Stretched region = load_stretched(in, j, rotation, stretch);
+  for (int k = 0; k < 6; ++k) moment[k] = load(in.moment[k] + j);
+  region_matrices(in.frame_rotation, sums, region.center, moment, a);
+  multiply_transposed(a, region.stretch, m);
+  const Symmetric stretched = stretched_moment(region.stretch, load_moment(in, j));
+  Lanes turned[4] = {region.rotation[0], region.rotation[1], region.rotation[2], region.rotation[3]};
+  const LaneMask good = newton(m, trace(stretched), iterations, turned);
+  for (int k = 0; k < 4; ++k) {
+    region.rotation[k] = good ? turned[k] : region.rotation[k];
+    store(region.rotation[k], rotation[k] + j);
+  }
+  for (int k = 9; k < 12; ++k) m[k] = sums[k];
+  if (rule && !any(~good)) {
+    finish_lanes(in, *rule, j, region, m, rows, stretch, flow);
+    return LaneBytes{};
+  }
+  store_transposed(m, 12, k_row, rows);
+  return bytes(~good) + k_unfinished;
 }
 
 /// Calls work(j, rows) for each k_width regions; those of the last, which may be fewer, lie in a copy, as
@@ -181,19 +198,24 @@ void for_regions(std::size_t begin, std::size_t end, float* sums, const Work& wo
   __builtin_memcpy(sums + j * k_row, rows, rest);
 }
 
-void solve(const ShapeInput& in, std::size_t begin, std::size_t end, int iterations,
-           const float* const* stretch, float* sums, float* const* rotation,
+void solve(const ShapeInput& in, const FlowInput* rule, std::size_t begin, std::size_t end, int iterations,
+           float* sums, float* const* rotation, float* const* stretch, float* flow,
            std::uint8_t* undecided) noexcept {
   for_regions(begin, end, sums, [&](std::size_t j, float* rows) {
-    const LaneBytes left = solve_lanes(in, j, iterations, stretch, rows, rotation);
+    const LaneBytes left = solve_lanes(in, rule, j, iterations, rows, rotation, stretch, flow);
     __builtin_memcpy(undecided + j, &left, j + k_width <= end ? k_width : end - j);
   });
 }
 
 void finish(const ShapeInput& in, const FlowInput& rule, std::size_t begin, std::size_t end,
-            const float* const* rotation, float* sums, float* const* stretch, float* flow) noexcept {
-  for_regions(begin, end, sums,
-              [&](std::size_t j, float* rows) { finish_lanes(in, rule, j, rotation, rows, stretch, flow); });
+            const std::uint8_t* undecided, const float* const* rotation, float* sums, float* const* stretch,
+            float* flow) noexcept {
+  for_regions(begin, end, sums, [&](std::size_t j, float* rows) {
+    if (undecided[j] == 0) return;  // nor is any beside it
+    Lanes left[12];
+    load_transposed(rows, k_row, 12, left);
+    finish_lanes(in, rule, j, load_stretched(in, j, rotation, stretch), left, rows, stretch, flow);
+  });
 }
 
 }  // namespace

@@ -27,16 +27,21 @@ struct FlowInput {
   const float* yields;  ///< where they differ; null: `yield` for all
   float share;  ///< of what is beyond, that flows in this step: 1 − exp(−creep Δt); 0: nothing flows
 };
+/// Of `undecided`: of a region whose row is not finished, and of one whose rotation is open besides.
+inline constexpr std::uint8_t k_unfinished = 1, k_open = 2;
+
 struct PlasticLanes {
   /// As RotationLanes::solve, of M_j, which goes in front of every sums row; the last three sums stay.
-  void (*solve)(const ShapeInput&, std::size_t begin, std::size_t end, int iterations,
-                const float* const* stretch, float* sums, float* const* rotation,
+  /// Registers of regions that all are decided are finished at once, where there is a rule.
+  void (*solve)(const ShapeInput&, const FlowInput* rule, std::size_t begin, std::size_t end, int iterations,
+                float* sums, float* const* rotation, float* const* stretch, float* flow,
                 std::uint8_t* undecided) noexcept;
-  /// Of the rows that solve() left, and rotations: replaces them by R S − R_g (row by row) and u of the
+  /// Of what solve() left unfinished, rotations known: replaces rows by R S − R_g (row by row) and u of the
   /// centre − (R S − R_g) c̄, then lets S and κ flow, for the next step. What is thin (k_thin), mirrored or
   /// not finite does not flow.
   void (*finish)(const ShapeInput&, const FlowInput&, std::size_t begin, std::size_t end,
-                 const float* const* rotation, float* sums, float* const* stretch, float* flow) noexcept;
+                 const std::uint8_t* undecided, const float* const* rotation, float* sums,
+                 float* const* stretch, float* flow) noexcept;
 };
 MALLOW_DECLARE_LEVELS(PlasticLanes, plastic_lanes)
 
