@@ -59,7 +59,9 @@ void correct_volume(Simulation::State& state, float time_step, StepReport& repor
   const VolumeStep step{.position = state.store.position,
                         .pin = state.store.pin.empty() ? nullptr : state.store.pin.data(),
                         .colliders = state.placed_colliders,
-                        .time_step = time_step};
+                        .time_step = time_step,
+                        .gravity = state.config.gravity,
+                        .alpha = state.is_painted() ? state.store.alpha.data() : nullptr};
   for (const BodyState* body : state.awake)
     state.volume.groups[body->sph_group].relaxation = volume_relaxation(state, *body, time_step);
   const double tolerance = static_cast<double>(state.config.volume_tolerance);

@@ -206,6 +206,7 @@ void press_walls(Simulation::State& state) {
   press_walls({.position = store.position,
                .density = sph.density_by_row,
                .sph_acceleration = sph.acceleration,
+               .gravity = state.config.gravity,
                .alpha = state.is_painted() ? store.alpha.data() : nullptr,
                .pin = store.pin.empty() ? nullptr : store.pin.data(),
                .all_loads = state.reports_contacts()},

@@ -82,7 +82,8 @@ void push_by_walls(const VolumeStep& step, Sph& sph, const Execution& execution,
     const std::uint32_t row = wall.row;
     if (step.pin && step.pin[row] != 0) return;
     const float across = k_mirrored * volume.multiplier_by_row[row] * wall.slope / body.mass;
-    const Vec3 along = pushed_along(wall, sph.walls.share[row], volume.changes.get(row));
+    const Vec3 along = pushed_along(wall, step.alpha ? step.alpha[row] : body.alpha, sph.walls.share[row],
+                                    volume.changes.get(row), step.time_step * step.gravity);
     const Vec3 change = across * wall.normal + along;
     wall.across += across / step.time_step;
     velocity.set(row, velocity.get(row) + change);

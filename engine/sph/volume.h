@@ -45,6 +45,8 @@ struct VolumeStep {
   const std::uint16_t* pin;                   ///< rows whose pin is not 0 are not pushed; null: all are
   std::span<const PlacedCollider> colliders;  ///< as they move in this step
   float time_step;                            ///< Δt [s]
+  Vec3 gravity;                               ///< [m/s²]
+  const float* alpha;                         ///< by row; null: that of each body
 };
 
 /// What an iteration finds before it changes anything.

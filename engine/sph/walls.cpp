@@ -125,9 +125,14 @@ void find_walls(const VectorColumn& position, const VectorColumn& velocity,
   });
 }
 
-Vec3 pushed_along(const Walls::Wall& wall, float share, const Vec3& by_neighbors) {
-  const float ratio = wall.share / std::max(1 - share, k_least_seen);
-  return ratio * (by_neighbors - by_neighbors.dot(wall.normal) * wall.normal);
+Vec3 pushed_along(const Walls::Wall& wall, float alpha, float share, const Vec3& by_neighbors,
+                  const Vec3& weight) {
+  const auto tangential = [&](const Vec3& v) { return Vec3(v - v.dot(wall.normal) * wall.normal); };
+  const Vec3 push = wall.share / std::max(1 - share, k_least_seen) * tangential(by_neighbors);
+  if (alpha >= 1) return push;
+  // A share may be below 0 by rounding.
+  const float most = std::max(wall.share, 0.0f) * tangential(weight).norm(), size = push.norm();
+  return size > most ? Vec3(most / size * push) : push;
 }
 
 Vec3 velocity_at(const ContactSurface& surface, const Vec3& x) {
@@ -157,12 +162,14 @@ void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders,
       const float rho = in.density[row];
       const float excess = std::max(rho - body.group->rest_density, 0.0f);
       const float across = body.group->pressure_coefficient * excess / rho * wall.gradient;
-      const Vec3 along = pushed_along(wall, walls.share[row], in.sph_acceleration.get(row));
       // Where particles differ in alpha, a^SPH is blended already.
-      const Vec3 push = in.alpha ? Vec3(in.alpha[row] * across * wall.normal + along)
-                                 : Vec3(body.alpha * (across * wall.normal + along));
+      const Vec3& a = in.sph_acceleration.get(row);
+      const Vec3 acts = in.alpha ? Vec3(a) : Vec3(body.alpha * a);
+      const float alpha = in.alpha ? in.alpha[row] : body.alpha;
+      const Vec3 push =
+          alpha * across * wall.normal + pushed_along(wall, alpha, walls.share[row], acts, in.gravity);
       walls.acceleration.set(row, walls.acceleration.get(row) + push);
-      wall.across = (in.alpha ? in.alpha[row] : body.alpha) * across;
+      wall.across = alpha * across;
       if ((in.all_loads || colliders[wall.collider].measures_load) && !(in.pin && in.pin[row] != 0))
         add_load(body.mass, push, in.position.get(row), colliders[wall.collider],
                  walls.partial_loads[number * count + wall.collider]);

@@ -70,13 +70,18 @@ struct WallInput {
   const VectorColumn& position;
   const Column<float>& density;          ///< ρ [kg/m³]
   const VectorColumn& sph_acceleration;  ///< a^SPH [m/s²]
+  Vec3 gravity;                          ///< [m/s²]
   const float* alpha;                    ///< null: that of each body, and a^SPH is not blended yet
   const std::uint16_t* pin;              ///< rows whose pin is not 0 give no load; null: all do
   bool all_loads;                        ///< of colliders that do not measure theirs too
 };
 /// Beside a push across of a wall, what its matter would add along it to what a particle gets from its
 /// neighbours, of which it sees `share`, the S of all walls, too little.
-Vec3 pushed_along(const Walls::Wall& wall, float share, const Vec3& by_neighbors);
+/// Where its alpha is below 1 it gets at most what gravity would take along the wall, `weight` in units of
+/// the same [m/s², or m/s of a step], as at rest it needs no more: a solid's stresses along a floor have a
+/// sum that is not 0, and drove it.
+Vec3 pushed_along(const Walls::Wall& wall, float alpha, float share, const Vec3& by_neighbors,
+                  const Vec3& weight);
 /// Velocity of the point of a collider that is at x, with what it carries along [m/s].
 Vec3 velocity_at(const ContactSurface& surface, const Vec3& x);
 /// What a collider gets of a particle of `mass` at x whose velocity it changed.

@@ -406,14 +406,23 @@ void Oracle::find_walls(Particle& p) const {
   }
 }
 
+/// What a wall adds along it to what neighbours do, of which a particle sees S of all walls too little: at
+/// most what gravity would take along it.
+Vec pushed_along(const Particle::Wall& wall, double alpha, double all, const Vec& by_neighbors,
+                 const Vec& weight) {
+  const auto tangential = [&](const Vec& v) { return Vec(v - v.dot(wall.normal) * wall.normal); };
+  const Vec push = wall.share / std::max(0.5, 1 - all) * tangential(by_neighbors);
+  const double most = wall.share * tangential(weight).norm();
+  return alpha < 1 && push.norm() > most ? Vec(most * push.normalized()) : push;
+}
+
 Vec Oracle::wall_acceleration(const Particle& p) const {
   const Group& group = groups_[p.group];
   const double pressure = group.pressure_coefficient * std::max(0.0, p.density - group.rest_density);
   Vec sum = Vec::Zero();
   for (const Particle::Wall& wall : p.walls)
-    sum +=
-        alpha_of(p) * pressure / p.density * wall.gradient * wall.normal +
-        wall.share / std::max(0.5, 1 - p.wall_share) * (p.blended - p.blended.dot(wall.normal) * wall.normal);
+    sum += alpha_of(p) * pressure / p.density * wall.gradient * wall.normal +
+           pushed_along(wall, alpha_of(p), p.wall_share, p.blended, config_.gravity.cast<double>());
   return sum;
 }
 

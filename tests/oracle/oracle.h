@@ -87,6 +87,9 @@ struct Step {
 /// Acceleration of a particle by the user, from time, id, position and velocity.
 using Force = std::function<Vec(double, std::size_t, const Vec&, const Vec&)>;
 
+Vec pushed_along(const Particle::Wall& wall, double alpha, double all, const Vec& by_neighbors,
+                 const Vec& weight);
+
 class Oracle {
  public:
   explicit Oracle(const SolverConfig& config) : config_(config) {}

@@ -91,8 +91,7 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       for (Particle::Wall& wall : i.walls) {
         wall.push -= 2 * lambda[k] * wall_gradient(wall).dot(wall.normal) / mass(i);
         // What is behind a wall has the particle's own λ, and moves with its neighbours along it.
-        const Vec along = pushed - pushed.dot(wall.normal) * wall.normal;
-        i.v += wall.share / std::max(0.5, 1 - i.wall_share) * along -
+        i.v += pushed_along(wall, alpha_of(i), i.wall_share, pushed, dt * config_.gravity.cast<double>()) -
                2 * lambda[k] * wall_gradient(wall) / mass(i);
       }
     }

@@ -206,7 +206,7 @@ TEST(heat, melts_a_cube_from_below_and_sets_it_in_its_new_shape) {
   const Layers later = layers_of(s);
   EXPECT_NEAR(later.top, set.top, 0.05);
   EXPECT_NEAR(later.width, set.width, 0.05);
-  EXPECT_GT(set.width, melting.width + 0.5);
+  EXPECT_GT(set.width, melting.width + 0.4);
   EXPECT_LT(set.top, lower.top + 0.2);
   EXPECT_GT(set.top, 2);
 }

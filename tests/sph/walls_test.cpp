@@ -257,6 +257,22 @@ double mean_velocity(const Simulation& s) {
   return s.velocities().eigen().col(0).cast<double>().mean();
 }
 
+// A solid's stresses along a floor have a sum that is not 0: mirrored whole, they drove it at some spacings a
+// second.
+TEST(wall_pressure, drives_no_solid_along_a_floor_without_friction) {
+  for (const float alpha : {0.1f, 0.4f, 0.7f}) {
+    SolverConfig solver = config();
+    solver.sleep_speed = 0.0f;
+    Simulation s(solver);
+    s.add_collider({.shape = Plane{}});
+    const BodyId body = s.add_body(sample(Lattice{.count = {8, 8, 6}, .jitter = 0.2f}),
+                                   {.alpha = alpha, .update_threshold = 1e6f});
+    const Eigen::Vector3d start = s.motion(body).center_of_mass;
+    s.advance(150);
+    EXPECT_LT((s.motion(body).center_of_mass - start).head<2>().norm(), 0.05) << alpha;
+  }
+}
+
 TEST(wall_pressure, lets_a_soft_block_slide_down_a_slope_as_coulomb_says) {
   const double slides = static_cast<double>(k_gravity) * (0.5 - 0.3 * 0.866);
   for (const int iterations : {0, 1})
