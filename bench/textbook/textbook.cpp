@@ -190,7 +190,8 @@ int Textbook::update_references() {
     group.external.clear();
     if (!group.keeps_reference()) continue;
     const Material& material = group.material;
-    if ((!material.plastic_yield || material.update_threshold) && judged > threshold) {
+    const bool melts = material.alpha.highest() > 0.9f && material.alpha.lowest() < material.alpha.highest();
+    if ((!material.plastic_yield || material.update_threshold || melts) && judged > threshold) {
       kick_by_pull(group, 0.5);
       rest_anew(group, judged, particles_);
       kick_by_pull(group, -0.5);

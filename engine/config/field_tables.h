@@ -78,7 +78,7 @@ struct FieldTable<Material> {
             "elastic solid (0) to fluid (1), or keyframes of it over time"},
       Field{"update_threshold", &Material::update_threshold, k_not_negative, "m/s²",
             "mean external acceleration that updates the reference shape, at alpha 0, γ_u",
-            "40 times gravity, never with plastic_yield"},
+            "40 times gravity, never with plastic_yield unless it melts"},
       Field{"plastic_yield", &Material::plastic_yield, k_not_negative, "",
             "strain beyond which matter flows where it is", "nothing flows"},
       Field{"plastic_yield_by_temperature", &Material::plastic_yield_by_temperature, k_not_negative, "",

@@ -29,8 +29,14 @@ double sleep_speed(const Simulation::State& state, const BodyState& body) {
       state.config.sleep_speed.value_or(k_sleep_speed * body.spacing / state.scene_step()));
 }
 
-double sleep_time(const Simulation::State& state) {
-  return static_cast<double>(state.config.sleep_time.value_or(k_sleep_time * state.scene_step()));
+/// Left out, longer than what is thrown up is slow at its highest: in steps much shorter than gravity asks
+/// for bodies fell asleep in the air.
+double sleep_time(const Simulation::State& state, const BodyState& body) {
+  constexpr double k_turning = 3;  // speeds by gravity; two of them is as long as that takes
+  if (state.config.sleep_time) return static_cast<double>(*state.config.sleep_time);
+  const double time = static_cast<double>(k_sleep_time * state.scene_step());
+  const double gravity = static_cast<double>(state.config.gravity.norm());
+  return gravity > 0 ? std::max(time, k_turning * sleep_speed(state, body) / gravity) : time;
 }
 
 /// In the step that begins now.
@@ -191,7 +197,7 @@ void rest_bodies(Simulation::State& state, float time_step) {
     const double speed = sleep_speed(state, *body);
     const bool slow = body->mean_speed < speed && !body->is_heated;
     body->slow_time = slow ? body->slow_time + static_cast<double>(time_step) : 0;
-    if (!(body->slow_time >= sleep_time(state))) continue;
+    if (!(body->slow_time >= sleep_time(state, *body))) continue;
     if (is_kept_awake(state, *body))
       body->slow_time = 0;
     else
@@ -207,7 +213,7 @@ void rest_bodies(Simulation::State& state, float time_step) {
   islands.rests.assign(state.bodies.size(), false);
   for (const BodyState* body : state.awake) islands.rests[root(*body)] = true;
   for (const BodyState* body : state.awake)
-    if (!(body->slow_time >= sleep_time(state))) islands.rests[root(*body)] = false;
+    if (!(body->slow_time >= sleep_time(state, *body))) islands.rests[root(*body)] = false;
   bool any = false;
   for (BodyState& body : state.bodies) {
     if (!body.enabled || !islands.rests[root(body)]) continue;

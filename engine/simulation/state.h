@@ -92,9 +92,16 @@ struct BodyState {
   float most_alpha() const { return is_painted() ? blend.most_alpha : material->alpha; }
   bool keeps_reference() const { return paints_alpha || material->keeps_reference(); }
   bool matches_shape() const { return (is_painted() ? blend.least_alpha : material->alpha) < 1.0f; }
-  /// The paper's rule updates its reference shape: where regions flow, only if it is asked for.
+  /// Its alpha changes, up to where nothing is held: what it rested in before that is not what it rests in
+  /// after.
+  bool melts() const {
+    const Schedule& alpha = material->settings.alpha_by_temperature.value_or(material->settings.alpha);
+    return alpha.highest() > 0.9f && alpha.lowest() < alpha.highest();
+  }
+  /// The paper's rule updates its reference shape: where regions flow, only if it is asked for, or what has
+  /// melted would set in the shape that it had, far from where it is.
   bool follows_threshold() const {
-    return keeps_reference() && (!shape.flows || material->settings.update_threshold.has_value());
+    return keeps_reference() && (!shape.flows || material->settings.update_threshold.has_value() || melts());
   }
   bool moves() const { return enabled && island == 0; }
 };

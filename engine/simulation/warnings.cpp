@@ -92,6 +92,11 @@ class Warnings {
     if (!body.shape.flows) return;
     if (!body.keeps_reference())
       return add(body, "plastic_yield has no effect where alpha is 1: a fluid flows by itself");
+    const Material& material = body.material->settings;
+    if (material.damping_time > state_.longest_step() && !material.plastic_creep)
+      add(body, "damping_time ", material.damping_time, " s is longer than a step, ", state_.longest_step(),
+          " s, and what the damper bears flows at once too: a blow may break it into shards; give "
+          "material.plastic_creep, or lower it");
     if (!body.shape.built) return;
     for (std::size_t j = 0; j < body.shape.region_weight.size(); ++j)
       if (!is_thin(stretched_moment(body.shape, j))) return;

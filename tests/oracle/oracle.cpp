@@ -55,6 +55,14 @@ bool is_always_fluid(const Group& group) {
   return std::all_of(keys.begin(), keys.end(), [](const ScheduleKey& key) { return key.value == 1; });
 }
 
+// What changes its alpha and is once held by nothing.
+bool melts(const Group& group) {
+  const auto& keys = group.material.alpha.keys();
+  const auto less = [](const auto& a, const auto& b) { return a.value < b.value; };
+  const auto [least, most] = std::minmax_element(keys.begin(), keys.end(), less);
+  return most->value > 0.9f && least->value < most->value;
+}
+
 void set_mass_and_rest_density(Group& group, double sigma) {
   const double sum = lattice_sum(group.spacing, sigma);
   const Material& material = group.material;
@@ -346,7 +354,7 @@ std::vector<std::size_t> Oracle::update_references() {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const double threshold = groups_[g].update_threshold * (1 - groups_[g].most_alpha);
     const Material& material = groups_[g].material;
-    const bool follows = !material.plastic_yield || material.update_threshold;
+    const bool follows = !material.plastic_yield || material.update_threshold || melts(groups_[g]);
     if (is_always_fluid(groups_[g]) || !follows || judged_acceleration(g) <= threshold) {
       if (!reframe_is_due(g)) continue;
       reframe(g);

@@ -222,5 +222,20 @@ TEST(sleep, takes_nothing_that_still_creeps) {
   EXPECT_FALSE(lasts({.alpha = 0.0f}));
 }
 
+// In steps far shorter than gravity asks for, a body that falls is slow for many of them.
+TEST(sleep, takes_nothing_in_the_air_however_short_steps_are) {
+  for (const float step : {0.15f, 0.03f, 0.01f})
+    for (const float up : {0.0f, 0.5f}) {
+      SolverConfig config = solver();
+      config.time_step = step;
+      Simulation s(config);
+      Body body = cube(3, {0, 0, 50});
+      body.velocity = {0, 0, up};
+      const BodyId id = s.add_body(body, Material{});
+      s.advance(6);
+      EXPECT_NEAR(s.motion(id).velocity.z(), static_cast<double>(up) - 0.3 * 6, 1e-3) << step << ' ' << up;
+    }
+}
+
 }  // namespace sleep_test
 }  // namespace mallow

@@ -18,7 +18,8 @@ struct Material {
   /// The threshold in force is γ_u (1 − alpha), and what is compared with it the largest mean over one
   /// time_step since the check before; with SolverConfig::update_interval, in steps as long as time_step,
   /// that of the one step before the check, as in the paper. Left out: 40 times gravity, see
-  /// default_update_threshold(), and with plastic_yield never. [TK eq. 14]
+  /// default_update_threshold(), and with plastic_yield never, unless alpha changes and rises above 0.9. [TK
+  /// eq. 14]
   std::optional<float> update_threshold = {};
   /// Strain beyond which a region of shape matching flows where it is, >= 0: |Ê − I|, Ê its elastic stretch
   /// without change of volume. Pulled along one axis it flows from a strain of √1.5 of this, and a stress of
