@@ -13,7 +13,7 @@ std::uint64_t key_of(int x, int y, int z) {
   const auto bits = [](int c) { return static_cast<std::uint64_t>(c + k_bias); };
   return bits(x) << (2 * k_bits) | bits(y) << k_bits | bits(z);
 }
-BlockMap::Coord cube_at(std::uint64_t key) {
+BlockMap::Coord place_of(std::uint64_t key) {
   const auto coordinate = [&](int shift) {
     return static_cast<int>(key >> shift & ((1u << k_bits) - 1)) - k_bias;
   };
@@ -28,6 +28,46 @@ std::uint64_t slab(int first, int last, int stride) {
   for (int p = std::max(first, 0); p <= std::min(last, 3); ++p) bits |= place << (p * stride);
   return bits;
 }
+
+/// Numbers of the blocks of a cube and of those next to it.
+class Surroundings {
+ public:
+  Surroundings() { std::fill_n(&numbers_[0][0][0], k_side * k_side * k_side, k_no_block); }
+
+  /// The blocks of the cube that is `offset` cubes away (each of −1, 0, 1), as far as they are next to this
+  /// one. first: number of the first of them.
+  void add(const BlockMap::Coord& offset, std::uint64_t blocks, std::uint32_t first) {
+    const Span x = span_of(offset.x()), y = span_of(offset.y()), z = span_of(offset.z());
+    for (int i = x.first; i <= x.last; ++i) {
+      for (int j = y.first; j <= y.last; ++j) {
+        const int row = i << 4 | j << 2 | z.first;
+        const std::uint64_t before = blocks & ((std::uint64_t{1} << row) - 1);
+        std::uint32_t number = first + static_cast<std::uint32_t>(std::popcount(before));
+        std::uint32_t* const to = numbers_[i + x.shift][j + y.shift] + z.first + z.shift;
+        for (int k = 0; k <= z.last - z.first; ++k)
+          if (blocks >> (row + k) & 1) to[k] = number++;
+      }
+    }
+  }
+  /// block: its bit in the cube.
+  void copy_around(int block, std::uint32_t* to) const {
+    const int x = block >> 4, y = block >> 2 & 3, z = block & 3;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j, to += 3) std::copy_n(numbers_[x + i][y + j] + z, 3, to);
+  }
+
+ private:
+  static constexpr int k_side = BlockMap::k_cube_side + 2;
+  /// Places along an axis of the cube `offset` away, and what they are shifted by in the table.
+  struct Span {
+    int first, last, shift;
+  };
+  static Span span_of(int offset) {
+    constexpr int k_last = BlockMap::k_cube_side - 1;
+    return {offset < 0 ? k_last : 0, offset > 0 ? 0 : k_last, 1 + offset * BlockMap::k_cube_side};
+  }
+  std::uint32_t numbers_[k_side][k_side][k_side];
+};
 
 }  // namespace
 
@@ -86,38 +126,30 @@ void BlockMap::number() {
     c.first = static_cast<std::uint32_t>(blocks_.size());
     for (std::uint64_t left = c.blocks; left != 0; left &= left - 1) {
       const int bit = std::countr_zero(left);
-      blocks_.push_back(k_cube_side * cube_at(key) + Coord(bit >> 4, bit >> 2 & 3, bit & 3));
+      blocks_.push_back(k_cube_side * place_of(key) + Coord(bit >> 4, bit >> 2 & 3, bit & 3));
     }
   }
 }
 
-const BlockMap::Cube& BlockMap::cube_of(const Coord& block) const {
-  return cubes_[slot_of(key_of(block.x() >> 2, block.y() >> 2, block.z() >> 2))];
+const BlockMap::Cube& BlockMap::cube_at(const Coord& place) const {
+  return cubes_[slot_of(key_of(place.x(), place.y(), place.z()))];
 }
 
-std::uint32_t BlockMap::number_in(const Cube& cube, const Coord& block) {
-  const int bit = (block.x() & 3) << 4 | (block.y() & 3) << 2 | (block.z() & 3);
-  if (!(cube.blocks >> bit & 1)) return k_no_block;
-  const std::uint64_t before = cube.blocks & ((std::uint64_t{1} << bit) - 1);
-  return cube.first + static_cast<std::uint32_t>(std::popcount(before));
-}
-
-std::array<std::uint32_t, 27> BlockMap::find_around(const Coord& block) const {
-  std::array<std::uint32_t, 27> around;
-  around.fill(k_no_block);
-  if (cubes_.empty()) return around;
-  std::size_t to = 0;
+void BlockMap::find_around(std::size_t cube, std::span<std::array<std::uint32_t, 27>> around) const {
+  Surroundings numbers;
+  const Coord place = place_of(keys_[cube]);
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
-      const Cube* cube = nullptr;
-      for (int z = -1; z <= 1; ++z, ++to) {
-        const Coord at = block + Coord(x, y, z);
-        if (!cube || at.z() % k_cube_side == 0) cube = &cube_of(at);
-        around[to] = number_in(*cube, at);
+      for (int z = -1; z <= 1; ++z) {
+        const Cube& from = cube_at(place + Coord(x, y, z));
+        if (from.blocks != 0) numbers.add({x, y, z}, from.blocks, from.first);
       }
     }
   }
-  return around;
+  const Cube& here = cube_at(place);
+  std::uint32_t number = here.first;
+  for (std::uint64_t left = here.blocks; left != 0; left &= left - 1, ++number)
+    numbers.copy_around(std::countr_zero(left), around[number].data());
 }
 
 std::size_t BlockMap::bytes() const {

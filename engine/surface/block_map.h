@@ -26,8 +26,11 @@ class BlockMap {
   void insert(const Coord& block) { insert(block, block); }
   /// Numbers the blocks and lists them.
   void number();
-  /// The numbers of the 27 blocks around a block, itself included, x slowest.
-  std::array<std::uint32_t, 27> find_around(const Coord& block) const;
+  /// Cubes there are, in the order of their blocks.
+  std::size_t cubes() const { return keys_.size(); }
+  /// The numbers of the 27 blocks around a block, itself included, x slowest, for each block of a cube.
+  /// around: by block, of all that are numbered.
+  void find_around(std::size_t cube, std::span<std::array<std::uint32_t, 27>> around) const;
   /// Blocks there are, numbered or not.
   std::size_t size() const { return size_; }
   std::span<const Coord> blocks() const { return blocks_; }
@@ -42,8 +45,7 @@ class BlockMap {
   };
 
   std::size_t slot_of(std::uint64_t key) const;
-  const Cube& cube_of(const Coord& block) const;
-  static std::uint32_t number_in(const Cube& cube, const Coord& block);
+  const Cube& cube_at(const Coord& place) const;
   Cube& cube(std::uint64_t key);
 
   std::vector<Cube> cubes_;  ///< open addressing; a power of two, at most half full

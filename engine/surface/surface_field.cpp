@@ -26,6 +26,7 @@ constexpr double k_node_distance = 0.2;
 /// Probes are at most this far apart, in spacings: less than a sphere is wide at the default particle radius
 /// and at most what three voxels of background bridge.
 constexpr double k_probe_distance = 0.75;
+constexpr std::size_t k_cubes_at_once = 4;
 /// Bytes of a block that the surface passes through: distances, sums, neighbours, mesh.
 constexpr double k_block_bytes = 8192, k_gibibyte = 1 << 30;
 
@@ -71,9 +72,12 @@ int step_within(double distance) {
 void find_neighbors(const BlockMap& blocks, const Threads& threads,
                     std::vector<std::array<std::uint32_t, 27>>& neighbors) {
   neighbors.resize(blocks.size());
-  parallel_for(threads, blocks.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) neighbors[b] = blocks.find_around(blocks.blocks()[b]);
-  });
+  parallel_for(
+      threads, blocks.cubes(),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) blocks.find_around(c, neighbors);
+      },
+      k_cubes_at_once);
 }
 
 [[noreturn]] void refuse_memory(double blocks, const VoxelFrame& frame, const SurfaceConfig& config) {
