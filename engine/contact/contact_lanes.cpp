@@ -16,13 +16,6 @@ constexpr float k_correction = 0.3f, k_slop = 0.02f;
 /// Gap up to which what sticks is held, in d0.
 constexpr float k_sticking = 0.1f;
 
-constexpr Ints k_count = {0, 1, 2, 3, 4, 5, 6, 7};
-
-/// Of the mask the bits of the first `count` lanes.
-MALLOW_INLINE unsigned bits_of(const Ints& mask, std::size_t count) {
-  return bits(mask) & ((1u << (count < k_cluster ? count : k_cluster)) - 1);
-}
-
 std::size_t in_boxes(const ConstVectors& of, std::size_t begin, std::size_t end, const LaneBox* boxes,
                      std::size_t box_count, std::uint32_t* out) noexcept {
   const std::uint32_t* const start = out;

@@ -19,6 +19,9 @@ using Ints = int __attribute__((vector_size(k_cluster * sizeof(int))));
 using ClusterVec3 = Vec3Of<Floats>;
 using Quad = float __attribute__((vector_size(16)));
 
+/// Numbers of the lanes.
+constexpr Ints k_count = {0, 1, 2, 3, 4, 5, 6, 7};
+
 MALLOW_INLINE Floats load(const float* from) {
   Floats value;
   __builtin_memcpy(&value, from, sizeof value);
@@ -93,6 +96,15 @@ MALLOW_INLINE Floats smaller(const Floats& a, const Floats& b) {
   return a < b ? a : b;
 #endif
 }
+/// The smallest of eight values in every lane.
+MALLOW_INLINE Floats smallest(Floats v) {
+  const Floats by_four = __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
+  v = smaller(v, by_four);
+  const Floats by_two = __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5);
+  v = smaller(v, by_two);
+  const Floats by_one = __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6);
+  return smaller(v, by_one);
+}
 /// Where a number is larger than another.
 MALLOW_INLINE Ints is_larger(const Floats& a, const Floats& b) {
 #if defined(__SSE__) && !defined(__AVX__)
@@ -143,6 +155,10 @@ MALLOW_INLINE unsigned bits(const Ints& mask) {
   for (std::size_t l = 0; l < k_cluster; ++l) result |= (mask[l] != 0 ? 1u : 0u) << l;
   return result;
 #endif
+}
+/// Of the mask the bits of the first `count` lanes.
+MALLOW_INLINE unsigned bits_of(const Ints& mask, std::size_t count) {
+  return bits(mask) & ((1u << (count < k_cluster ? count : k_cluster)) - 1);
 }
 /// Whether the mask is set in any lane.
 MALLOW_INLINE bool any(const Ints& mask) {

@@ -10,18 +10,6 @@ namespace {
 /// pairs are taken one by one.
 constexpr float k_rounding = 1e-5f;
 
-constexpr Ints k_count = {0, 1, 2, 3, 4, 5, 6, 7};
-
-/// The smallest of eight values in every lane.
-MALLOW_INLINE Floats smallest(Floats v) {
-  const Floats by_four = __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
-  v = smaller(v, by_four);
-  const Floats by_two = __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5);
-  v = smaller(v, by_two);
-  const Floats by_one = __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6);
-  return smaller(v, by_one);
-}
-
 Bounds box_of(const SearchInput& in, std::size_t cluster) noexcept {
   const std::size_t first = in.cluster_start[cluster];
   const Ints in_cluster = k_count < static_cast<int>(in.cluster_start[cluster + 1] - first);
@@ -117,11 +105,6 @@ std::size_t find_ranges(const SearchInput& in, const Bounds& box, PlaceRange* ra
     }
   }
   return count;
-}
-
-/// Of the mask the bits of the first `count` lanes.
-MALLOW_INLINE unsigned bits_of(const Ints& mask, std::size_t count) {
-  return bits(mask) & ((1u << (count < k_cluster ? count : k_cluster)) - 1);
 }
 
 std::size_t near_cluster(const SearchInput& in, const Bounds& box, const PlaceRange* ranges,

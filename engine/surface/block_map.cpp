@@ -6,6 +6,7 @@
 namespace mallow {
 namespace {
 
+constexpr std::uint32_t k_no_group = UINT32_MAX;
 constexpr int k_bits = 19, k_bias = 1 << (k_bits - 1);
 
 /// Coordinates of cubes, ordered like the keys: x slowest.
@@ -76,6 +77,8 @@ void BlockMap::clear() {
   used_ = size_ = 0;
   keys_.clear();
   blocks_.clear();
+  groups_.clear();
+  group_of_.clear();
 }
 
 std::size_t BlockMap::slot_of(std::uint64_t key) const {
@@ -121,14 +124,35 @@ void BlockMap::insert(const Coord& first, const Coord& last) {
 void BlockMap::number() {
   std::sort(keys_.begin(), keys_.end());
   blocks_.clear();
+  groups_.clear();
+  group_of_.clear();
   for (const std::uint64_t key : keys_) {
     Cube& c = cubes_[slot_of(key)];
     c.first = static_cast<std::uint32_t>(blocks_.size());
+    const Coord first = k_cube_side * place_of(key);
+    std::array<std::uint32_t, 8> in_cube;
+    in_cube.fill(k_no_group);
     for (std::uint64_t left = c.blocks; left != 0; left &= left - 1) {
       const int bit = std::countr_zero(left);
-      blocks_.push_back(k_cube_side * place_of(key) + Coord(bit >> 4, bit >> 2 & 3, bit & 3));
+      const Coord place(bit >> 4, bit >> 2 & 3, bit & 3);
+      add_to_group(first, place, in_cube);
+      blocks_.push_back(first + place);
     }
   }
+}
+
+/// The block that is numbered next. in_cube: the groups of its cube so far.
+void BlockMap::add_to_group(const Coord& cube, const Coord& place, std::array<std::uint32_t, 8>& in_cube) {
+  const auto number = [](int x, int y, int z) { return static_cast<std::size_t>(x << 2 | y << 1 | z); };
+  std::uint32_t& group = in_cube[number(place.x() >> 1, place.y() >> 1, place.z() >> 1)];
+  if (group == k_no_group) {
+    group = static_cast<std::uint32_t>(groups_.size());
+    groups_.push_back({cube + Coord(place.x() & 2, place.y() & 2, place.z() & 2), {}});
+    groups_.back().blocks.fill(k_no_block);
+  }
+  groups_[group].blocks[number(place.x() & 1, place.y() & 1, place.z() & 1)] =
+      static_cast<std::uint32_t>(blocks_.size());
+  group_of_.push_back(group);
 }
 
 const BlockMap::Cube& BlockMap::cube_at(const Coord& place) const {
@@ -154,7 +178,8 @@ void BlockMap::find_around(std::size_t cube, std::span<std::array<std::uint32_t,
 
 std::size_t BlockMap::bytes() const {
   return cubes_.capacity() * sizeof(Cube) + keys_.capacity() * sizeof(std::uint64_t) +
-         blocks_.capacity() * sizeof(Coord);
+         blocks_.capacity() * sizeof(Coord) + groups_.capacity() * sizeof(Group) +
+         group_of_.capacity() * sizeof(std::uint32_t);
 }
 
 }  // namespace mallow

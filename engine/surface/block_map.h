@@ -19,6 +19,11 @@ class BlockMap {
  public:
   using Coord = Eigen::Vector3i;
   static constexpr int k_cube_side = 4;
+  /// Those of 2 × 2 × 2 places, x slowest, of a cube; k_no_block where none is.
+  struct Group {
+    Coord first;  ///< place
+    std::array<std::uint32_t, 8> blocks;
+  };
 
   void clear();
   /// All blocks of a box, its corners included. Numbers hold until the next insert.
@@ -34,6 +39,9 @@ class BlockMap {
   /// Blocks there are, numbered or not.
   std::size_t size() const { return size_; }
   std::span<const Coord> blocks() const { return blocks_; }
+  /// Each with a block at least.
+  std::span<const Group> groups() const { return groups_; }
+  std::uint32_t group_of(std::uint32_t block) const { return group_of_[block]; }
   std::size_t bytes() const;
 
  private:
@@ -47,11 +55,14 @@ class BlockMap {
   std::size_t slot_of(std::uint64_t key) const;
   const Cube& cube_at(const Coord& place) const;
   Cube& cube(std::uint64_t key);
+  void add_to_group(const Coord& cube, const Coord& place, std::array<std::uint32_t, 8>& in_cube);
 
   std::vector<Cube> cubes_;  ///< open addressing; a power of two, at most half full
   std::size_t used_ = 0, size_ = 0;
   std::vector<std::uint64_t> keys_;
   std::vector<Coord> blocks_;
+  std::vector<Group> groups_;
+  std::vector<std::uint32_t> group_of_;
 };
 
 }  // namespace mallow

@@ -20,6 +20,15 @@ const SearchLanes& search() {
   return MALLOW_SELECT(level, search_lanes);
 }
 
+Bounds box_at(const Eigen::Vector3d& corner, double side) {
+  Bounds box;
+  for (int a = 0; a < 3; ++a) {
+    box.low[a] = static_cast<float>(corner[a]);
+    box.high[a] = static_cast<float>(corner[a] + side);
+  }
+  return box;
+}
+
 }  // namespace
 
 void ParticleCells::sort(const PickedVectors& positions, float spacing, float radius,
@@ -114,12 +123,19 @@ void ParticleCells::order_by_number(NearParticles& near) const {
 }
 
 void ParticleCells::find_near(const Eigen::Vector3d& corner, double side, NearParticles& near) const {
-  Bounds box;
+  find_near(box_at(corner, side), corner, near);
+}
+
+void ParticleCells::find_places_near(const Eigen::Vector3d& corner, double side, NearParticles& near) const {
+  find_places(box_at(corner, side), near);
+}
+
+void ParticleCells::positions(std::span<const std::uint32_t> places, std::vector<float>* axes) const {
+  const float* const from[3] = {grid_.sorted.x(), grid_.sorted.y(), grid_.sorted.z()};
   for (int a = 0; a < 3; ++a) {
-    box.low[a] = static_cast<float>(corner[a]);
-    box.high[a] = static_cast<float>(corner[a] + side);
+    axes[a].resize(std::max(axes[a].size(), places.size() + k_cluster));
+    for (std::size_t k = 0; k < places.size(); ++k) axes[a][k] = from[a][places[k]];
   }
-  find_near(box, corner, near);
 }
 
 void ParticleCells::find_near_cluster(std::size_t c, Eigen::Vector3d& corner, NearParticles& near) const {
@@ -128,7 +144,7 @@ void ParticleCells::find_near_cluster(std::size_t c, Eigen::Vector3d& corner, Ne
   find_near(box, corner, near);
 }
 
-void ParticleCells::find_near(const Bounds& box, const Eigen::Vector3d& corner, NearParticles& near) const {
+void ParticleCells::find_places(const Bounds& box, NearParticles& near) const {
   const SearchInput input = search_input(grid_, radius_);
   near.ranges.resize(std::max(near.ranges.size(), grid_.pillars() + 1));
   const std::size_t ranges = search().find_ranges(input, box, near.ranges.data());
@@ -137,6 +153,10 @@ void ParticleCells::find_near(const Bounds& box, const Eigen::Vector3d& corner, 
   near.places.resize(std::max(near.places.size(), most + k_cluster));
   near.count = search().near_cluster(input, box, near.ranges.data(), ranges, near.places.data());
   order_by_number(near);
+}
+
+void ParticleCells::find_near(const Bounds& box, const Eigen::Vector3d& corner, NearParticles& near) const {
+  find_places(box, near);
   for (std::vector<float>* axis : {&near.x, &near.y, &near.z})
     axis->resize(std::max(axis->size(), near.count));
   const double per_radius = 1 / static_cast<double>(radius_);

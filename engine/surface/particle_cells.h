@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/column.h"
@@ -33,6 +34,7 @@ class ParticleCells {
   /// The same particles elsewhere, and sorted anew. positions: by place.
   void move(VectorColumn& positions, const Threads& threads);
 
+  float radius() const { return radius_; }  ///< [m]
   std::size_t count() const { return grid_.order.size(); }
   Vec3 position(std::size_t place) const { return grid_.sorted.get(place); }
   /// Number of a particle as it was given to sort().
@@ -44,6 +46,10 @@ class ParticleCells {
   std::uint32_t place_before_move(std::size_t place) const { return grid_.order[place]; }
 
   void find_near(const Eigen::Vector3d& corner, double side, NearParticles& near) const;
+  /// The same without offsets from the corner.
+  void find_places_near(const Eigen::Vector3d& corner, double side, NearParticles& near) const;
+  /// Positions of particles by their places [m]; x, y and z with room for k_cluster more.
+  void positions(std::span<const std::uint32_t> places, std::vector<float>* axes) const;
 
   /// Clusters of up to eight particles that follow each other, near each other.
   std::size_t clusters() const { return grid_.clusters(); }
@@ -60,6 +66,7 @@ class ParticleCells {
   bool thin_crowds();
   void sort_into_cells(const Threads& threads);
   void order_by_number(NearParticles& near) const;
+  void find_places(const Bounds& box, NearParticles& near) const;
   void find_near(const Bounds& box, const Eigen::Vector3d& corner, NearParticles& near) const;
 
   float radius_ = 0;

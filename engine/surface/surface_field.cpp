@@ -26,7 +26,7 @@ constexpr double k_node_distance = 0.2;
 /// Probes are at most this far apart, in spacings: less than a sphere is wide at the default particle radius
 /// and at most what three voxels of background bridge.
 constexpr double k_probe_distance = 0.75;
-constexpr std::size_t k_cubes_at_once = 4;
+constexpr std::size_t k_cubes_at_once = 4, k_groups_at_once = 2;
 /// Bytes of a block that the surface passes through: distances, sums, neighbours, mesh.
 constexpr double k_block_bytes = 8192, k_gibibyte = 1 << 30;
 
@@ -134,10 +134,11 @@ void SurfaceField::build(const PickedVectors& positions, float spacing, const Su
   if (config.kind == SurfaceKind::anisotropic) {
     const AnisotropyModel model(config.kernel_radius, config.particle_radius);
     shape_.threshold = static_cast<float>(std::pow(model.threshold, 0.25));
-    ellipsoids_.fit(model, radius_, threads, particles_);
+    particles_.shape(model, threads);
   }
   find_blocks(reach, config);
   find_neighbors(blocks_, threads, neighbors_);
+  particles_.find_near(blocks_, frame_, threads);
   probe(threads);
   classify(threads);
   if (node_step_ > 1) sum_at_nodes(threads);
@@ -147,6 +148,7 @@ void SurfaceField::build(const PickedVectors& positions, float spacing, const Su
 /// Every block with a voxel within `reach` voxels of a particle, and some more; all else is outside.
 void SurfaceField::find_blocks(double reach, const SurfaceConfig& config) {
   const double most = static_cast<double>(config.memory_limit) * k_gibibyte / k_block_bytes;
+  const ParticleCells& particles = particles_.cells();
   // Particles come sorted, so that those of a block follow each other, in a few runs: a box for each run.
   blocks_.clear();
   const auto insert_around = [&](const Eigen::Array3d& low, const Eigen::Array3d& high) {
@@ -158,14 +160,14 @@ void SurfaceField::find_blocks(double reach, const SurfaceConfig& config) {
       refuse_memory(static_cast<double>(blocks_.size()), frame_, config);
   };
   const auto in_voxels = [&](std::size_t place) -> Eigen::Vector3d {
-    return (particles_.position(place).cast<double>() - frame_.origin) / frame_.voxel_size;
+    return (particles.position(place).cast<double>() - frame_.origin) / frame_.voxel_size;
   };
   const auto block_of = [](const Eigen::Vector3d& voxel) -> BlockMap::Coord {
     return (voxel / k_block_side).array().floor().cast<int>();
   };
   Eigen::Vector3d low = in_voxels(0), high = low;
   BlockMap::Coord block = block_of(low);
-  for (std::size_t i = 1; i < particles_.count(); ++i) {
+  for (std::size_t i = 1; i < particles.count(); ++i) {
     const Eigen::Vector3d x = in_voxels(i);
     if (const BlockMap::Coord here = block_of(x); here != block) {
       insert_around(low, high);
@@ -179,86 +181,83 @@ void SurfaceField::find_blocks(double reach, const SurfaceConfig& config) {
   blocks_.number();
 }
 
-void SurfaceField::find_near(std::uint32_t block, Near& near) const {
-  const Eigen::Vector3d corner =
-      frame_.origin + frame_.voxel_size * k_block_side * blocks_.blocks()[block].cast<double>();
-  particles_.find_near(corner, frame_.voxel_size * (k_block_side - 1), near);
-  if (surface_kind_ == SurfaceKind::anisotropic) drop_out_of_reach(near);
+/// Calls visit(block, near) for the blocks that are needed, with the particles near each.
+template <class Needed, class Visit>
+void SurfaceField::for_each_block(const Threads& threads, const Needed& needed, const Visit& visit) const {
+  const auto groups = blocks_.groups();
+  parallel_for(
+      threads, groups.size(),
+      [&](std::size_t begin, std::size_t end) {
+        thread_local BlockNear near;
+        for (std::size_t g = begin; g < end; ++g) {
+          bool loaded = false;
+          for (const std::uint32_t block : groups[g].blocks) {
+            if (block == k_no_block || !needed(block)) continue;
+            if (!loaded) particles_.load_group(static_cast<std::uint32_t>(g), near);
+            loaded = true;
+            particles_.pick(blocks_, frame_, block, near);
+            visit(block, near);
+          }
+        }
+      },
+      k_groups_at_once);
 }
 
-/// Leaves the particles whose own kernels reach into the block, with these kernels.
-void SurfaceField::drop_out_of_reach(Near& near) const {
-  const float side = static_cast<float>(k_block_side - 1) * shape_.voxel_size;
-  near.shapes.resize(std::max(near.shapes.size(), near.count));
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < near.count; ++k) {
-    const Ellipsoid& shape = ellipsoids_.shapes()[near.places[k]];
-    const float x[3] = {near.x[k], near.y[k], near.z[k]};
-    bool reaches = true;
-    for (int a = 0; a < 3; ++a)
-      reaches = reaches && x[a] + shape.reach[a] >= 0 && x[a] - shape.reach[a] <= side;
-    if (!reaches) continue;
-    near.places[kept] = near.places[k];
-    near.x[kept] = x[0];
-    near.y[kept] = x[1];
-    near.z[kept] = x[2];
-    near.shapes[kept++] = shape;
-  }
-  near.count = kept;
+/// The particles near one block, until the next call.
+BlockNear& SurfaceField::near_block(std::uint32_t block) const {
+  thread_local BlockNear near;
+  particles_.load_group(blocks_.group_of(block), near);
+  particles_.pick(blocks_, frame_, block, near);
+  return near;
 }
 
 /// Distances at points about a block. sums: room for k_sums of each.
-void SurfaceField::find_distances(const VoxelLattice& points, const Near& near, float* sums,
+void SurfaceField::find_distances(const PointLattice& points, BlockNear& near, float* sums,
                                   float* distances) const {
-  const std::size_t n = points.x.size();
+  const SumLanes& sum = best_sum_lanes();
+  const SurfaceLanes& surface = best_surface_lanes();
+  const float farthest = shape_.offset + shape_.background * shape_.voxel_size;
   switch (surface_kind_) {
     case SurfaceKind::blended:
-      best_surface_lanes().sum_at_points(points.points(), n, near.positions(), near.count, sums);
-      best_surface_lanes().distances(shape_, sums, n, distances);
+      sum.sum(points, near.columns(), sums);
+      surface.distances(shape_, sums, points.count(), distances);
       break;
     case SurfaceKind::anisotropic:
-      best_surface_lanes().density_at_points(points.points(), n, near.positions(), near.shapes.data(),
-                                             near.count, sums);
-      best_surface_lanes().density_distances(shape_, sums, n, distances);
+      sum.density(points, near.columns(), near.shapes.data(), near.reaches(), sums);
+      surface.density_distances(shape_, sums, points.count(), distances);
       break;
     case SurfaceKind::spheres:
-      best_surface_lanes().sphere_distances(shape_, points.points(), n, near.positions(), near.count,
-                                            distances);
+      sum.nearest(points, near.columns(), farthest * farthest, sums);
+      surface.sphere_distances(shape_, sums, points.count(), distances);
       break;
   }
 }
 
 /// Distances at the nodes of the probes' lattice in every block.
 void SurfaceField::probe(const Threads& threads) {
-  const std::size_t n = lattice_count(probe_step_);
-  const VoxelLattice points(probe_step_, shape_.voxel_size);
+  const PointLattice points = lattice(probe_step_);
+  const std::size_t n = points.count();
   probes_.resize(n * blocks_.size());
   const bool keep = node_step_ == probe_step_ && node_step_ > 1;
   if (keep) node_sums_.resize(k_sums * n * blocks_.size());
-  parallel_for(
-      threads, blocks_.size(),
-      [&](std::size_t begin, std::size_t end) {
-        thread_local Near near;
-        thread_local std::vector<float> scratch;
-        scratch.resize(k_sums * n);
-        for (std::size_t b = begin; b < end; ++b) {
-          find_near(static_cast<std::uint32_t>(b), near);
-          float* const distances = probes_.data() + n * b;
-          find_distances(points, near, keep ? node_sums_.data() + k_sums * n * b : scratch.data(), distances);
-          // Far from it, the density overestimates distances: only where there is none is outside for
-          // certain.
-          if (surface_kind_ == SurfaceKind::anisotropic && near.count > 0)
-            for (std::size_t k = 0; k < n; ++k) distances[k] = std::min(distances[k], 0.5f * k_background);
-        }
-      },
-      k_blocks_at_once);
+  for_each_block(
+      threads, [](std::uint32_t) { return true; },
+      [&](std::uint32_t b, BlockNear& near) {
+        float scratch[k_sums * k_block_voxels];
+        float* const distances = probes_.data() + n * b;
+        find_distances(points, near, keep ? node_sums_.data() + k_sums * n * b : scratch, distances);
+        // Far from it, the density overestimates distances: only where there is none is outside for
+        // certain.
+        if (surface_kind_ == SurfaceKind::anisotropic && near.count > 0)
+          for (std::size_t k = 0; k < n; ++k) distances[k] = std::min(distances[k], 0.5f * k_background);
+      });
 }
 
 /// Whether the probes in and around a block leave open that the surface is in it; `kind` says where it is
 /// otherwise.
 bool SurfaceField::cuts(std::uint32_t block, BlockKind& kind) const {
   const int side = k_block_side / probe_step_;
-  const std::size_t n = lattice_count(probe_step_);
+  const std::size_t n = lattice(probe_step_).count();
   bool outside = true, inside = true;
   for (int x = 0; x <= side; ++x) {
     for (int y = 0; y <= side; ++y) {
@@ -303,7 +302,7 @@ void SurfaceField::classify(const Threads& threads) {
 
 /// Sums at the nodes of all blocks that interpolation reads.
 void SurfaceField::sum_at_nodes(const Threads& threads) {
-  const std::size_t n = lattice_count(node_step_);
+  const std::size_t n = lattice(node_step_).count();
   node_place_.resize(blocks_.size());
   if (node_step_ == probe_step_) {
     for (std::size_t b = 0; b < blocks_.size(); ++b) node_place_[b] = k_sums * n * b;
@@ -324,25 +323,17 @@ void SurfaceField::sum_at_nodes(const Threads& threads) {
     if (needs_nodes_[b]) stored += k_sums * n;
   }
   node_sums_.resize(stored);
-  const VoxelLattice points(node_step_, shape_.voxel_size);
-  parallel_for(
-      threads, blocks_.size(),
-      [&](std::size_t begin, std::size_t end) {
-        thread_local Near near;
-        for (std::size_t b = begin; b < end; ++b) {
-          if (!needs_nodes_[b]) continue;
-          find_near(static_cast<std::uint32_t>(b), near);
-          best_surface_lanes().sum_at_points(points.points(), n, near.positions(), near.count,
-                                             node_sums_.data() + node_place_[b]);
-        }
-      },
-      k_blocks_at_once);
+  for_each_block(
+      threads, [&](std::uint32_t b) { return needs_nodes_[b] != 0; },
+      [&](std::uint32_t b, BlockNear& near) {
+        best_sum_lanes().sum(lattice(node_step_), near.columns(), node_sums_.data() + node_place_[b]);
+      });
 }
 
 /// The sums at the 5 × 5 × 5 nodes in and around a block, as fill_block takes them.
 void SurfaceField::collect_nodes(std::uint32_t block, float* nodes) const {
   const int side = k_block_side / node_step_, before = node_step_ == 4 ? 1 : 0;
-  const std::size_t n = lattice_count(node_step_);
+  const std::size_t n = lattice(node_step_).count();
   constexpr std::size_t k_all = k_nodes * k_nodes * k_nodes;
   static constexpr float k_none[k_sums * k_block_voxels / 8] = {};  // of blocks that no particle reaches
   const float* sums[27];
@@ -373,22 +364,23 @@ void SurfaceField::collect_nodes(std::uint32_t block, float* nodes) const {
 }
 
 void SurfaceField::fill(const Threads& threads) {
-  const VoxelLattice points(1, shape_.voxel_size);
+  const auto to = [&](std::uint32_t b) { return distances_.data() + place_[b]; };
+  const auto cut = [&](std::uint32_t b) { return kind_[b] == BlockKind::surface; };
+  if (node_step_ == 1) {
+    for_each_block(threads, cut, [&](std::uint32_t b, BlockNear& near) {
+      float sums[k_sums * k_block_voxels];
+      find_distances(lattice(1), near, sums, to(b));
+    });
+    return;
+  }
   parallel_for(
       threads, blocks_.size(),
       [&](std::size_t begin, std::size_t end) {
-        thread_local Near near;
-        float sums[k_sums * k_block_voxels];
-        for (std::size_t b = begin; b < end; ++b) {
-          if (kind_[b] != BlockKind::surface) continue;
-          float* const to = distances_.data() + place_[b];
-          if (node_step_ > 1) {
-            collect_nodes(static_cast<std::uint32_t>(b), sums);
-            best_surface_lanes().fill_block(shape_, weights_, sums, to);
-            continue;
-          }
-          find_near(static_cast<std::uint32_t>(b), near);
-          find_distances(points, near, sums, to);
+        float sums[k_sums * k_nodes * k_nodes * k_nodes];
+        for (auto b = static_cast<std::uint32_t>(begin); b < end; ++b) {
+          if (!cut(b)) continue;
+          collect_nodes(b, sums);
+          best_surface_lanes().fill_block(shape_, weights_, sums, to(b));
         }
       },
       k_blocks_at_once);
@@ -396,20 +388,18 @@ void SurfaceField::fill(const Threads& threads) {
 
 void SurfaceField::mean_at(std::uint32_t block, ConstVectors points, std::size_t n,
                            const PickedVectors& values, Vectors means) const {
-  thread_local Near near;
-  find_near(block, near);
   mean_at(
-      near, points, n, [&](std::size_t particle) { return values[particle]; }, means);
+      near_block(block), points, n, [&](std::size_t particle) { return values[particle]; }, means);
 }
 
 void SurfaceField::body_at(std::uint32_t block, ConstVectors points, std::size_t n,
                            std::span<const std::uint32_t> bodies, std::span<std::uint32_t> found) const {
-  thread_local Near near;
+  BlockNear& near = near_block(block);
   thread_local std::vector<std::uint32_t> here;  // the bodies near the block, ascending
   thread_local std::vector<float> largest, shares[3];
-  find_near(block, near);
   here.clear();
-  for (std::size_t k = 0; k < near.count; ++k) here.push_back(bodies[particles_.particle(near.places[k])]);
+  for (std::size_t k = 0; k < near.count; ++k)
+    here.push_back(bodies[particles_.cells().particle(near.places[k])]);
   std::sort(here.begin(), here.end());
   here.erase(std::unique(here.begin(), here.end()), here.end());
 
@@ -437,7 +427,7 @@ void SurfaceField::body_at(std::uint32_t block, ConstVectors points, std::size_t
 }
 
 template <class Value>
-void SurfaceField::mean_at(const Near& near, ConstVectors points, std::size_t n, const Value& value,
+void SurfaceField::mean_at(BlockNear& near, ConstVectors points, std::size_t n, const Value& value,
                            Vectors means) const {
   thread_local std::vector<float> scaled[3], near_values[3];
   const float* const from[3] = {points.x, points.y, points.z};
@@ -447,17 +437,17 @@ void SurfaceField::mean_at(const Near& near, ConstVectors points, std::size_t n,
     near_values[a].resize(near.count);
   }
   for (std::size_t k = 0; k < near.count; ++k) {
-    const Vec3 of_particle = value(particles_.particle(near.places[k]));
+    const Vec3 of_particle = value(particles_.cells().particle(near.places[k]));
     for (std::size_t a = 0; a < 3; ++a) near_values[a][k] = of_particle[static_cast<Eigen::Index>(a)];
   }
   const auto raw = [](const std::vector<float>(&axes)[3]) {
     return ConstVectors{axes[0].data(), axes[1].data(), axes[2].data()};
   };
-  best_surface_lanes().mean_at_points(raw(scaled), n, near.positions(), raw(near_values), near.count, means);
+  best_sum_lanes().mean(raw(scaled), n, near.columns(), raw(near_values), means);
 }
 
 std::size_t SurfaceField::bytes() const {
-  return particles_.bytes() + ellipsoids_.bytes() + blocks_.bytes() + distances_.bytes() +
+  return particles_.bytes() + blocks_.bytes() + distances_.bytes() +
          neighbors_.capacity() * sizeof neighbors_[0] +
          (probes_.capacity() + node_sums_.capacity()) * sizeof(float) +
          (place_.capacity() + node_place_.capacity()) * sizeof(std::size_t) + kind_.capacity() +

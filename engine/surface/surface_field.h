@@ -9,12 +9,11 @@
 #include "core/threads.h"
 #include "mallow/surface_config.h"
 #include "surface/block_map.h"
-#include "surface/ellipsoids.h"
-#include "surface/particle_cells.h"
+#include "surface/block_particles.h"
+#include "surface/node_weights.h"
 #include "surface/picked_vectors.h"
 #include "surface/surface_lanes.h"
 #include "surface/voxel_frame.h"
-#include "surface/voxel_lattice.h"
 
 namespace mallow {
 
@@ -62,17 +61,14 @@ class SurfaceField {
   static constexpr float k_background = 3.0f;
 
  private:
-  /// The particles near a block, and their kernels where each has its own.
-  struct Near : NearParticles {
-    std::vector<Ellipsoid> shapes;
-  };
-
   void find_blocks(double reach, const SurfaceConfig& config);
-  void find_near(std::uint32_t block, Near& near) const;
+  template <class Needed, class Visit>
+  void for_each_block(const Threads& threads, const Needed& needed, const Visit& visit) const;
+  BlockNear& near_block(std::uint32_t block) const;
   template <class Value>
-  void mean_at(const Near& near, ConstVectors points, std::size_t n, const Value& value, Vectors means) const;
-  void drop_out_of_reach(Near& near) const;
-  void find_distances(const VoxelLattice& points, const Near& near, float* sums, float* distances) const;
+  void mean_at(BlockNear& near, ConstVectors points, std::size_t n, const Value& value, Vectors means) const;
+  PointLattice lattice(int step) const { return {.step = step, .voxel = shape_.voxel_size}; }
+  void find_distances(const PointLattice& points, BlockNear& near, float* sums, float* distances) const;
   void probe(const Threads& threads);
   void classify(const Threads& threads);
   void sum_at_nodes(const Threads& threads);
@@ -89,8 +85,7 @@ class SurfaceField {
   float deep_ = 0;      ///< distances at or below this are inside of a body for certain [voxels]
   NodeWeights weights_{};
 
-  ParticleCells particles_;
-  Ellipsoids ellipsoids_;
+  BlockParticles particles_;
   BlockMap blocks_;
   std::vector<std::array<std::uint32_t, 27>> neighbors_;
   std::vector<BlockKind> kind_;

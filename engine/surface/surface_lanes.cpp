@@ -31,31 +31,6 @@ struct Sums {
   Floats square;
 };
 
-/// 1 − |x_i − x|², at least 0, of eight points and one particle.
-MALLOW_INLINE Floats nearness(const Floats& square) {
-  return larger(1.0f - square, Floats{});
-}
-
-void sum_at_points(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
-                   float* sums) noexcept {
-  for (std::size_t k = 0; k < n; k += k_cluster) {
-    const ClusterVec3 x = load(points, k);
-    Sums s = {};
-    for (std::size_t i = 0; i < count; ++i) {
-      const ClusterVec3 d = difference(particles, i, x);
-      const Floats square = dot_from_left(d, d);
-      const Floats t = nearness(square);
-      const Floats w = t * t * t;
-      s.weight += w;
-      s.offset += w * d;
-      s.square += w * square;
-    }
-    store(s.weight, sums + k);
-    store(s.offset, sums + n + k, n);
-    store(s.square, sums + 4 * n + k);
-  }
-}
-
 MALLOW_INLINE Floats cut(const SurfaceShape& shape, const Floats& distance) {
   return smaller(larger(distance, all(-shape.background)), all(shape.background));
 }
@@ -113,38 +88,10 @@ void fill_block(const SurfaceShape& shape, const NodeWeights& weights, const flo
   }
 }
 
-void sphere_distances(const SurfaceShape& shape, ConstVectors points, std::size_t n, ConstVectors particles,
-                      std::size_t count, float* to) noexcept {
-  const float farthest = shape.offset + shape.background * shape.voxel_size;
+void sphere_distances(const SurfaceShape& shape, const float* squares, std::size_t n, float* to) noexcept {
   for (std::size_t k = 0; k < n; k += k_cluster) {
-    const ClusterVec3 x = load(points, k);
-    Floats least = all(farthest * farthest);
-    for (std::size_t i = 0; i < count; ++i) {
-      const ClusterVec3 d = difference(particles, i, x);
-      least = smaller(least, dot_from_left(d, d));
-    }
-    store(cut(shape, (square_root(least) - shape.offset) * (1.0f / shape.voxel_size)), to + k);
-  }
-}
-
-void mean_at_points(ConstVectors points, std::size_t n, ConstVectors particles, ConstVectors values,
-                    std::size_t count, Vectors means) noexcept {
-  for (std::size_t k = 0; k < n; k += k_cluster) {
-    const ClusterVec3 x = load(points, k);
-    Floats weight = {};
-    ClusterVec3 sum = {};
-    for (std::size_t i = 0; i < count; ++i) {
-      const ClusterVec3 d = difference(particles, i, x);
-      const Floats t = nearness(dot_from_left(d, d));
-      const Floats w = t * t * t;
-      weight += w;
-      sum += ClusterVec3{w * values.x[i], w * values.y[i], w * values.z[i]};
-    }
-    const Floats per_weight = where(is_larger(weight, Floats{}), 1.0f / weight);
-    const ClusterVec3 mean = per_weight * sum;
-    store(mean.x, means.x + k);
-    store(mean.y, means.y + k);
-    store(mean.z, means.z + k);
+    const Floats distance = square_root(load(squares + k)) - shape.offset;
+    store(cut(shape, distance * (1.0f / shape.voxel_size)), to + k);
   }
 }
 
@@ -173,34 +120,6 @@ void moments_at_points(ConstVectors points, std::size_t n, ConstVectors particle
   }
 }
 
-/// G v
-MALLOW_INLINE ClusterVec3 product(const Ellipsoid& g, const ClusterVec3& v) {
-  return {g.xx * v.x + g.xy * v.y + g.xz * v.z, g.xy * v.x + g.yy * v.y + g.yz * v.z,
-          g.xz * v.x + g.yz * v.y + g.zz * v.z};
-}
-
-// Yu & Turk 2013, eq. 6 and 7: φ(x) = Σ V_i W(|G_i (x_i − x)|), with the weights of above.
-void density_at_points(ConstVectors points, std::size_t n, ConstVectors particles, const Ellipsoid* shapes,
-                       std::size_t count, float* sums) noexcept {
-  for (std::size_t k = 0; k < n; k += k_cluster) {
-    const ClusterVec3 x = load(points, k);
-    Floats density = {};
-    ClusterVec3 gradient = {};
-    for (std::size_t i = 0; i < count; ++i) {
-      const Ellipsoid& g = shapes[i];
-      const ClusterVec3 d = difference(particles, i, x);
-      const ClusterVec3 q = product(g, d);
-      const Floats t = nearness(dot_from_left(q, q));
-      const Floats slope = g.weight * (t * t);
-      density += slope * t;
-      // ∇(1 − |G d|²)³ = 6 t² G (G d)
-      gradient += slope * product(g, q);
-    }
-    store(density, sums + k);
-    store(6.0f * gradient, sums + n + k, n);
-  }
-}
-
 // The first order is taken of the fourth root, as the kernel's integral over a face is (1 − z²)⁴: its root is
 // nearly straight where the density itself has a long tail.
 void density_distances(const SurfaceShape& shape, const float* sums, std::size_t n, float* to) noexcept {
@@ -218,7 +137,7 @@ void density_distances(const SurfaceShape& shape, const float* sums, std::size_t
 }  // namespace
 
 extern const SurfaceLanes surface_lanes;
-const SurfaceLanes surface_lanes = {sum_at_points,     distances,         fill_block,        sphere_distances,
-                                    moments_at_points, density_at_points, density_distances, mean_at_points};
+const SurfaceLanes surface_lanes = {distances, fill_block, sphere_distances, moments_at_points,
+                                    density_distances};
 
 }  // namespace mallow::MALLOW_LEVEL

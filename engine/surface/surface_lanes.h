@@ -4,6 +4,7 @@
 
 #include "core/isa.h"
 #include "core/raw_columns.h"
+#include "surface/sum_lanes.h"
 #include "surface/voxel_frame.h"
 
 namespace mallow {
@@ -25,17 +26,6 @@ struct SurfaceShape {
   float background;    ///< distances are cut here [voxels]
 };
 
-/// The kernel of one particle, w(|G (x_i − x)|) with a symmetric G; lengths in kernel radii.
-struct Ellipsoid {
-  float xx, xy, xz, yy, yz, zz;  ///< G
-  float weight;                  ///< density in its middle, relative to that inside of a body
-  float reach[3];                ///< half of the box it fills
-};
-
-/// Sums over the particles about a point: Σ w, Σ w (x_i − x) and Σ w |x_i − x|².
-inline constexpr std::size_t k_sums = 5;
-/// Density and its gradient at a point.
-inline constexpr std::size_t k_density_sums = 4;
 /// Σ w, Σ w d and Σ w d dᵀ (xx xy xz yy yz zz) of d = x_i − x.
 inline constexpr std::size_t k_moments = 10;
 /// Nodes along a side of what a block's sums are interpolated from.
@@ -46,31 +36,22 @@ struct NodeWeights {
   float w[k_block_side][k_nodes];
 };
 
-/// Points come in eights, as three arrays [kernel radii]; particles are those within reach of them, and may
-/// be read to the next whole eight. Sums of n points are five arrays of n.
+/// Points come in eights. Sums of n points are arrays of n, as SumLanes has them.
 struct SurfaceLanes {
-  void (*sum_at_points)(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
-                        float* sums) noexcept;
   /// Signed distances [voxels] from sums.
   void (*distances)(const SurfaceShape&, const float* sums, std::size_t n, float* distances) noexcept;
   /// Distances of a block's voxels, z fastest, from the sums at its 5 × 5 × 5 nodes (five arrays of 125, z
   /// fastest): sums are interpolated, as they are smooth where distances have creases.
   void (*fill_block)(const SurfaceShape&, const NodeWeights&, const float* nodes, float* distances) noexcept;
   /// Distances to the nearest of the spheres of radius `offset` around the particles [voxels], cut at the
-  /// background.
-  void (*sphere_distances)(const SurfaceShape&, ConstVectors points, std::size_t n, ConstVectors particles,
-                           std::size_t count, float* distances) noexcept;
-  /// Moments with w = 1 − |d|³, n of each.
+  /// background, from the squared distances to their middles.
+  void (*sphere_distances)(const SurfaceShape&, const float* squares, std::size_t n,
+                           float* distances) noexcept;
+  /// Moments with w = 1 − |d|³, n of each. Points and particles: three arrays [kernel radii].
   void (*moments_at_points)(ConstVectors points, std::size_t n, ConstVectors particles, std::size_t count,
                             float* moments) noexcept;
-  /// Σ weight (1 − |G d|²)³ over particles with kernels of their own, and its gradient, n of each.
-  void (*density_at_points)(ConstVectors points, std::size_t n, ConstVectors particles,
-                            const Ellipsoid* shapes, std::size_t count, float* sums) noexcept;
   /// Signed distances [voxels] from the surface where the density is at its threshold, to first order.
   void (*density_distances)(const SurfaceShape&, const float* sums, std::size_t n, float* distances) noexcept;
-  /// Σ w value / Σ w at points, for three values a particle; zero where there is no particle.
-  void (*mean_at_points)(ConstVectors points, std::size_t n, ConstVectors particles, ConstVectors values,
-                         std::size_t count, Vectors means) noexcept;
 };
 MALLOW_DECLARE_LEVELS(SurfaceLanes, surface_lanes)
 /// Those of best_instruction_level().

@@ -1,24 +1,9 @@
-#include "surface/voxel_lattice.h"
+#include "surface/node_weights.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace mallow {
-
-VoxelLattice::VoxelLattice(int step, float voxel) {
-  for (int i = 0; i < k_block_side; i += step)
-    for (int j = 0; j < k_block_side; j += step)
-      for (int k = 0; k < k_block_side; k += step) {
-        x.push_back(static_cast<float>(i) * voxel);
-        y.push_back(static_cast<float>(j) * voxel);
-        z.push_back(static_cast<float>(k) * voxel);
-      }
-}
-
-std::size_t lattice_count(int step) {
-  const auto side = static_cast<std::size_t>(k_block_side / step);
-  return side * side * side;
-}
 
 NodeWeights cubic_weights(int step, int before) {
   NodeWeights weights{};

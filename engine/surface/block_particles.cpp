@@ -1,0 +1,109 @@
+#include "surface/block_particles.h"
+
+#include <algorithm>
+
+#include "core/parallel.h"
+#include "mallow/instruction_level.h"
+
+namespace mallow {
+namespace {
+
+constexpr std::size_t k_groups_at_once = 2;
+/// By which a kernel's box grows, so that rounding lets none out that adds something.
+constexpr float k_rounding = 1e-5f;
+
+Eigen::Vector3d corner_of(const VoxelFrame& frame, const BlockMap::Coord& block) {
+  return frame.origin + frame.voxel_size * k_block_side * block.cast<double>();
+}
+
+/// Makes room for `size` values; keeps what there is.
+template <class T>
+void make_room(std::vector<T>& values, std::size_t size) {
+  if (values.size() < size) values.resize(size);
+}
+
+}  // namespace
+
+const SumLanes& best_sum_lanes() {
+  static const InstructionLevel level = best_instruction_level();
+  return MALLOW_SELECT(level, sum_lanes);
+}
+
+void BlockParticles::sort(const PickedVectors& positions, float spacing, float radius,
+                          const Threads& threads) {
+  shaped_ = false;
+  cells_.sort(positions, spacing, radius, threads);
+}
+
+void BlockParticles::shape(const AnisotropyModel& model, const Threads& threads) {
+  ellipsoids_.fit(model, cells_.radius(), threads, cells_);
+  shaped_ = true;
+}
+
+void BlockParticles::find_near(const BlockMap& blocks, const VoxelFrame& frame, const Threads& threads) {
+  const auto groups = blocks.groups();
+  if (near_.size() < groups.size()) near_.resize(groups.size());
+  const double side = frame.voxel_size * (2 * k_block_side - 1);
+  parallel_for(
+      threads, groups.size(),
+      [&](std::size_t begin, std::size_t end) {
+        thread_local NearParticles near;
+        for (std::size_t g = begin; g < end; ++g) {
+          cells_.find_places_near(corner_of(frame, groups[g].first), side, near);
+          near_[g].assign(near.places.data(), near.places.data() + near.count);
+        }
+      },
+      k_groups_at_once);
+}
+
+void BlockParticles::load_group(std::uint32_t group, BlockNear& near) const {
+  cells_.positions(near_[group], near.group);
+  near.count = near_[group].size();
+}
+
+void BlockParticles::pick(const BlockMap& blocks, const VoxelFrame& frame, std::uint32_t block,
+                          BlockNear& near) const {
+  const std::vector<std::uint32_t>& places = near_[blocks.group_of(block)];
+  for (std::vector<float>& axis : near.axes) make_room(axis, places.size() + k_cluster);
+  make_room(near.places, places.size() + k_cluster);
+  make_room(near.listed, places.size() + k_cluster);
+  const Eigen::Vector3d corner = corner_of(frame, blocks.blocks()[block]);
+  const auto radius = static_cast<double>(cells_.radius());
+  const BlockBox box{.corner = {corner.x(), corner.y(), corner.z()},
+                     .per_radius = 1 / radius,
+                     .side = static_cast<float>(frame.voxel_size * (k_block_side - 1) / radius)};
+  near.count = best_sum_lanes().pick_near(
+      box, {near.group[0].data(), near.group[1].data(), near.group[2].data()}, places.size(),
+      {near.axes[0].data(), near.axes[1].data(), near.axes[2].data()}, near.places.data());
+  for (std::size_t k = 0; k < near.count; ++k) near.places[k] = places[near.places[k]];
+  if (shaped_) drop_out_of_reach(box.side, near);
+}
+
+/// Leaves the particles whose own kernels reach into the block, with these kernels.
+void BlockParticles::drop_out_of_reach(float side, BlockNear& near) const {
+  make_room(near.shapes, near.count);
+  for (std::vector<float>& reach : near.reach) make_room(reach, near.count + k_cluster);
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < near.count; ++k) {
+    const Ellipsoid& shape = ellipsoids_.shapes()[near.places[k]];
+    bool reaches = true;
+    for (int a = 0; a < 3; ++a) {
+      const float x = near.axes[a][k];
+      reaches = reaches && x + shape.reach[a] >= 0 && x - shape.reach[a] <= side;
+      near.axes[a][kept] = x;
+      near.reach[a][kept] = (1 + k_rounding) * shape.reach[a];
+    }
+    if (!reaches) continue;
+    near.places[kept] = near.places[k];
+    near.shapes[kept++] = shape;
+  }
+  near.count = kept;
+}
+
+std::size_t BlockParticles::bytes() const {
+  std::size_t bytes = cells_.bytes() + ellipsoids_.bytes() + near_.capacity() * sizeof near_[0];
+  for (const std::vector<std::uint32_t>& places : near_) bytes += places.capacity() * sizeof(std::uint32_t);
+  return bytes;
+}
+
+}  // namespace mallow

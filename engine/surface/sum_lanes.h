@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/isa.h"
+#include "core/raw_columns.h"
+#include "surface/voxel_frame.h"
+
+namespace mallow {
+
+/// The kernel of one particle, w(|G (x_i − x)|) with a symmetric G; lengths in kernel radii.
+struct Ellipsoid {
+  float xx, xy, xz, yy, yz, zz;  ///< G
+  float weight;                  ///< density in its middle, relative to that inside of a body
+  float reach[3];                ///< half of the box it fills
+};
+
+/// Sums over the particles about a point: Σ w, Σ w (x_i − x) and Σ w |x_i − x|².
+inline constexpr std::size_t k_sums = 5;
+/// Density and its gradient at a point.
+inline constexpr std::size_t k_density_sums = 4;
+
+/// Points of a block that are `step` voxels apart along each axis, from its first voxel on, z fastest.
+struct PointLattice {
+  int step;     ///< 1, 2 or 4
+  float voxel;  ///< its side [kernel radii]
+
+  int side() const { return k_block_side / step; }
+  std::size_t count() const { return static_cast<std::size_t>(side() * side() * side()); }
+};
+
+/// The voxels of a block and how lengths become kernel radii.
+struct BlockBox {
+  double corner[3];   ///< the first voxel [m]
+  double per_radius;  ///< [1/m]
+  float side;         ///< from the first voxel to the last [kernel radii]
+};
+
+/// Particles near a block [kernel radii, from its first voxel], and room for what lanes note of them. All
+/// arrays may be read and written to k_cluster behind `count`.
+struct NearColumns {
+  ConstVectors positions;
+  std::size_t count;
+  std::uint32_t* listed;
+};
+
+/// Sums over particles at the points of a block. They are taken in the order of the particles, at each group
+/// of points over those in its reach: the others would add 0, so that sums have the same bits as over all.
+/// Sums of n points are arrays of n.
+struct SumLanes {
+  /// Of particles at `positions` [m] those within a kernel radius of a block, in order; returns how many.
+  /// near: where they are from the block's first voxel [kernel radii]; which: their numbers. Room for
+  /// `count` + k_cluster.
+  std::size_t (*pick_near)(const BlockBox&, ConstVectors positions, std::size_t count, Vectors near,
+                           std::uint32_t* which) noexcept;
+  /// k_sums of each point.
+  void (*sum)(const PointLattice&, const NearColumns&, float* sums) noexcept;
+  /// The squared distance to the nearest particle, cut at `farthest`, about 1.
+  void (*nearest)(const PointLattice&, const NearColumns&, float farthest, float* squares) noexcept;
+  /// Σ weight (1 − |G d|²)³ over particles with kernels of their own, and its gradient: k_density_sums of
+  /// each point. reach: of the kernels, by particle.
+  void (*density)(const PointLattice&, const NearColumns&, const Ellipsoid* shapes, ConstVectors reach,
+                  float* sums) noexcept;
+  /// Σ w value / Σ w at points that come in eights, for three values a particle; zero where there is no
+  /// particle.
+  void (*mean)(ConstVectors points, std::size_t n, const NearColumns&, ConstVectors values,
+               Vectors means) noexcept;
+};
+MALLOW_DECLARE_LEVELS(SumLanes, sum_lanes)
+/// Those of best_instruction_level().
+const SumLanes& best_sum_lanes();
+
+}  // namespace mallow
