@@ -9,7 +9,7 @@ namespace mallow {
 namespace {
 
 constexpr std::size_t k_groups_at_once = 2;
-/// By which a kernel's box grows, so that rounding lets none out that adds something.
+/// By which reaches grow, so that rounding leaves none out that adds something.
 constexpr float k_rounding = 1e-5f;
 
 Eigen::Vector3d corner_of(const VoxelFrame& frame, const BlockMap::Coord& block) {
@@ -57,26 +57,32 @@ void BlockParticles::find_near(const BlockMap& blocks, const VoxelFrame& frame, 
 }
 
 void BlockParticles::load_group(std::uint32_t group, BlockNear& near) const {
-  cells_.positions(near_[group], near.group);
-  near.count = near_[group].size();
+  near.group_places = near_[group];
+  cells_.positions(near.group_places, near.group);
+  const std::size_t room = near.group_places.size() + k_cluster;
+  for (std::vector<float>& axis : near.axes) make_room(axis, room);
+  make_room(near.which, room);
+  make_room(near.listed, NearColumns::k_lists * room);
 }
 
 void BlockParticles::pick(const BlockMap& blocks, const VoxelFrame& frame, std::uint32_t block,
                           BlockNear& near) const {
-  const std::vector<std::uint32_t>& places = near_[blocks.group_of(block)];
-  for (std::vector<float>& axis : near.axes) make_room(axis, places.size() + k_cluster);
-  make_room(near.places, places.size() + k_cluster);
-  make_room(near.listed, places.size() + k_cluster);
   const Eigen::Vector3d corner = corner_of(frame, blocks.blocks()[block]);
   const auto radius = static_cast<double>(cells_.radius());
-  const BlockBox box{.corner = {corner.x(), corner.y(), corner.z()},
-                     .per_radius = 1 / radius,
-                     .side = static_cast<float>(frame.voxel_size * (k_block_side - 1) / radius)};
+  const double side = frame.voxel_size * (k_block_side - 1);
+  BlockBox box{};
+  // As in the search for neighbours.
+  box.squared_reach = cells_.radius() * cells_.radius() * (1 + k_rounding);
+  box.per_radius = 1 / radius;
+  for (int a = 0; a < 3; ++a) {
+    box.corner[a] = corner[a];
+    box.low[a] = static_cast<float>(corner[a]);
+    box.high[a] = static_cast<float>(corner[a] + side);
+  }
   near.count = best_sum_lanes().pick_near(
-      box, {near.group[0].data(), near.group[1].data(), near.group[2].data()}, places.size(),
-      {near.axes[0].data(), near.axes[1].data(), near.axes[2].data()}, near.places.data());
-  for (std::size_t k = 0; k < near.count; ++k) near.places[k] = places[near.places[k]];
-  if (shaped_) drop_out_of_reach(box.side, near);
+      box, {near.group[0].data(), near.group[1].data(), near.group[2].data()}, near.group_places.size(),
+      {near.axes[0].data(), near.axes[1].data(), near.axes[2].data()}, near.which.data());
+  if (shaped_) drop_out_of_reach(static_cast<float>(side / radius), near);
 }
 
 /// Leaves the particles whose own kernels reach into the block, with these kernels.
@@ -85,7 +91,7 @@ void BlockParticles::drop_out_of_reach(float side, BlockNear& near) const {
   for (std::vector<float>& reach : near.reach) make_room(reach, near.count + k_cluster);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < near.count; ++k) {
-    const Ellipsoid& shape = ellipsoids_.shapes()[near.places[k]];
+    const Ellipsoid& shape = ellipsoids_.shapes()[near.place(k)];
     bool reaches = true;
     for (int a = 0; a < 3; ++a) {
       const float x = near.axes[a][k];
@@ -94,10 +100,15 @@ void BlockParticles::drop_out_of_reach(float side, BlockNear& near) const {
       near.reach[a][kept] = (1 + k_rounding) * shape.reach[a];
     }
     if (!reaches) continue;
-    near.places[kept] = near.places[k];
+    near.which[kept] = near.which[k];
     near.shapes[kept++] = shape;
   }
   near.count = kept;
+  // What follows is far away and reaches nowhere.
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::fill_n(near.axes[a].data() + kept, k_cluster, NearColumns::k_far);
+    std::fill_n(near.reach[a].data() + kept, k_cluster, 0.0f);
+  }
 }
 
 std::size_t BlockParticles::bytes() const {

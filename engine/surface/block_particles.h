@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/threads.h"
@@ -15,15 +16,17 @@ namespace mallow {
 /// The particles near one block, in the order of their numbers, and memory for those near its group.
 struct BlockNear {
   std::size_t count = 0;
-  std::vector<std::uint32_t> places;
   std::vector<float> axes[3];  ///< from the block's first voxel [kernel radii]
   // Where each has its own kernel.
   std::vector<Ellipsoid> shapes;
   std::vector<float> reach[3];
 
   std::vector<float> group[3];  ///< those near its group [m]
+  std::span<const std::uint32_t> group_places;
+  std::vector<std::uint32_t> which;  ///< of those it has
   std::vector<std::uint32_t> listed;
 
+  std::uint32_t place(std::size_t k) const { return group_places[which[k]]; }
   NearColumns columns() { return {of(axes), count, listed.data()}; }
   ConstVectors reaches() const { return of(reach); }
 

@@ -10,42 +10,34 @@ namespace {
 /// Share of the squared radius by which particles may look farther away from a box than from its points.
 constexpr float k_rounding = 1e-5f;
 
-/// A box of points.
-struct Box {
-  Floats low[3], high[3];
-};
-
-/// How far a point is from a box along an axis; negative within it.
-MALLOW_INLINE Floats outside(const Box& box, int axis, const Floats& x) {
-  return larger(box.low[axis] - x, x - box.high[axis]);
-}
-
-/// Which of eight particles are within the kernel radius of a box.
-MALLOW_INLINE Ints within_radius(const Box& box, const ClusterVec3& x) {
-  const ClusterVec3 d = {larger(outside(box, 0, x.x), Floats{}), larger(outside(box, 1, x.y), Floats{}),
-                         larger(outside(box, 2, x.z), Floats{})};
-  return is_at_most(dot_from_left(d, d), all(1.0f + k_rounding));
+/// How far eight coordinates are from what lies between two others; 0 within.
+MALLOW_INLINE Floats distance(const Floats& x, const Floats& low, const Floats& high) {
+  return larger(larger(low - x, x - high), Floats{});
 }
 
 std::size_t pick_near(const BlockBox& block, ConstVectors positions, std::size_t count, Vectors near,
                       std::uint32_t* which) noexcept {
-  const float* const from[3] = {positions.x, positions.y, positions.z};
-  float* const to[3] = {near.x, near.y, near.z};
-  for (int a = 0; a < 3; ++a) {
-    const double corner = block.corner[a], per_radius = block.per_radius;
-    for (std::size_t k = 0; k < count; ++k)
-      to[a][k] = static_cast<float>((static_cast<double>(from[a][k]) - corner) * per_radius);
-  }
-  Box box = {};
-  for (Floats& high : box.high) high = all(block.side);
+  const Floats limit = all(block.squared_reach);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < count; k += k_cluster) {
-    const ClusterVec3 x = load(ConstVectors{near.x, near.y, near.z}, k);
-    const unsigned set = bits_of(within_radius(box, x), count - k);
+    const ClusterVec3 x = load(positions, k);
+    const ClusterVec3 d = {distance(x.x, all(block.low[0]), all(block.high[0])),
+                           distance(x.y, all(block.low[1]), all(block.high[1])),
+                           distance(x.z, all(block.low[2]), all(block.high[2]))};
+    const unsigned set = bits_of(is_at_most(dot_from_left(d, d), limit), count - k);
+    if (set == 0) continue;
     compress(set, x.x, near.x + kept);
     compress(set, x.y, near.y + kept);
     compress(set, x.z, near.z + kept);
     kept += compress(set, k_count + static_cast<int>(k), which + kept);
+  }
+  float* const axes[3] = {near.x, near.y, near.z};
+  for (int a = 0; a < 3; ++a) {
+    const double corner = block.corner[a], per_radius = block.per_radius;
+    float* const x = axes[a];
+    for (std::size_t k = 0; k < kept; ++k)
+      x[k] = static_cast<float>((static_cast<double>(x[k]) - corner) * per_radius);
+    store(all(NearColumns::k_far), x + kept);
   }
   return kept;
 }
@@ -55,12 +47,26 @@ MALLOW_INLINE Floats nearness(const Floats& square) {
   return larger(1.0f - square, Floats{});
 }
 
-// What is summed: a State of eight points, and of which particles.
+/// Groups of points above each other in z.
+struct Column {
+  Floats low_x, high_x, low_y, high_y;
+};
+
+// What is summed: a State of eight points, and over which particles.
 
 /// Kernels that are spheres of the kernel radius.
 struct RoundKernel {
-  [[gnu::always_inline]] Ints in_reach(const Box& box, const ConstVectors& particles, std::size_t k) const {
-    return within_radius(box, load(particles, k));
+  using Across = Floats;
+  /// What is known of eight particles from x and y.
+  [[gnu::always_inline]] Floats across(const Column& column, const ConstVectors& near, std::size_t k) const {
+    const Floats dx = distance(load(near.x + k), column.low_x, column.high_x);
+    const Floats dy = distance(load(near.y + k), column.low_y, column.high_y);
+    return dx * dx + dy * dy;
+  }
+  [[gnu::always_inline]] Ints in_reach(const Floats& square, const Floats& low, const Floats& high,
+                                       const ConstVectors& near, std::size_t k) const {
+    const Floats dz = distance(load(near.z + k), low, high);
+    return is_at_most(square + dz * dz, all(1.0f + k_rounding));
   }
 };
 
@@ -120,10 +126,14 @@ struct DensitySums {
     ClusterVec3 gradient;
   };
   [[gnu::always_inline]] State start() const { return State{}; }
-  [[gnu::always_inline]] Ints in_reach(const Box& box, const ConstVectors& particles, std::size_t k) const {
-    const ClusterVec3 x = load(particles, k), r = load(reach, k);
-    return is_at_most(outside(box, 0, x.x), r.x) & is_at_most(outside(box, 1, x.y), r.y) &
-           is_at_most(outside(box, 2, x.z), r.z);
+  [[gnu::always_inline]] Ints across(const Column& column, const ConstVectors& near, std::size_t k) const {
+    const Floats dx = distance(load(near.x + k), column.low_x, column.high_x);
+    const Floats dy = distance(load(near.y + k), column.low_y, column.high_y);
+    return is_at_most(dx, load(reach.x + k)) & is_at_most(dy, load(reach.y + k));
+  }
+  [[gnu::always_inline]] Ints in_reach(const Ints& reaches, const Floats& low, const Floats& high,
+                                       const ConstVectors& near, std::size_t k) const {
+    return reaches & is_at_most(distance(load(near.z + k), low, high), load(reach.z + k));
   }
   [[gnu::always_inline]] void add(State& s, const ClusterVec3& d, std::uint32_t i) const {
     const Ellipsoid& g = shapes[i];
@@ -159,69 +169,118 @@ struct WeightedValues : RoundKernel {
   }
 };
 
-/// Sums at `planes` times eight points that differ in z from plane to plane, over the particles that reach
-/// into the box around them.
-template <std::size_t planes, class Kernel>
-MALLOW_INLINE void sum_group(const Kernel& kernel, const NearColumns& near, const Box& box, const Floats& x,
-                             const Floats& y, const Floats* z, typename Kernel::State* s) {
+/// Points of a group: `planes` times eight that differ in z from plane to plane.
+template <std::size_t planes>
+struct Group {
+  Floats x, y, z[planes];
+};
+
+/// Lists, for each group of a column, the particles that reach into the box around it. low, high: of the
+/// groups, in z. listed: a list a group, `room` long.
+template <std::size_t groups, class Kernel>
+MALLOW_INLINE void list_in_reach(const Kernel& kernel, const NearColumns& near, const Column& column,
+                                 const Floats* low, const Floats* high, std::size_t* counts) {
   const ConstVectors particles = near.positions;
-  std::uint32_t* const listed = near.listed;
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < near.count; k += k_cluster) {
-    const unsigned set = bits_of(kernel.in_reach(box, particles, k), near.count - k);
-    count += compress(set, k_count + static_cast<int>(k), listed + count);
+  const std::size_t room = near.room(), end = near.count;
+  std::uint32_t* to[groups];
+  for (std::size_t g = 0; g < groups; ++g) to[g] = near.listed + g * room;
+  Ints numbers = k_count;
+  for (std::size_t k = 0; k < end; k += k_cluster) {
+    const auto across = kernel.across(column, particles, k);
+    for (std::size_t g = 0; g < groups; ++g)
+      to[g] += compress(bits(kernel.in_reach(across, low[g], high[g], particles, k)), numbers, to[g]);
+    numbers += static_cast<int>(k_cluster);
   }
+  for (std::size_t g = 0; g < groups; ++g)
+    counts[g] = static_cast<std::size_t>(to[g] - (near.listed + g * room));
+}
+
+/// Sums at the points of a group over listed particles. Not inlined: a compiler that sees how a group's
+/// points lie takes z for one number, and its arithmetic twice.
+template <std::size_t planes, class Kernel>
+[[gnu::noinline]] void sum_listed(const Kernel& kernel, const ConstVectors& near, const std::uint32_t* listed,
+                                  std::size_t count, const Group<planes>& group, typename Kernel::State* to) {
+  const ConstVectors particles = near;
   typename Kernel::State sums[planes];
   for (typename Kernel::State& sum : sums) sum = kernel.start();
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = listed[k];
-    const Floats dx = particles.x[i] - x, dy = particles.y[i] - y;
-    for (std::size_t p = 0; p < planes; ++p) kernel.add(sums[p], {dx, dy, particles.z[i] - z[p]}, i);
+    const Floats dx = particles.x[i] - group.x, dy = particles.y[i] - group.y, z = all(particles.z[i]);
+    for (std::size_t p = 0; p < planes; ++p) kernel.add(sums[p], {dx, dy, z - group.z[p]}, i);
   }
-  for (std::size_t p = 0; p < planes; ++p) s[p] = sums[p];
+  for (std::size_t p = 0; p < planes; ++p) to[p] = sums[p];
 }
 
-/// Sums at 2 × 4 × 4 points whose first is (i, j, k) of a lattice of `side` points an axis.
-template <class Kernel>
-MALLOW_INLINE void sum_at_planes(const Kernel& kernel, const PointLattice& lattice, const NearColumns& near,
-                                 int i, int j, int k, float* to) {
-  const auto at = [&](int point) { return static_cast<float>(point * lattice.step) * lattice.voxel; };
-  const Floats x = {at(i), at(i), at(i), at(i), at(i + 1), at(i + 1), at(i + 1), at(i + 1)};
-  const Floats y = {at(j), at(j + 1), at(j + 2), at(j + 3), at(j), at(j + 1), at(j + 2), at(j + 3)};
-  Floats sums[Kernel::k_values][4];
-  for (int p = 0; p < 4; p += 2) {
-    const Floats z[2] = {all(at(k + p)), all(at(k + p + 1))};
-    const Box box = {{all(at(i)), all(at(j)), z[0]}, {all(at(i + 1)), all(at(j + 3)), z[1]}};
-    typename Kernel::State s[2];
-    sum_group<2>(kernel, near, box, x, y, z, s);
-    for (int q = 0; q < 2; ++q) kernel.put(s[q], &sums[0][p + q], 4);
+/// Puts the sums at 2 × 4 × 4 points, a plane of which is a row of lanes, to where z goes fastest.
+/// to: the first point's.
+MALLOW_INLINE void put_planes(Floats* planes, std::size_t side, float* to) {
+  transpose_halves(planes);
+  for (std::size_t row = 0; row < 4; ++row) {
+    const Quad low = __builtin_shufflevector(planes[row], planes[row], 0, 1, 2, 3);
+    const Quad high = __builtin_shufflevector(planes[row], planes[row], 4, 5, 6, 7);
+    __builtin_memcpy(to + row * side, &low, sizeof low);
+    __builtin_memcpy(to + (side + row) * side, &high, sizeof high);
   }
-  // A plane's lanes are points in x and y, and z is what goes fastest in memory.
-  const auto side = static_cast<std::size_t>(lattice.side()), n = lattice.count();
-  float* const first = to + (static_cast<std::size_t>(i) * side + static_cast<std::size_t>(j)) * side +
-                       static_cast<std::size_t>(k);
-  for (std::size_t v = 0; v < Kernel::k_values; ++v) {
-    transpose_halves(sums[v]);
-    for (std::size_t row = 0; row < 4; ++row) {
-      const Floats& both = sums[v][row];
-      const Quad low = __builtin_shufflevector(both, both, 0, 1, 2, 3);
-      const Quad high = __builtin_shufflevector(both, both, 4, 5, 6, 7);
-      __builtin_memcpy(first + v * n + row * side, &low, sizeof low);
-      __builtin_memcpy(first + v * n + (side + row) * side, &high, sizeof high);
+}
+
+/// Sums on a lattice of `side` points an axis, column by column of 2 × 4 × side.
+template <std::size_t side, class Kernel>
+MALLOW_INLINE void sum_in_columns(const Kernel& kernel, const PointLattice& lattice, const NearColumns& near,
+                                  float* to) {
+  constexpr std::size_t k_groups = side / 2, n = side * side * side;
+  float at[side];
+  for (std::size_t k = 0; k < side; ++k)
+    at[k] = static_cast<float>(static_cast<int>(k) * lattice.step) * lattice.voxel;
+  Floats low[k_groups], high[k_groups];
+  for (std::size_t g = 0; g < k_groups; ++g) {
+    low[g] = all(at[2 * g]);
+    high[g] = all(at[2 * g + 1]);
+  }
+  for (std::size_t i = 0; i < side; i += 2) {
+    for (std::size_t j = 0; j < side; j += 4) {
+      std::size_t counts[k_groups];
+      list_in_reach<k_groups>(kernel, near, {all(at[i]), all(at[i + 1]), all(at[j]), all(at[j + 3])}, low,
+                              high, counts);
+      Group<2> group;
+      for (std::size_t l = 0; l < k_cluster; ++l) {
+        group.x[l] = at[i + l / 4];
+        group.y[l] = at[j + l % 4];
+      }
+      Floats sums[Kernel::k_values][4];
+      for (std::size_t g = 0; g < k_groups; ++g) {
+        group.z[0] = low[g];
+        group.z[1] = high[g];
+        typename Kernel::State s[2];
+        sum_listed<2>(kernel, near.positions, near.listed + g * near.room(), counts[g], group, s);
+        for (std::size_t p = 0; p < 2; ++p) kernel.put(s[p], &sums[0][2 * (g % 2) + p], 4);
+        if (g % 2 == 0) continue;
+        for (std::size_t v = 0; v < Kernel::k_values; ++v)
+          put_planes(sums[v], side, to + v * n + (i * side + j) * side + 2 * (g - 1));
+      }
     }
   }
 }
 
-/// Sums at the eight points of a lattice that has two an axis.
+/// Sums at eight points in a box.
+template <class Kernel>
+MALLOW_INLINE void sum_at_eight(const Kernel& kernel, const NearColumns& near, const Column& column,
+                                const Floats& low_z, const Floats& high_z, const ClusterVec3& x,
+                                typename Kernel::State& sums) {
+  std::size_t count;
+  list_in_reach<1>(kernel, near, column, &low_z, &high_z, &count);
+  sum_listed<1>(kernel, near.positions, near.listed, count, {x.x, x.y, {x.z}}, &sums);
+}
+
+/// Sums on a lattice of two points an axis.
 template <class Kernel>
 MALLOW_INLINE void sum_at_corners(const Kernel& kernel, const PointLattice& lattice, const NearColumns& near,
                                   float* to) {
   const float far = static_cast<float>(lattice.step) * lattice.voxel;
-  const Floats x = {0, 0, 0, 0, far, far, far, far}, y = {0, 0, far, far, 0, 0, far, far};
-  const Floats z = {0, far, 0, far, 0, far, 0, far};
-  const Box box = {{}, {all(far), all(far), all(far)}};
+  const ClusterVec3 x = {
+      {0, 0, 0, 0, far, far, far, far}, {0, 0, far, far, 0, 0, far, far}, {0, far, 0, far, 0, far, 0, far}};
   typename Kernel::State s;
-  sum_group<1>(kernel, near, box, x, y, &z, &s);
+  const Floats zero = all(0);
+  sum_at_eight(kernel, near, {zero, all(far), zero, all(far)}, zero, all(far), x, s);
   Floats sums[Kernel::k_values];
   kernel.put(s, sums, 1);
   for (std::size_t v = 0; v < Kernel::k_values; ++v) store(sums[v], to + v * k_cluster);
@@ -229,10 +288,14 @@ MALLOW_INLINE void sum_at_corners(const Kernel& kernel, const PointLattice& latt
 
 template <class Kernel>
 void sum_on_lattice(const Kernel& kernel, const PointLattice& lattice, const NearColumns& near, float* to) {
-  if (lattice.step == 4) return sum_at_corners(kernel, lattice, near, to);
-  for (int i = 0; i < lattice.side(); i += 2)
-    for (int j = 0; j < lattice.side(); j += 4)
-      for (int k = 0; k < lattice.side(); k += 4) sum_at_planes(kernel, lattice, near, i, j, k, to);
+  switch (lattice.step) {
+    case 1:
+      return sum_in_columns<8>(kernel, lattice, near, to);
+    case 2:
+      return sum_in_columns<4>(kernel, lattice, near, to);
+    default:
+      return sum_at_corners(kernel, lattice, near, to);
+  }
 }
 
 void sum(const PointLattice& lattice, const NearColumns& near, float* sums) noexcept {
@@ -248,22 +311,14 @@ void density(const PointLattice& lattice, const NearColumns& near, const Ellipso
   sum_on_lattice(DensitySums{shapes, reach}, lattice, near, sums);
 }
 
-/// The box of eight points.
-Box box_of(const ClusterVec3& x) {
-  Box box = {{x.x, x.y, x.z}, {x.x, x.y, x.z}};
-  for (int a = 0; a < 3; ++a) {
-    box.low[a] = smallest(box.low[a]);
-    box.high[a] = -smallest(-box.high[a]);
-  }
-  return box;
-}
-
 void mean(ConstVectors points, std::size_t n, const NearColumns& near, ConstVectors values,
           Vectors means) noexcept {
+  const auto largest = [](const Floats& x) { return -smallest(-x); };
   for (std::size_t k = 0; k < n; k += k_cluster) {
     const ClusterVec3 x = load(points, k);
     WeightedValues::State s;
-    sum_group<1>(WeightedValues{{}, values}, near, box_of(x), x.x, x.y, &x.z, &s);
+    sum_at_eight(WeightedValues{{}, values}, near, {smallest(x.x), largest(x.x), smallest(x.y), largest(x.y)},
+                 smallest(x.z), largest(x.z), x, s);
     const Floats per_weight = where(is_larger(s.weight, Floats{}), 1.0f / s.weight);
     const ClusterVec3 of_points = per_weight * s.sum;
     store(of_points.x, means.x + k);

@@ -30,28 +30,31 @@ struct PointLattice {
   std::size_t count() const { return static_cast<std::size_t>(side() * side() * side()); }
 };
 
-/// The voxels of a block and how lengths become kernel radii.
+/// The box of a block's voxels, and how lengths become kernel radii.
 struct BlockBox {
-  double corner[3];   ///< the first voxel [m]
-  double per_radius;  ///< [1/m]
-  float side;         ///< from the first voxel to the last [kernel radii]
+  float low[3], high[3];  ///< [m]
+  float squared_reach;    ///< of the particles, and what coordinates may be off by [m²]
+  double corner[3];       ///< the first voxel [m]
+  double per_radius;      ///< [1/m]
 };
 
-/// Particles near a block [kernel radii, from its first voxel], and room for what lanes note of them. All
-/// arrays may be read and written to k_cluster behind `count`.
+/// Particles near a block [kernel radii, from its first voxel], followed by k_cluster that are far from it.
 struct NearColumns {
   ConstVectors positions;
   std::size_t count;
-  std::uint32_t* listed;
+  std::uint32_t* listed;  ///< for lanes to note numbers of particles in: k_lists times room()
+
+  static constexpr std::size_t k_lists = 4;
+  static constexpr float k_far = 1e9f;  ///< where no kernel reaches, and squares are finite
+  std::size_t room() const { return count + k_cluster; }
 };
 
 /// Sums over particles at the points of a block. They are taken in the order of the particles, at each group
 /// of points over those in its reach: the others would add 0, so that sums have the same bits as over all.
 /// Sums of n points are arrays of n.
 struct SumLanes {
-  /// Of particles at `positions` [m] those within a kernel radius of a block, in order; returns how many.
-  /// near: where they are from the block's first voxel [kernel radii]; which: their numbers. Room for
-  /// `count` + k_cluster.
+  /// Of particles at `positions` [m] those within reach of a block, in order; returns how many. near: where
+  /// they are, as NearColumns has them; which: their numbers. All arrays: room for `count` + k_cluster.
   std::size_t (*pick_near)(const BlockBox&, ConstVectors positions, std::size_t count, Vectors near,
                            std::uint32_t* which) noexcept;
   /// k_sums of each point.

@@ -399,7 +399,7 @@ void SurfaceField::body_at(std::uint32_t block, ConstVectors points, std::size_t
   thread_local std::vector<float> largest, shares[3];
   here.clear();
   for (std::size_t k = 0; k < near.count; ++k)
-    here.push_back(bodies[particles_.cells().particle(near.places[k])]);
+    here.push_back(bodies[particles_.cells().particle(near.place(k))]);
   std::sort(here.begin(), here.end());
   here.erase(std::unique(here.begin(), here.end()), here.end());
 
@@ -437,7 +437,7 @@ void SurfaceField::mean_at(BlockNear& near, ConstVectors points, std::size_t n, 
     near_values[a].resize(near.count);
   }
   for (std::size_t k = 0; k < near.count; ++k) {
-    const Vec3 of_particle = value(particles_.cells().particle(near.places[k]));
+    const Vec3 of_particle = value(particles_.cells().particle(near.place(k)));
     for (std::size_t a = 0; a < 3; ++a) near_values[a][k] = of_particle[static_cast<Eigen::Index>(a)];
   }
   const auto raw = [](const std::vector<float>(&axes)[3]) {

@@ -19,6 +19,11 @@ const SumLanes& lanes(InstructionLevel level) {
 }
 
 constexpr float k_voxel = 0.19f;
+constexpr BlockBox k_box{.low = {0.1f, 0.2f, 0.3f},
+                         .high = {1.1f, 1.2f, 1.3f},
+                         .squared_reach = 0.49f,
+                         .corner = {0.1, 0.2, 0.3},
+                         .per_radius = 1 / 0.7};
 
 ConstVectors raw(const std::vector<float>* axes) {
   return {axes[0].data(), axes[1].data(), axes[2].data()};
@@ -31,12 +36,12 @@ struct Particles {
   std::vector<std::uint32_t> listed;
   std::size_t count;
 
-  explicit Particles(std::size_t n) : listed(n + k_cluster), count(n) {
+  explicit Particles(std::size_t n) : listed(NearColumns::k_lists * (n + k_cluster)), count(n) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> place(-2, 7 * k_voxel + 2), value(-1, 1);
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::size_t i = 0; i < n + k_cluster; ++i) {
-        axes[a].push_back(place(random));
+        axes[a].push_back(i < n ? place(random) : NearColumns::k_far);
         values[a].push_back(value(random));
         reach[a].push_back(0.9f + 0.05f * static_cast<float>(a));
       }
@@ -75,8 +80,8 @@ std::vector<float> everything(InstructionLevel level) {
   const std::size_t n = p.count + k_cluster;
   std::vector<std::uint32_t> which(n);
   float* const near = room(3 * n);
-  const std::size_t picked = k.pick_near({{0.1, 0.2, 0.3}, 0.7, 1.0f}, raw(p.axes), p.count,
-                                         {near, near + n, near + 2 * n}, which.data());
+  const std::size_t picked =
+      k.pick_near(k_box, raw(p.axes), p.count, {near, near + n, near + 2 * n}, which.data());
   for (std::size_t a = 0; a < 3; ++a) std::fill(near + a * n + picked, near + (a + 1) * n, 0.0f);
   for (std::size_t i = 0; i < picked; ++i) all.push_back(static_cast<float>(which[i]));
   return all;
@@ -173,16 +178,15 @@ TEST(sum_lanes, particles_within_a_radius_of_the_block_are_picked) {
   const std::size_t n = p.count + k_cluster;
   std::vector<float> near[3] = {std::vector<float>(n), std::vector<float>(n), std::vector<float>(n)};
   std::vector<std::uint32_t> which(n);
-  const double corner[3] = {0.1, 0.2, 0.3}, per_radius = 0.7, side = 1;
   const std::size_t picked = lanes(best_instruction_level())
-                                 .pick_near({{0.1, 0.2, 0.3}, 0.7, 1.0f}, raw(p.axes), p.count,
+                                 .pick_near(k_box, raw(p.axes), p.count,
                                             {near[0].data(), near[1].data(), near[2].data()}, which.data());
   std::size_t next = 0;
   for (std::uint32_t i = 0; i < p.count; ++i) {
     double square = 0, offset[3];
     for (std::size_t a = 0; a < 3; ++a) {
-      offset[a] = (static_cast<double>(p.axes[a][i]) - corner[a]) * per_radius;
-      square += std::pow(std::max({0.0, -offset[a], offset[a] - side}), 2);
+      offset[a] = (static_cast<double>(p.axes[a][i]) - k_box.corner[a]) * k_box.per_radius;
+      square += std::pow(std::max({0.0, -offset[a], offset[a] - k_box.per_radius}), 2);
     }
     if (square > 1) continue;
     ASSERT_LT(next, picked);
