@@ -142,7 +142,7 @@ void SurfaceField::build(const PickedVectors& positions, float spacing, const Su
   probe(threads);
   classify(threads);
   if (node_step_ > 1) sum_at_nodes(threads);
-  fill(threads);
+  if (probe_step_ > 1) fill(threads);
 }
 
 /// Every block with a voxel within `reach` voxels of a particle, and some more; all else is outside.
@@ -233,53 +233,72 @@ void SurfaceField::find_distances(const PointLattice& points, BlockNear& near, f
   }
 }
 
-/// Distances at the nodes of the probes' lattice in every block.
+/// Whether the probes' lattice of every block is outside or inside. Probes at every voxel are the field.
 void SurfaceField::probe(const Threads& threads) {
   const PointLattice points = lattice(probe_step_);
   const std::size_t n = points.count();
-  probes_.resize(n * blocks_.size());
+  outside_.resize(blocks_.size());
+  inside_.resize(blocks_.size());
+  if (probe_step_ == 1) distances_.resize_unset(n * blocks_.size());
   const bool keep = node_step_ == probe_step_ && node_step_ > 1;
   if (keep) node_sums_.resize(k_sums * n * blocks_.size());
   for_each_block(
       threads, [](std::uint32_t) { return true; },
       [&](std::uint32_t b, BlockNear& near) {
-        float scratch[k_sums * k_block_voxels];
-        float* const distances = probes_.data() + n * b;
-        find_distances(points, near, keep ? node_sums_.data() + k_sums * n * b : scratch, distances);
-        // Far from it, the density overestimates distances: only where there is none is outside for
-        // certain.
-        if (surface_kind_ == SurfaceKind::anisotropic && near.count > 0)
-          for (std::size_t k = 0; k < n; ++k) distances[k] = std::min(distances[k], 0.5f * k_background);
+        float sums[k_sums * k_block_voxels], scratch[k_block_voxels];
+        float* const distances = probe_step_ == 1 ? distances_.data() + n * b : scratch;
+        find_distances(points, near, keep ? node_sums_.data() + k_sums * n * b : sums, distances);
+        note_sides(b, distances, near.count > 0);
       });
 }
 
-/// Whether the probes in and around a block leave open that the surface is in it; `kind` says where it is
-/// otherwise.
-bool SurfaceField::cuts(std::uint32_t block, BlockKind& kind) const {
-  const int side = k_block_side / probe_step_;
-  const std::size_t n = lattice(probe_step_).count();
-  bool outside = true, inside = true;
-  for (int x = 0; x <= side; ++x) {
-    for (int y = 0; y <= side; ++y) {
-      for (int z = 0; z <= side; ++z) {
-        const std::uint32_t at = neighbors_[block][neighbor_slot(x / side, y / side, z / side)];
-        const auto node = static_cast<std::size_t>((x % side * side + y % side) * side + z % side);
-        const float distance = at == k_no_block ? k_background : probes_[n * at + node];
-        outside = outside && distance >= k_background;
-        inside = inside && distance <= deep_;
-        if (!outside && !inside) return true;
-      }
+/// touched: whether any particle is near.
+void SurfaceField::note_sides(std::uint32_t block, const float* distances, bool touched) {
+  constexpr std::size_t k_words = k_block_voxels / 64;
+  const std::size_t n = lattice(probe_step_).count(), words = (n + 63) / 64;
+  std::uint64_t sides[2][k_words];
+  best_surface_lanes().find_sides(distances, n, k_background, deep_, sides[0], sides[1]);
+  // The first slice of a word along x, where it has several, y and z.
+  struct Slices {
+    std::uint64_t all, x, y, z;
+  };
+  const Slices slices = n == 8    ? Slices{0xFF, 0x0F, 0x33, 0x55}
+                        : n == 64 ? Slices{~0ull, 0xFFFF, 0x000F000F000F000F, 0x1111111111111111}
+                                  : Slices{~0ull, ~0ull, 0xFF, 0x0101010101010101};
+  std::uint8_t found[2] = {};
+  for (int side = 0; side < 2; ++side) {
+    const std::uint64_t first = sides[side][0];
+    std::uint64_t every = first;
+    for (std::size_t w = 1; w < words; ++w) every &= sides[side][w];
+    for (unsigned slot = 0; slot < 8; ++slot) {
+      const std::uint64_t bits = slices.all & (slot & 4 ? slices.x : slices.all) &
+                                 (slot & 2 ? slices.y : slices.all) & (slot & 1 ? slices.z : slices.all);
+      const bool all = (~(slot & 4 ? first : every) & bits) == 0;
+      found[side] = static_cast<std::uint8_t>(found[side] | (all ? 1u : 0u) << slot);
     }
   }
-  kind = outside ? BlockKind::outside : BlockKind::inside;
-  return false;
+  // Far from it, the density overestimates distances: only where there is none is outside for certain.
+  outside_[block] = surface_kind_ == SurfaceKind::anisotropic && touched ? std::uint8_t{0} : found[0];
+  inside_[block] = found[1];
+}
+
+/// What the probes in a block and on the faces of those behind it say: the surface may be in it unless all
+/// are on one side.
+BlockKind SurfaceField::kind_by_probes(std::uint32_t block) const {
+  unsigned outside = 1, inside = 1;
+  for (unsigned slot = 0; slot < 8; ++slot) {
+    const std::uint32_t at = neighbors_[block][neighbor_slot(slot >> 2 & 1, slot >> 1 & 1, slot & 1)];
+    outside &= at == k_no_block ? 1u : static_cast<unsigned>(outside_[at]) >> slot;
+    inside &= at == k_no_block ? 0u : static_cast<unsigned>(inside_[at]) >> slot;
+  }
+  return outside & 1 ? BlockKind::outside : inside & 1 ? BlockKind::inside : BlockKind::surface;
 }
 
 void SurfaceField::classify(const Threads& threads) {
   const std::size_t n = blocks_.size();
-  kind_.assign(n, BlockKind::surface);
+  kind_.resize(n);
   parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) cuts(static_cast<std::uint32_t>(b), kind_[b]);
+    for (auto b = static_cast<std::uint32_t>(begin); b < end; ++b) kind_[b] = kind_by_probes(b);
   });
   // No block inside may touch one outside: then every sign that changes does so at a surface block.
   needs_nodes_.assign(n, 0);
@@ -295,9 +314,9 @@ void SurfaceField::classify(const Threads& threads) {
   for (std::size_t b = 0; b < n; ++b) {
     if (needs_nodes_[b]) kind_[b] = BlockKind::surface;
     place_[b] = stored;
-    if (kind_[b] == BlockKind::surface) stored += k_block_voxels;
+    if (kind_[b] == BlockKind::surface || probe_step_ == 1) stored += k_block_voxels;
   }
-  distances_.resize_unset(stored);
+  if (probe_step_ > 1) distances_.resize_unset(stored);
 }
 
 /// Sums at the nodes of all blocks that interpolation reads.
@@ -448,10 +467,9 @@ void SurfaceField::mean_at(BlockNear& near, ConstVectors points, std::size_t n, 
 
 std::size_t SurfaceField::bytes() const {
   return particles_.bytes() + blocks_.bytes() + distances_.bytes() +
-         neighbors_.capacity() * sizeof neighbors_[0] +
-         (probes_.capacity() + node_sums_.capacity()) * sizeof(float) +
+         neighbors_.capacity() * sizeof neighbors_[0] + node_sums_.capacity() * sizeof(float) +
          (place_.capacity() + node_place_.capacity()) * sizeof(std::size_t) + kind_.capacity() +
-         needs_nodes_.capacity();
+         needs_nodes_.capacity() + outside_.capacity() + inside_.capacity();
 }
 
 }  // namespace mallow

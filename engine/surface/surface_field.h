@@ -73,7 +73,8 @@ class SurfaceField {
   void classify(const Threads& threads);
   void sum_at_nodes(const Threads& threads);
   void fill(const Threads& threads);
-  bool cuts(std::uint32_t block, BlockKind& kind) const;
+  void note_sides(std::uint32_t block, const float* distances, bool touched);
+  BlockKind kind_by_probes(std::uint32_t block) const;
   void collect_nodes(std::uint32_t block, float* nodes) const;
 
   VoxelFrame frame_;
@@ -90,7 +91,9 @@ class SurfaceField {
   std::vector<std::array<std::uint32_t, 27>> neighbors_;
   std::vector<BlockKind> kind_;
   std::vector<std::uint8_t> needs_nodes_;
-  std::vector<float> probes_;     ///< distances at the probes, block by block
+  /// Of each block, whether all of its probes are outside, and all inside: of a bit's three bits, x slowest,
+  /// those that are set leave its first slice along that axis only.
+  std::vector<std::uint8_t> outside_, inside_;
   std::vector<float> node_sums_;  ///< of the blocks that need them
   std::vector<std::size_t> node_place_, place_;
   Column<float> distances_;

@@ -53,6 +53,18 @@ void distances(const SurfaceShape& shape, const float* sums, std::size_t n, floa
     store(distance_of(shape, {load(sums + k), load(sums + n + k, n), load(sums + 4 * n + k)}), to + k);
 }
 
+void find_sides(const float* distances, std::size_t n, float far, float deep, std::uint64_t* outside,
+                std::uint64_t* inside) noexcept {
+  for (std::size_t k = 0; k < n; k += k_cluster) {
+    const Floats distance = load(distances + k);
+    const std::uint64_t out = bits(is_at_most(all(far), distance)),
+                        in = bits(is_at_most(distance, all(deep)));
+    const std::size_t word = k / 64, shift = k % 64;
+    outside[word] = shift == 0 ? out : outside[word] | out << shift;
+    inside[word] = shift == 0 ? in : inside[word] | in << shift;
+  }
+}
+
 /// A row of voxels from a row of nodes: Σ_n w[·][n] node_n, `step` rows of lanes apart.
 MALLOW_INLINE Floats blend(const float* weights, const Floats* nodes, std::size_t step) {
   Floats sum = weights[0] * nodes[0];
@@ -137,7 +149,7 @@ void density_distances(const SurfaceShape& shape, const float* sums, std::size_t
 }  // namespace
 
 extern const SurfaceLanes surface_lanes;
-const SurfaceLanes surface_lanes = {distances, fill_block, sphere_distances, moments_at_points,
-                                    density_distances};
+const SurfaceLanes surface_lanes = {distances,        find_sides,        fill_block,
+                                    sphere_distances, moments_at_points, density_distances};
 
 }  // namespace mallow::MALLOW_LEVEL

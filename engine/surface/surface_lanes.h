@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "core/isa.h"
 #include "core/raw_columns.h"
@@ -40,6 +41,9 @@ struct NodeWeights {
 struct SurfaceLanes {
   /// Signed distances [voxels] from sums.
   void (*distances)(const SurfaceShape&, const float* sums, std::size_t n, float* distances) noexcept;
+  /// Of n distances, up to 512, a bit each: which are at least `far`, and which at most `deep`.
+  void (*find_sides)(const float* distances, std::size_t n, float far, float deep, std::uint64_t* outside,
+                     std::uint64_t* inside) noexcept;
   /// Distances of a block's voxels, z fastest, from the sums at its 5 × 5 × 5 nodes (five arrays of 125, z
   /// fastest): sums are interpolated, as they are smooth where distances have creases.
   void (*fill_block)(const SurfaceShape&, const NodeWeights&, const float* nodes, float* distances) noexcept;

@@ -70,6 +70,21 @@ TEST(surface_lanes, same_bits_at_every_instruction_level) {
   }
 }
 
+TEST(surface_lanes, sides_are_a_bit_for_each_distance) {
+  const Cloud distances(k_block_voxels, 6);
+  const float far = distances.x[70], deep = distances.x[200];
+  for (const InstructionLevel level : levels()) {
+    for (const std::size_t n : {std::size_t{8}, std::size_t{64}, k_block_voxels}) {
+      std::uint64_t outside[8] = {}, inside[8] = {};
+      lanes(level).find_sides(distances.x.data(), n, far, deep, outside, inside);
+      for (std::size_t k = 0; k < n; ++k) {
+        ASSERT_EQ(outside[k / 64] >> k % 64 & 1, distances.x[k] >= far ? 1u : 0u);
+        ASSERT_EQ(inside[k / 64] >> k % 64 & 1, distances.x[k] <= deep ? 1u : 0u);
+      }
+    }
+  }
+}
+
 TEST(surface_lanes, no_particles_are_outside) {
   const SurfaceLanes& k = lanes(best_instruction_level());
   const std::array<float, k_sums* 8> sums = {};
