@@ -7,6 +7,7 @@ namespace mallow {
 
 NodeWeights cubic_weights(int step, int before) {
   NodeWeights weights{};
+  weights.step = step;
   constexpr int k_last = static_cast<int>(k_nodes) - 1;
   for (int v = 0; v < k_block_side; ++v) {
     const double t = static_cast<double>(v) / step + before;

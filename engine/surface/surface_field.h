@@ -75,7 +75,9 @@ class SurfaceField {
   void fill(const Threads& threads);
   void note_sides(std::uint32_t block, const float* distances, bool touched);
   BlockKind kind_by_probes(std::uint32_t block) const;
-  void collect_nodes(std::uint32_t block, float* nodes) const;
+  void find_rows(std::uint32_t block, NodeRows& rows) const;
+  void collect_rows(std::uint32_t block, NodeRows& rows, float* nodes) const;
+  const float* sums_of(std::uint32_t block) const;
 
   VoxelFrame frame_;
   SurfaceShape shape_{};

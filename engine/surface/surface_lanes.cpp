@@ -65,16 +65,24 @@ void find_sides(const float* distances, std::size_t n, float far, float deep, st
   }
 }
 
-/// A row of voxels from a row of nodes: Σ_n w[·][n] node_n, `step` rows of lanes apart.
-MALLOW_INLINE Floats blend(const float* weights, const Floats* nodes, std::size_t step) {
-  Floats sum = weights[0] * nodes[0];
-  for (std::size_t n = 1; n < k_nodes; ++n) sum += weights[n] * nodes[n * step];
+/// Interpolates to voxel v between nodes that are `stride` rows of lanes apart. What a weight of 0 would add
+/// is left out.
+template <int step>
+MALLOW_INLINE Floats blend(const NodeWeights& weights, std::size_t v, const Floats* nodes,
+                           std::size_t stride) {
+  constexpr std::size_t k_step = step, k_before = step == 4 ? 1 : 0;
+  const std::size_t below = v / k_step + k_before;
+  if (v % k_step == 0) return nodes[below * stride];
+  const std::size_t first = below < 2 ? 0 : 1;
+  Floats sum = weights.w[v][first] * nodes[first * stride];
+  for (std::size_t n = first + 1; n < first + 4; ++n) sum += weights.w[v][n] * nodes[n * stride];
   return sum;
 }
 
-void fill_block(const SurfaceShape& shape, const NodeWeights& weights, const float* nodes,
-                float* to) noexcept {
-  constexpr std::size_t k_side = k_block_side, k_plane = k_nodes * k_nodes, k_all = k_nodes * k_plane;
+template <int step>
+void fill_between(const SurfaceShape& shape, const NodeWeights& weights, const NodeRows& nodes,
+                  float* to) noexcept {
+  constexpr std::size_t k_side = k_block_side;
   // Weights along z, a lane a voxel.
   Floats along_z[k_nodes];
   for (std::size_t n = 0; n < k_nodes; ++n)
@@ -85,19 +93,30 @@ void fill_block(const SurfaceShape& shape, const NodeWeights& weights, const flo
     for (std::size_t x = 0; x < k_nodes; ++x) {
       Floats rows[k_nodes];
       for (std::size_t y = 0; y < k_nodes; ++y) {
-        const float* const from = nodes + s * k_all + x * k_plane + y * k_nodes;
+        const float* const from = nodes.four[x * k_nodes + y] + s * nodes.stride;
         rows[y] = from[0] * along_z[0];
-        for (std::size_t n = 1; n < k_nodes; ++n) rows[y] += from[n] * along_z[n];
+        for (std::size_t n = 1; n < k_nodes - 1; ++n) rows[y] += from[n] * along_z[n];
+        rows[y] += nodes.fifth[x * k_nodes + y][s * nodes.stride] * along_z[k_nodes - 1];
       }
-      for (std::size_t y = 0; y < k_side; ++y) by_plane[s][x][y] = blend(weights.w[y], rows, 1);
+#pragma GCC unroll 8
+      for (std::size_t y = 0; y < k_side; ++y) by_plane[s][x][y] = blend<step>(weights, y, rows, 1);
     }
   }
-  for (std::size_t x = 0; x < k_side; ++x) {
-    for (std::size_t y = 0; y < k_side; ++y) {
-      const auto at = [&](std::size_t s) { return blend(weights.w[x], &by_plane[s][0][y], k_side); };
+  for (std::size_t y = 0; y < k_side; ++y) {
+#pragma GCC unroll 8
+    for (std::size_t x = 0; x < k_side; ++x) {
+      const auto at = [&](std::size_t s) __attribute__((always_inline)) {
+        return blend<step>(weights, x, &by_plane[s][0][y], k_side);
+      };
       store(distance_of(shape, {at(0), {at(1), at(2), at(3)}, at(4)}), to + (x * k_side + y) * k_side);
     }
   }
+}
+
+void fill_block(const SurfaceShape& shape, const NodeWeights& weights, const NodeRows& nodes,
+                float* to) noexcept {
+  if (weights.step == 2) return fill_between<2>(shape, weights, nodes, to);
+  fill_between<4>(shape, weights, nodes, to);
 }
 
 void sphere_distances(const SurfaceShape& shape, const float* squares, std::size_t n, float* to) noexcept {

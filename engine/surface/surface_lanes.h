@@ -32,9 +32,19 @@ inline constexpr std::size_t k_moments = 10;
 /// Nodes along a side of what a block's sums are interpolated from.
 inline constexpr std::size_t k_nodes = 5;
 
-/// w[v][n]: share of node n in voxel v, along one axis.
+/// Cubic interpolation along one axis between nodes `step` voxels apart, 2 or 4. w[v][n]: share of node n in
+/// voxel v, which is 0 but for four of them; voxels that are nodes have but their own.
 struct NodeWeights {
+  int step;
   float w[k_block_side][k_nodes];
+};
+
+/// Where the sums at a block's 5 × 5 × 5 nodes lie, x slowest: of each row along z the first four follow each
+/// other. Sums of a node lie `stride` floats apart.
+struct NodeRows {
+  const float* four[k_nodes * k_nodes];
+  const float* fifth[k_nodes * k_nodes];
+  std::size_t stride;
 };
 
 /// Points come in eights. Sums of n points are arrays of n, as SumLanes has them.
@@ -44,9 +54,9 @@ struct SurfaceLanes {
   /// Of n distances, up to 512, a bit each: which are at least `far`, and which at most `deep`.
   void (*find_sides)(const float* distances, std::size_t n, float far, float deep, std::uint64_t* outside,
                      std::uint64_t* inside) noexcept;
-  /// Distances of a block's voxels, z fastest, from the sums at its 5 × 5 × 5 nodes (five arrays of 125, z
-  /// fastest): sums are interpolated, as they are smooth where distances have creases.
-  void (*fill_block)(const SurfaceShape&, const NodeWeights&, const float* nodes, float* distances) noexcept;
+  /// Distances of a block's voxels, z fastest, from the sums at its nodes: sums are interpolated, as they are
+  /// smooth where distances have creases.
+  void (*fill_block)(const SurfaceShape&, const NodeWeights&, const NodeRows&, float* distances) noexcept;
   /// Distances to the nearest of the spheres of radius `offset` around the particles [voxels], cut at the
   /// background, from the squared distances to their middles.
   void (*sphere_distances)(const SurfaceShape&, const float* squares, std::size_t n,

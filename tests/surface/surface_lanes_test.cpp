@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "levels.h"
+#include "surface/node_weights.h"
 
 namespace mallow {
 namespace surface_lanes_test {
@@ -43,17 +44,21 @@ const SurfaceLanes& lanes(InstructionLevel level) {
 std::vector<float> everything(InstructionLevel level) {
   const SurfaceLanes& k = lanes(level);
   const Cloud particles(71, 1), points(128, 2), values(5 * 128, 3);
-  std::vector<float> all(128 + k_block_voxels + 128 + (k_moments + 1) * 128);
+  std::vector<float> all(128 + 2 * k_block_voxels + 128 + (k_moments + 1) * 128);
   float* const distances = all.data();
   k.distances(k_shape, values.x.data(), 128, distances);
-  NodeWeights weights{};
-  for (auto& voxel : weights.w)
-    for (std::size_t n = 0; n < k_nodes; ++n) voxel[n] = 0.1f * static_cast<float>(n + 1);
+  NodeRows rows;
+  rows.stride = 125;
+  for (std::size_t row = 0; row < k_nodes * k_nodes; ++row) {
+    rows.four[row] = values.x.data() + row * k_nodes;
+    rows.fifth[row] = rows.four[row] + k_nodes - 1;
+  }
   float* const block = distances + 128;
-  k.fill_block(k_shape, weights, values.x.data(), block);
+  k.fill_block(k_shape, cubic_weights(2, 0), rows, block);
+  k.fill_block(k_shape, cubic_weights(4, 1), rows, block + k_block_voxels);
   std::vector<float> squares;
   for (const float x : values.x) squares.push_back(x * x);
-  float* const spheres = block + k_block_voxels;
+  float* const spheres = block + 2 * k_block_voxels;
   k.sphere_distances(k_shape, squares.data(), 128, spheres);
   float* const moments = spheres + 128;
   k.moments_at_points(points.raw(), 128, particles.raw(), particles.count, moments);
