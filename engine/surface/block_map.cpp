@@ -90,13 +90,15 @@ std::size_t BlockMap::slot_of(std::uint64_t key) const {
 }
 
 BlockMap::Cube& BlockMap::cube(std::uint64_t key) {
+  if (last_ < cubes_.size() && cubes_[last_].key == key) return cubes_[last_];
   if (2 * (used_ + 1) > cubes_.size()) {
     std::vector<Cube> old(std::max<std::size_t>(1024, 2 * cubes_.size()));
     old.swap(cubes_);
     for (const Cube& c : old)
       if (c.key != k_free) cubes_[slot_of(c.key)] = c;
   }
-  Cube& found = cubes_[slot_of(key)];
+  last_ = slot_of(key);
+  Cube& found = cubes_[last_];
   if (found.key == k_free) {
     found.key = key;
     ++used_;
@@ -114,6 +116,7 @@ void BlockMap::insert(const Coord& first, const Coord& last) {
         const std::uint64_t in_z = slab(first.z() - k_cube_side * z, last.z() - k_cube_side * z, 1);
         Cube& c = cube(key_of(x, y, z));
         const std::uint64_t more = in_x & in_y & in_z & ~c.blocks;
+        if (more == 0) continue;
         c.blocks |= more;
         size_ += static_cast<std::size_t>(std::popcount(more));
       }

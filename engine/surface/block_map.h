@@ -59,6 +59,7 @@ class BlockMap {
 
   std::vector<Cube> cubes_;  ///< open addressing; a power of two, at most half full
   std::size_t used_ = 0, size_ = 0;
+  std::size_t last_ = 0;  ///< slot of the cube that was asked for last: mostly it is asked for again
   std::vector<std::uint64_t> keys_;
   std::vector<Coord> blocks_;
   std::vector<Group> groups_;

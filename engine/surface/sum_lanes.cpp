@@ -52,6 +52,13 @@ struct Column {
   Floats low_x, high_x, low_y, high_y;
 };
 
+MALLOW_INLINE Floats zero() {
+  return all(0);
+}
+MALLOW_INLINE ClusterVec3 zeros() {
+  return {zero(), zero(), zero()};
+}
+
 // What is summed: a State of eight points, and over which particles.
 
 /// Kernels that are spheres of the kernel radius.
@@ -77,7 +84,7 @@ struct BlendedSums : RoundKernel {
     ClusterVec3 offset;
     Floats square;
   };
-  [[gnu::always_inline]] State start() const { return State{}; }
+  [[gnu::always_inline]] State start() const { return {zero(), zeros(), zero()}; }
   [[gnu::always_inline]] void add(State& s, const ClusterVec3& d, std::uint32_t) const {
     const Floats square = dot_from_left(d, d);
     const Floats t = nearness(square);
@@ -125,7 +132,7 @@ struct DensitySums {
     Floats density;
     ClusterVec3 gradient;
   };
-  [[gnu::always_inline]] State start() const { return State{}; }
+  [[gnu::always_inline]] State start() const { return {zero(), zeros()}; }
   [[gnu::always_inline]] Ints across(const Column& column, const ConstVectors& near, std::size_t k) const {
     const Floats dx = distance(load(near.x + k), column.low_x, column.high_x);
     const Floats dy = distance(load(near.y + k), column.low_y, column.high_y);
@@ -160,7 +167,7 @@ struct WeightedValues : RoundKernel {
     Floats weight;
     ClusterVec3 sum;
   };
-  [[gnu::always_inline]] State start() const { return State{}; }
+  [[gnu::always_inline]] State start() const { return {zero(), zeros()}; }
   [[gnu::always_inline]] void add(State& s, const ClusterVec3& d, std::uint32_t i) const {
     const Floats t = nearness(dot_from_left(d, d));
     const Floats w = t * t * t;
@@ -205,8 +212,8 @@ template <std::size_t planes, class Kernel>
   for (typename Kernel::State& sum : sums) sum = kernel.start();
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = listed[k];
-    const Floats dx = particles.x[i] - group.x, dy = particles.y[i] - group.y, z = all(particles.z[i]);
-    for (std::size_t p = 0; p < planes; ++p) kernel.add(sums[p], {dx, dy, z - group.z[p]}, i);
+    const Floats dx = particles.x[i] - group.x, dy = particles.y[i] - group.y;
+    for (std::size_t p = 0; p < planes; ++p) kernel.add(sums[p], {dx, dy, particles.z[i] - group.z[p]}, i);
   }
   for (std::size_t p = 0; p < planes; ++p) to[p] = sums[p];
 }

@@ -102,9 +102,11 @@ void Surfacer::Work::at_vertices(const Visit& visit) {
         for (std::size_t r = begin; r < end; ++r) {
           const std::size_t n = padded(runs[r].count);
           for (std::size_t a = 0; a < 3; ++a) {
-            points[a].assign(n, 0.0f);
-            for (std::uint32_t v = 0; v < runs[r].count; ++v)
-              points[a][v] = mesher.local(runs[r].first + v)[static_cast<Eigen::Index>(a)];
+            points[a].resize(n);
+            // The last fills up to eights: they are to lie near each other.
+            for (std::uint32_t v = 0; v < n; ++v)
+              points[a][v] =
+                  mesher.local(runs[r].first + std::min(v, runs[r].count - 1))[static_cast<Eigen::Index>(a)];
           }
           visit(runs[r], ConstVectors{points[0].data(), points[1].data(), points[2].data()}, n);
         }
