@@ -48,7 +48,7 @@ MALLOW_INLINE Floats nearness(const Floats& square) {
 }
 
 /// Groups of points above each other in z.
-struct Column {
+struct PointColumn {
   Floats low_x, high_x, low_y, high_y;
 };
 
@@ -63,9 +63,9 @@ MALLOW_INLINE ClusterVec3 zeros() {
 
 /// Kernels that are spheres of the kernel radius.
 struct RoundKernel {
-  using Across = Floats;
   /// What is known of eight particles from x and y.
-  [[gnu::always_inline]] Floats across(const Column& column, const ConstVectors& near, std::size_t k) const {
+  [[gnu::always_inline]] Floats across(const PointColumn& column, const ConstVectors& near,
+                                       std::size_t k) const {
     const Floats dx = distance(load(near.x + k), column.low_x, column.high_x);
     const Floats dy = distance(load(near.y + k), column.low_y, column.high_y);
     return dx * dx + dy * dy;
@@ -133,7 +133,8 @@ struct DensitySums {
     ClusterVec3 gradient;
   };
   [[gnu::always_inline]] State start() const { return {zero(), zeros()}; }
-  [[gnu::always_inline]] Ints across(const Column& column, const ConstVectors& near, std::size_t k) const {
+  [[gnu::always_inline]] Ints across(const PointColumn& column, const ConstVectors& near,
+                                     std::size_t k) const {
     const Floats dx = distance(load(near.x + k), column.low_x, column.high_x);
     const Floats dy = distance(load(near.y + k), column.low_y, column.high_y);
     return is_at_most(dx, load(reach.x + k)) & is_at_most(dy, load(reach.y + k));
@@ -185,7 +186,7 @@ struct Group {
 /// Lists, for each group of a column, the particles that reach into the box around it. low, high: of the
 /// groups, in z. listed: a list a group, `room` long.
 template <std::size_t groups, class Kernel>
-MALLOW_INLINE void list_in_reach(const Kernel& kernel, const NearColumns& near, const Column& column,
+MALLOW_INLINE void list_in_reach(const Kernel& kernel, const NearColumns& near, const PointColumn& column,
                                  const Floats* low, const Floats* high, std::size_t* counts) {
   const ConstVectors particles = near.positions;
   const std::size_t room = near.room(), end = near.count;
@@ -270,7 +271,7 @@ MALLOW_INLINE void sum_in_columns(const Kernel& kernel, const PointLattice& latt
 
 /// Sums at eight points in a box.
 template <class Kernel>
-MALLOW_INLINE void sum_at_eight(const Kernel& kernel, const NearColumns& near, const Column& column,
+MALLOW_INLINE void sum_at_eight(const Kernel& kernel, const NearColumns& near, const PointColumn& column,
                                 const Floats& low_z, const Floats& high_z, const ClusterVec3& x,
                                 typename Kernel::State& sums) {
   std::size_t count;

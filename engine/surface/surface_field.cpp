@@ -203,14 +203,6 @@ void SurfaceField::for_each_block(const Threads& threads, const Needed& needed, 
       k_groups_at_once);
 }
 
-/// The particles near one block, until the next call.
-BlockNear& SurfaceField::near_block(std::uint32_t block) const {
-  thread_local BlockNear near;
-  particles_.load_group(blocks_.group_of(block), near);
-  particles_.pick(blocks_, frame_, block, near);
-  return near;
-}
-
 /// Distances at points about a block. sums: room for k_sums of each.
 void SurfaceField::find_distances(const PointLattice& points, BlockNear& near, float* sums,
                                   float* distances) const {
@@ -349,55 +341,6 @@ void SurfaceField::sum_at_nodes(const Threads& threads) {
       });
 }
 
-/// Sums at a block's own nodes.
-const float* SurfaceField::sums_of(std::uint32_t block) const {
-  static constexpr float k_none[k_sums * k_block_voxels / 8] = {};  // of blocks that no particle reaches
-  return block == k_no_block ? k_none : node_sums_.data() + node_place_[block];
-}
-
-/// The nodes in and behind a block, two voxels apart, where they lie.
-void SurfaceField::find_rows(std::uint32_t block, NodeRows& rows) const {
-  constexpr std::size_t k_side = k_nodes - 1;
-  rows.stride = k_side * k_side * k_side;
-  const float* sums[8];
-  for (int slot = 0; slot < 8; ++slot)
-    sums[slot] = sums_of(neighbors_[block][neighbor_slot(slot >> 2, slot >> 1 & 1, slot & 1)]);
-  for (std::size_t x = 0; x < k_nodes; ++x) {
-    for (std::size_t y = 0; y < k_nodes; ++y) {
-      const std::size_t slot = x / k_side * 4 + y / k_side * 2;
-      const std::size_t first = (x % k_side * k_side + y % k_side) * k_side;
-      rows.four[x * k_nodes + y] = sums[slot] + first;
-      rows.fifth[x * k_nodes + y] = sums[slot + 1] + first;
-    }
-  }
-}
-
-/// The nodes in and around a block, four voxels apart: two of an axis are its own, one lies before, two
-/// behind. nodes: room for the sums at all.
-void SurfaceField::collect_rows(std::uint32_t block, NodeRows& rows, float* nodes) const {
-  constexpr std::size_t k_all = k_nodes * k_nodes * k_nodes, k_own = 8;
-  const float* sums[27];
-  for (std::size_t slot = 0; slot < 27; ++slot) sums[slot] = sums_of(neighbors_[block][slot]);
-  // Node k of an axis is node (k + 1) % 2 of the block (k + 1) / 2 − 1 away.
-  const auto number = [](std::size_t x, std::size_t y, std::size_t z, std::size_t side, auto part) {
-    return (part(x + 1) * side + part(y + 1)) * side + part(z + 1);
-  };
-  const auto in_block = [](std::size_t k) { return k / 2; };
-  const auto in_nodes = [](std::size_t k) { return k % 2; };
-  std::size_t to = 0;
-  for (std::size_t x = 0; x < k_nodes; ++x) {
-    for (std::size_t y = 0; y < k_nodes; ++y) {
-      rows.four[x * k_nodes + y] = nodes + to;
-      rows.fifth[x * k_nodes + y] = nodes + to + k_nodes - 1;
-      for (std::size_t z = 0; z < k_nodes; ++z, ++to) {
-        const float* const from = sums[number(x, y, z, 3, in_block)] + number(x, y, z, 2, in_nodes);
-        for (std::size_t s = 0; s < k_sums; ++s) nodes[s * k_all + to] = from[s * k_own];
-      }
-    }
-  }
-  rows.stride = k_all;
-}
-
 void SurfaceField::fill(const Threads& threads) {
   const auto to = [&](std::uint32_t b) { return distances_.data() + place_[b]; };
   const auto cut = [&](std::uint32_t b) { return kind_[b] == BlockKind::surface; };
@@ -424,66 +367,6 @@ void SurfaceField::fill(const Threads& threads) {
         }
       },
       k_blocks_at_once);
-}
-
-void SurfaceField::mean_at(std::uint32_t block, ConstVectors points, std::size_t n,
-                           const PickedVectors& values, Vectors means) const {
-  mean_at(
-      near_block(block), points, n, [&](std::size_t particle) { return values[particle]; }, means);
-}
-
-void SurfaceField::body_at(std::uint32_t block, ConstVectors points, std::size_t n,
-                           std::span<const std::uint32_t> bodies, std::span<std::uint32_t> found) const {
-  BlockNear& near = near_block(block);
-  thread_local std::vector<std::uint32_t> here;  // the bodies near the block, ascending
-  thread_local std::vector<float> largest, shares[3];
-  here.clear();
-  for (std::size_t k = 0; k < near.count; ++k)
-    here.push_back(bodies[particles_.cells().particle(near.place(k))]);
-  std::sort(here.begin(), here.end());
-  here.erase(std::unique(here.begin(), here.end()), here.end());
-
-  std::fill(found.begin(), found.end(), 0u);
-  largest.assign(found.size(), 0.0f);
-  for (std::vector<float>& share : shares) share.resize(n);
-  // Three at a time: a particle's share in each is a vector of 0 and 1, whose mean is taken.
-  for (std::size_t first = 0; first < here.size(); first += 3) {
-    const std::size_t count = std::min<std::size_t>(3, here.size() - first);
-    const auto is_of = [&](std::size_t particle) {
-      Vec3 of = Vec3::Zero();
-      for (std::size_t a = 0; a < count; ++a)
-        if (bodies[particle] == here[first + a]) of[static_cast<Eigen::Index>(a)] = 1;
-      return of;
-    };
-    mean_at(near, points, n, is_of, {shares[0].data(), shares[1].data(), shares[2].data()});
-    for (std::size_t a = 0; a < count; ++a) {
-      for (std::size_t p = 0; p < found.size(); ++p) {
-        if (!(shares[a][p] > largest[p])) continue;
-        largest[p] = shares[a][p];
-        found[p] = here[first + a];
-      }
-    }
-  }
-}
-
-template <class Value>
-void SurfaceField::mean_at(BlockNear& near, ConstVectors points, std::size_t n, const Value& value,
-                           Vectors means) const {
-  thread_local std::vector<float> scaled[3], near_values[3];
-  const float* const from[3] = {points.x, points.y, points.z};
-  for (std::size_t a = 0; a < 3; ++a) {
-    scaled[a].resize(n);
-    for (std::size_t k = 0; k < n; ++k) scaled[a][k] = from[a][k] * shape_.voxel_size;
-    near_values[a].resize(near.count);
-  }
-  for (std::size_t k = 0; k < near.count; ++k) {
-    const Vec3 of_particle = value(particles_.cells().particle(near.place(k)));
-    for (std::size_t a = 0; a < 3; ++a) near_values[a][k] = of_particle[static_cast<Eigen::Index>(a)];
-  }
-  const auto raw = [](const std::vector<float>(&axes)[3]) {
-    return ConstVectors{axes[0].data(), axes[1].data(), axes[2].data()};
-  };
-  best_sum_lanes().mean(raw(scaled), n, near.columns(), raw(near_values), means);
 }
 
 std::size_t SurfaceField::bytes() const {

@@ -93,8 +93,8 @@ class SurfaceField {
   std::vector<std::array<std::uint32_t, 27>> neighbors_;
   std::vector<BlockKind> kind_;
   std::vector<std::uint8_t> needs_nodes_;
-  /// Of each block, whether all of its probes are outside, and all inside: of a bit's three bits, x slowest,
-  /// those that are set leave its first slice along that axis only.
+  /// Of each block, a bit for each slot: whether all of its probes are outside, and inside. Slot 4 x + 2 y +
+  /// z of 0 and 1: along an axis that has a 1 only those of the first slice count.
   std::vector<std::uint8_t> outside_, inside_;
   std::vector<float> node_sums_;  ///< of the blocks that need them
   std::vector<std::size_t> node_place_, place_;
