@@ -20,6 +20,23 @@ constexpr double k_least_strain = 0.8, k_most_strain = 1.25;
 /// stay as small.
 constexpr double k_least_size = 0.3, k_most_size = 1.25;
 
+/// Whether all eigenvalues of a symmetric matrix are above 0.
+bool is_definite(const Eigen::Matrix3d& m) {
+  return m(0, 0) > 0 && m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0) > 0 && m.determinant() > 0;
+}
+
+double bounded_size(double determinant) {
+  return std::clamp(std::cbrt(determinant), k_least_size, k_most_size);
+}
+
+/// Whether none of a strain's eigenvalues is beyond what survives, which most are not: then nobody asks what
+/// they are.
+bool survives_whole(const Eigen::Matrix3d& strain) {
+  if (!is_definite(strain)) return false;
+  const Eigen::Matrix3d size = bounded_size(strain.determinant()) * Eigen::Matrix3d::Identity();
+  return is_definite(strain - k_least_strain * size) && is_definite(k_most_strain * size - strain);
+}
+
 /// The matrix in front of a sums row.
 Eigen::Matrix3d front_matrix(const ShapeMatching& shape, std::size_t region) {
   const float* const row = shape.sums.data() + region * k_row;
@@ -115,9 +132,14 @@ Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d
                                  const Eigen::Matrix3d& moment) {
   if (is_thin(moment)) return Eigen::Matrix3f::Identity();
   const Eigen::Matrix3d f = rotation.transpose() * m * moment.inverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (f + f.transpose()));
+  const Eigen::Matrix3d e = 0.5 * (f + f.transpose());
+  if (survives_whole(e)) {
+    const Eigen::Matrix3d stretch = rotation * e.inverse() * rotation.transpose();
+    return stretch.cast<float>();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(e);
   const Eigen::Vector3d& found = solver.eigenvalues();
-  const double size = found[0] > 0 ? std::clamp(std::cbrt(found.prod()), k_least_size, k_most_size) : 1;
+  const double size = found[0] > 0 ? bounded_size(found.prod()) : 1;
   const Eigen::Vector3d strain = size * (found / size).cwiseMax(k_least_strain).cwiseMin(k_most_strain);
   const Eigen::Matrix3d axes = rotation * solver.eigenvectors();
   const Eigen::Matrix3d stretch = axes * strain.cwiseInverse().asDiagonal() * axes.transpose();

@@ -156,8 +156,7 @@ MALLOW_INLINE void flow_lanes(const FlowInput& rule, std::size_t j, const Lanes*
   constexpr float k_near = 0.999f;
   const Symmetric &b = region.moment, &p = region.stretched, adjoint = cofactors(p);
   const Lanes volume = determinant(p, adjoint);
-  const LaneMask thick = (volume > k_thin * cube(mean_extent(p))) &
-                         (determinant(b, cofactors(b)) > k_single_layer * cube(mean_extent(b)));
+  const LaneMask thick = volume > k_thin * cube(mean_extent(p));
   const Lanes inverse = thick ? 1.0f / volume : Lanes{};
   Lanes n[9], f[9];  // Rᵀ M, and that times the cofactors of P
   for (int i = 0; i < 3; ++i)
@@ -174,9 +173,10 @@ MALLOW_INLINE void flow_lanes(const FlowInput& rule, std::size_t j, const Lanes*
   const Lanes yield = rule.yields ? load(rule.yields + j) : all_lanes(rule.yield);
   const LaneMask near = upright & (squared > k_near * yield * yield);
   if (!any(near)) return;
+  const LaneMask layers = determinant(b, cofactors(b)) > k_single_layer * cube(mean_extent(b));
   const Lanes size = square_root(squared);
   // Not where it is infinite, whatever is wrong there.
-  const LaneMask flows = near & (size > yield) & (size < 1e30f);
+  const LaneMask flows = near & layers & (size > yield) & (size < 1e30f);
   if (!any(flows)) return;
   const Lanes y = smaller((1.0f - yield / size) * rule.share, k_most_flow / size);
   const Symmetric g = plus_identity(y, strain);
