@@ -3,10 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/bounds.h"
 #include "core/execution.h"
+#include "core/parallel.h"
 #include "neighbors/neighbor_lists.h"
 #include "shape_matching/plastic_lanes.h"
 #include "shape_matching/shape_matching.h"
@@ -66,6 +68,17 @@ Flowed flowed_particles(const VectorColumn& positions, std::size_t begin, float 
   return flowed;
 }
 
+/// Whether holds(k) for any k below n.
+template <class Holds>
+bool any_below(std::size_t n, const Threads& threads, const Holds& holds) {
+  std::atomic<bool> any = false;
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end && !any.load(std::memory_order_relaxed); ++k)
+      if (holds(k)) any.store(true, std::memory_order_relaxed);
+  });
+  return any;
+}
+
 /// Whether two are nearer than `near` in one place and farther apart than `far` in the other.
 bool any_part_ways(const VectorColumn& here, float near, const VectorColumn& there, float far,
                    const Execution& execution) {
@@ -73,10 +86,38 @@ bool any_part_ways(const VectorColumn& here, float near, const VectorColumn& the
   NeighborLists lists;
   build_cell_grid(here, 0, here.size(), near, execution, grid);
   build_neighbor_lists(grid, near, execution, lists);
-  for (std::size_t s = 0; s < here.size(); ++s)
-    for (const std::uint32_t t : lists.of(s))
-      if ((there.get(grid.order[s]) - there.get(grid.order[t])).squaredNorm() > far * far) return true;
-  return false;
+  return any_below(here.size(), execution.threads, [&](std::size_t s) {
+    const Vec3 own = there.get(grid.order[s]);
+    return std::ranges::any_of(lists.of(s), [&](std::uint32_t t) {
+      return (own - there.get(grid.order[t])).squaredNorm() > far * far;
+    });
+  });
+}
+
+/// Whether two that are in one's region, and have flowed, are farther apart than `far`.
+bool any_torn(const VectorColumn& positions, std::size_t begin, float far, const Execution& execution,
+              const ShapeMatching& shape) {
+  if (shape.region_stride != 1) {  // regions are not those of all particles: who is near is searched for
+    const Flowed flowed = flowed_particles(positions, begin, 0, shape);
+    return any_part_ways(flowed.rest, shape.region_radius, flowed.position, far, execution);
+  }
+  const TableLists& lists = shape.regions;
+  const auto rows = static_cast<std::uint32_t>(lists.rows);
+  const float* const flow = shape.plastic.flow.data();
+  return any_below(rows, execution.threads, [&](std::size_t j) {
+    if (!(flow[j] > 0)) return false;
+    const Vec3 own = positions.get(begin + j);
+    const std::uint32_t* const entries = lists.entries.data() + lists.begin[j];
+    float farthest = 0;
+    for (std::uint32_t k = 0; k < lists.count[j]; ++k) {
+      const std::size_t first = entries[k] % rows, last = first + lists.lengths.length[entries[k] / rows];
+      for (std::size_t i = std::max(first, j + 1); i < last; ++i) {  // a pair is in the lists of both
+        const float square = (own - positions.get(begin + i)).squaredNorm();
+        farthest = std::max(farthest, flow[i] > 0 ? square : 0.0f);
+      }
+    }
+    return farthest > far * far;
+  });
 }
 
 }  // namespace
@@ -153,9 +194,7 @@ bool reframe_is_due(const VectorColumn& positions, std::size_t begin, const Fram
   if (most > k_far_flow) return true;
   if (most == 0 || !(shape.spacing > 0)) return false;
   const float radius = shape.region_radius;
-  const Flowed flowed = flowed_particles(positions, begin, 0, shape);
-  if (any_part_ways(flowed.rest, radius, flowed.position, (1 + limits.tear_strain) * radius, execution))
-    return true;
+  if (any_torn(positions, begin, (1 + limits.tear_strain) * radius, execution, shape)) return true;
   if (most <= limits.merge_flow) return false;
   const Flowed pressed = flowed_particles(positions, begin, limits.merge_flow, shape);
   return any_part_ways(pressed.position, shape.spacing, pressed.rest, radius, execution);
