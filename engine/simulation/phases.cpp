@@ -55,7 +55,7 @@ void take_reference(Simulation::State& state, BodyState& body) {
 /// as stiff as its step gained energy at each update that met it swinging back.
 void kick_by_pull(Simulation::State& state, BodyState& body, float share) {
   MatchedBodies matched;
-  weigh_regions(state.store, body);
+  weigh_regions(state.execution.threads, state.store, body);
   matched.add(body.shape, body.begin);
   match_shapes(state.store.position, state.config.rotation_iterations, state.execution, matched);
   const float kick = share * static_cast<float>(state.last_time_step) * state.stiffness(body);

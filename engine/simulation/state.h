@@ -226,6 +226,7 @@ struct Simulation::State {
   Islands islands;
   RangeBlocks led_blocks;
   VectorColumn led_position;  ///< see lead_positions(); empty without damping
+  std::vector<BlendRange> partial_blends;
   std::vector<TouchingBody> touching;
   ContactPairs contact_pairs;
 
@@ -428,7 +429,7 @@ using PhaseHook = std::function<void(Phase)>;
 StepReport take_step(Simulation::State& state, double end, const PhaseHook& after_phase = {});
 
 /// One body's, for whoever matches its shape outside of a step.
-void weigh_regions(const ParticleStore& store, BodyState& body);
+void weigh_regions(const Threads& threads, const ParticleStore& store, BodyState& body);
 /// alpha of materials, what changed -> alpha of rows that follow them; what bodies and materials span.
 void blend_bodies(Simulation::State& state);
 /// Rows [begin, end) of a body, its last ones, get what points say of them.
