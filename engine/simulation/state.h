@@ -378,8 +378,14 @@ ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& re
 void move_bodies(Simulation::State& state, float time_step, const MotionPhases& phases);
 /// densities, lists, predicted velocities -> those that keep volumes. [model 2, section 2]
 void correct_volume(Simulation::State& state, float time_step, StepReport& report);
-/// velocities, predicted -> what contact between bodies makes of them. keeps_sums: somebody asks what for.
-void touch_bodies(Simulation::State& state, float time_step, bool keeps_sums, VectorColumn& velocities);
+/// How contact between bodies is called for.
+struct ContactCall {
+  bool again = false;       ///< not for the first time in this step
+  bool keeps_sums = false;  ///< somebody asks what it gives
+};
+/// velocities, predicted -> what contact between bodies makes of them.
+void touch_bodies(Simulation::State& state, float time_step, const ContactCall& call,
+                  VectorColumn& velocities);
 /// positions, predicted velocities -> those of bodies that touch. [model 2, section 4 C]
 void resolve_touching(Simulation::State& state, float time_step);
 /// impulses of the step -> events of contacts that begin, hit and end.
