@@ -62,9 +62,7 @@ void measure_yield_cost(int threads, const AddNumber& add) {
     // A few steps of one, a few of the other: what else the machine does slows both.
     for (int block = 0; block < k_blocks; ++block)
       for (const auto& [s, times] : {std::pair{&elastic, &without}, std::pair{&yielding, &with}})
-        times->push_back(milliseconds([&, s = s] {
-          for (int k = 0; k < k_block_steps; ++k) s->step();
-        }));
+        for (int k = 0; k < k_block_steps; ++k) times->push_back(milliseconds([&, s = s] { s->step(); }));
     add("cost of yield", motion.name, {"median step, of an elastic one", median(with) / median(without), {}});
     add("cost of yield", motion.name,
         {"mean step with new frames, of an elastic one", mean(with) / mean(without), {}});
