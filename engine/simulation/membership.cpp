@@ -213,7 +213,7 @@ std::vector<ParticleId> extend(Simulation::State& s, BodyState& body, const Body
   if (remembers) {
     // As they are now, not as they were when the last step began.
     MatchedBodies matched;
-    weigh_regions(s.store, body);
+    weigh_regions(s.execution.threads, s.store, body);
     matched.add(body.shape, body.begin);
     match_shapes(s.store.position, s.config.rotation_iterations, s.execution, matched);
     carried = carry_regions(body.shape);

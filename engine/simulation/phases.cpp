@@ -17,6 +17,10 @@ namespace {
 /// are in no order take half as long again for every step.
 constexpr std::int64_t k_sort_interval = 60;
 
+/// Way of a particle in one step, in spacings, that iterations of the volume constraint may add before those
+/// that may touch are looked for again: several times what gravity adds, and few more pairs to try.
+constexpr float k_contact_slack = 0.05f;
+
 }  // namespace
 
 bool Simulation::State::needs_sph() const {
@@ -55,7 +59,7 @@ void take_reference(Simulation::State& state, BodyState& body) {
 /// as stiff as its step gained energy at each update that met it swinging back.
 void kick_by_pull(Simulation::State& state, BodyState& body, float share) {
   MatchedBodies matched;
-  weigh_regions(state.store, body);
+  weigh_regions(state.execution.threads, state.store, body);
   matched.add(body.shape, body.begin);
   match_shapes(state.store.position, state.config.rotation_iterations, state.execution, matched);
   const float kick = share * static_cast<float>(state.last_time_step) * state.stiffness(body);
@@ -413,7 +417,8 @@ void wake_pushed(Simulation::State& state, float time_step) {
 
 }  // namespace
 
-void touch_bodies(Simulation::State& state, float time_step, bool keeps_sums, VectorColumn& velocities) {
+void touch_bodies(Simulation::State& state, float time_step, const ContactCall& call,
+                  VectorColumn& velocities) {
   state.touching.clear();
   for (const BodyState& body : state.bodies)
     state.touching.push_back({.begin = body.begin,
@@ -426,16 +431,20 @@ void touch_bodies(Simulation::State& state, float time_step, bool keeps_sums, Ve
                               .sleeps = body.island != 0,
                               .shape = body.matches_shape() ? &body.shape : nullptr});
   const ParticleStore& store = state.store;
-  state.contact_pairs.keeps_sums = keeps_sums;
+  state.contact_pairs.keeps_sums = call.keeps_sums;
+  const float spacing = std::ranges::min(state.touching, {}, &TouchingBody::spacing).spacing;
   resolve_body_contacts(store.position, store.pin.empty() ? nullptr : store.pin.data(), state.touching,
                         {.time_step = time_step,
                          .reach = 2 * state.support_radius(),
-                         .max_push = state.support_radius() / (10.0f * state.base_step())},
+                         .max_push = state.support_radius() / (10.0f * state.base_step()),
+                         .again = call.again,
+                         .slack = state.keeps_volume() ? k_contact_slack * spacing / time_step : 0.0f},
                         state.execution, velocities, state.contact_pairs);
 }
 
 void resolve_touching(Simulation::State& state, float time_step) {
-  touch_bodies(state, time_step, state.reports_contacts(), state.store.next_velocity);
+  touch_bodies(state, time_step, {.again = state.keeps_volume(), .keeps_sums = state.reports_contacts()},
+               state.store.next_velocity);
   wake_pushed(state, time_step);
 }
 

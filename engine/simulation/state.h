@@ -226,6 +226,7 @@ struct Simulation::State {
   Islands islands;
   RangeBlocks led_blocks;
   VectorColumn led_position;  ///< see lead_positions(); empty without damping
+  std::vector<BlendRange> partial_blends;
   std::vector<TouchingBody> touching;
   ContactPairs contact_pairs;
 
@@ -377,8 +378,14 @@ ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& re
 void move_bodies(Simulation::State& state, float time_step, const MotionPhases& phases);
 /// densities, lists, predicted velocities -> those that keep volumes. [model 2, section 2]
 void correct_volume(Simulation::State& state, float time_step, StepReport& report);
-/// velocities, predicted -> what contact between bodies makes of them. keeps_sums: somebody asks what for.
-void touch_bodies(Simulation::State& state, float time_step, bool keeps_sums, VectorColumn& velocities);
+/// How contact between bodies is called for.
+struct ContactCall {
+  bool again = false;       ///< not for the first time in this step
+  bool keeps_sums = false;  ///< somebody asks what it gives
+};
+/// velocities, predicted -> what contact between bodies makes of them.
+void touch_bodies(Simulation::State& state, float time_step, const ContactCall& call,
+                  VectorColumn& velocities);
 /// positions, predicted velocities -> those of bodies that touch. [model 2, section 4 C]
 void resolve_touching(Simulation::State& state, float time_step);
 /// impulses of the step -> events of contacts that begin, hit and end.
@@ -428,7 +435,7 @@ using PhaseHook = std::function<void(Phase)>;
 StepReport take_step(Simulation::State& state, double end, const PhaseHook& after_phase = {});
 
 /// One body's, for whoever matches its shape outside of a step.
-void weigh_regions(const ParticleStore& store, BodyState& body);
+void weigh_regions(const Threads& threads, const ParticleStore& store, BodyState& body);
 /// alpha of materials, what changed -> alpha of rows that follow them; what bodies and materials span.
 void blend_bodies(Simulation::State& state);
 /// Rows [begin, end) of a body, its last ones, get what points say of them.

@@ -119,8 +119,10 @@ void begin_volume(const VolumeStep& step, const Sph& sph, const Execution& execu
   volume.response.resize(n);
   volume.multiplier.resize(n);
   volume.mobile.resize(step.pin ? n : 0);
-  for (std::size_t i = 0; i < volume.mobile.size(); ++i)
-    volume.mobile[i] = step.pin[sph.grid.order[i]] != 0 ? 0.0f : 1.0f;
+  parallel_for(execution.threads, volume.mobile.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      volume.mobile[i] = step.pin[sph.grid.order[i]] != 0 ? 0.0f : 1.0f;
+  });
   begin_walls(sph, execution, volume);
   volume.wall_loads.assign(sph.walls.any ? sph.walls.partial_loads.size() : 0, {});
 }

@@ -123,7 +123,6 @@ void find_multipliers(const VolumeInput& in, std::size_t cluster, float* respons
     multiplier[i] = own.relaxation * s / (in.time_step * response[i]);
     total.sum += static_cast<double>(s);
     total.largest = s > total.largest ? s : total.largest;
-    total.particles += s > 0;
   }
 }
 

@@ -46,9 +46,8 @@ struct VolumeInput {
 
 /// Of some particles.
 struct CompressionSum {
-  double sum;               ///< Σ s_i
-  float largest;            ///< max s_i
-  std::uint32_t particles;  ///< those that are compressed
+  double sum;     ///< Σ s_i
+  float largest;  ///< max s_i
 };
 
 /// [begin, end): clusters. With ψ of particle j's own group and ∇W of poly6 [Bender & Koschier 2015; model 2,
