@@ -17,11 +17,7 @@ constexpr double k_least_response = 0.5;
 VolumeInput input(const Sph& sph, const Volume& volume, float time_step) {
   const bool walls = volume.wall_gradient.size() > 0;
   return {
-      .cluster_start = sph.grid.cluster_start.data(),
-      .list_begin = sph.lists.begin.data(),
-      .list_count = sph.lists.count.data(),
-      .indices = sph.lists.indices.data(),
-      .row_of = sph.grid.order.data(),
+      .lists = view(sph.grid, sph.lists),
       .group = sph.group.empty() ? nullptr : sph.group.data(),
       .groups = volume.groups.data(),
       .apart = sph.apart,
