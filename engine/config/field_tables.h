@@ -212,6 +212,9 @@ struct FieldTable<Emitter> {
             "random displacement of every particle across the flow, per axis"},
       Field{"most_particles", &Emitter::most_particles, between(1, k_most_particles), "",
             "the strand grows no longer than that"},
+      Field{
+          "merges", &Emitter::merges, k_any, "",
+          "the strand acts on others of its material that merge as on itself; if it flows, they become one"},
   };
 };
 

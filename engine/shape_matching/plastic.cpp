@@ -50,22 +50,17 @@ Eigen::Matrix3d rotation_of(const ShapeMatching& shape, std::size_t region) {
   return Eigen::Quaterniond(q(3), q(0), q(1), q(2)).toRotationMatrix();
 }
 
-/// Particles whose regions have flowed.
-struct Flowed {
-  VectorColumn position, rest;
-};
-
-Flowed flowed_particles(const VectorColumn& positions, std::size_t begin, float least,
-                        const ShapeMatching& shape) {
-  std::vector<std::size_t> which;
-  for (std::size_t i = 0; i < shape.reference.size(); ++i)
-    if (shape.plastic.flow[shape.first_region(i)] > least) which.push_back(i);
-  Flowed flowed{VectorColumn(which.size()), VectorColumn(which.size())};
-  for (std::size_t k = 0; k < which.size(); ++k) {
-    flowed.position.set(k, positions.get(begin + which[k]));
-    flowed.rest.set(k, shape.reference.get(which[k]));
+/// Particles that have flowed by more than `least`, by where they are and where they rest.
+void gather_flowed(const VectorColumn& positions, std::size_t begin, float least, const ShapeMatching& shape,
+                   FlowScratch& scratch) {
+  list_flowed(least, shape, scratch.which);
+  const std::size_t count = scratch.which.size();
+  scratch.here.resize_unset(count);
+  scratch.rest.resize_unset(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    scratch.here.set(k, positions.get(begin + scratch.which[k]));
+    scratch.rest.set(k, shape.reference.get(scratch.which[k]));
   }
-  return flowed;
 }
 
 /// Whether holds(k) for any k below n.
@@ -81,14 +76,13 @@ bool any_below(std::size_t n, const Threads& threads, const Holds& holds) {
 
 /// Whether two are nearer than `near` in one place and farther apart than `far` in the other.
 bool any_part_ways(const VectorColumn& here, float near, const VectorColumn& there, float far,
-                   const Execution& execution) {
-  CellGrid grid;
-  NeighborLists lists;
-  build_cell_grid(here, 0, here.size(), near, execution, grid);
-  build_neighbor_lists(grid, near, execution, lists);
+                   const Execution& execution, FlowScratch& scratch) {
+  const CellGrid& grid = scratch.grid;
+  build_cell_grid(here, 0, here.size(), near, execution, scratch.grid);
+  build_neighbor_lists(grid, near, execution, scratch.lists);
   return any_below(here.size(), execution.threads, [&](std::size_t s) {
     const Vec3 own = there.get(grid.order[s]);
-    return std::ranges::any_of(lists.of(s), [&](std::uint32_t t) {
+    return std::ranges::any_of(scratch.lists.of(s), [&](std::uint32_t t) {
       return (own - there.get(grid.order[t])).squaredNorm() > far * far;
     });
   });
@@ -96,10 +90,10 @@ bool any_part_ways(const VectorColumn& here, float near, const VectorColumn& the
 
 /// Whether two that are in one's region, and have flowed, are farther apart than `far`.
 bool any_torn(const VectorColumn& positions, std::size_t begin, float far, const Execution& execution,
-              const ShapeMatching& shape) {
+              const ShapeMatching& shape, FlowScratch& scratch) {
   if (shape.region_stride != 1) {  // regions are not those of all particles: who is near is searched for
-    const Flowed flowed = flowed_particles(positions, begin, 0, shape);
-    return any_part_ways(flowed.rest, shape.region_radius, flowed.position, far, execution);
+    gather_flowed(positions, begin, 0, shape, scratch);
+    return any_part_ways(scratch.rest, shape.region_radius, scratch.here, far, execution, scratch);
   }
   const TableLists& lists = shape.regions;
   const auto rows = static_cast<std::uint32_t>(lists.rows);
@@ -187,17 +181,26 @@ Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d
   return stretch.allFinite() ? Eigen::Matrix3f(stretch.cast<float>()) : Eigen::Matrix3f::Identity();
 }
 
+void list_flowed(float least, const ShapeMatching& shape, Column<std::uint32_t>& which) {
+  const std::size_t n = shape.reference.size();
+  which.resize_unset(n);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (shape.plastic.flow[shape.first_region(i)] > least) which[count++] = static_cast<std::uint32_t>(i);
+  which.resize(count);
+}
+
 bool reframe_is_due(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
-                    const Execution& execution, const ShapeMatching& shape) {
+                    const Execution& execution, const ShapeMatching& shape, FlowScratch& scratch) {
   const std::span<const float> flow = shape.plastic.flow.span();
   const float most = flow.empty() ? 0.0f : *std::ranges::max_element(flow);
   if (most > k_far_flow) return true;
   if (most == 0 || !(shape.spacing > 0)) return false;
   const float radius = shape.region_radius;
-  if (any_torn(positions, begin, (1 + limits.tear_strain) * radius, execution, shape)) return true;
+  if (any_torn(positions, begin, (1 + limits.tear_strain) * radius, execution, shape, scratch)) return true;
   if (most <= limits.merge_flow) return false;
-  const Flowed pressed = flowed_particles(positions, begin, limits.merge_flow, shape);
-  return any_part_ways(pressed.position, shape.spacing, pressed.rest, radius, execution);
+  gather_flowed(positions, begin, limits.merge_flow, shape, scratch);
+  return any_part_ways(scratch.here, shape.spacing, scratch.rest, radius, execution, scratch);
 }
 
 void solve_plastic_regions(const MatchedBodies::Body& body, std::size_t begin, std::size_t end,

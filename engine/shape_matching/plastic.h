@@ -7,6 +7,7 @@
 
 #include "core/column.h"
 #include "core/execution.h"
+#include "neighbors/neighbor_lists.h"
 
 /// Yield and creep where the strain is: every region has a plastic stretch of its own. [model 2, section 5;
 /// Mueller 2005, kept local] What flows in a step is in plastic_lanes.h; this is what is seldom done.
@@ -54,11 +55,24 @@ Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d
 struct FrameLimits {
   float merge_flow = 0, tear_strain = 0;
 };
+/// What a look at what has flowed needs; all bodies take turns with it.
+struct FlowScratch {
+  Column<std::uint32_t> which;  ///< particles that have
+  VectorColumn here, rest;      ///< where they are, and where they rest [m]
+  CellGrid grid;
+  NeighborLists lists;
+
+  std::size_t bytes() const {
+    return which.bytes() + here.bytes() + rest.bytes() + grid.bytes() + lists.bytes();
+  }
+};
+/// Particles of a body, ascending, in regions that have flowed by more than `least`.
+void list_flowed(float least, const ShapeMatching& shape, Column<std::uint32_t>& which);
 /// Whether the positions of a body, from row `begin` on, should become its reference shape: a region has
 /// flowed by more than k_far_flow; or two that are in one's region, and have flowed, are farther apart than
 /// 1 + tear_strain of its radius, so that they tear; or two that are not are nearer than a spacing, and both
 /// have flowed by more than merge_flow, so that they merge.
 bool reframe_is_due(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
-                    const Execution& execution, const ShapeMatching& shape);
+                    const Execution& execution, const ShapeMatching& shape, FlowScratch& scratch);
 
 }  // namespace mallow

@@ -194,6 +194,14 @@ CarriedRegions reframe_regions(const VectorColumn& positions, std::size_t begin,
   return carried;
 }
 
+void append_carried(const CarriedRegions& behind, CarriedRegions& carried) {
+  const auto append = [](const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); };
+  append(behind.rotations, carried.rotations);
+  append(behind.stretches, carried.stretches);
+  carried.former.resize(carried.rotations.size(), FormerLists::k_none);
+  forget_lists(carried);
+}
+
 void forget_lists(CarriedRegions& carried) {
   const Vec3 all = Vec3::Constant(std::numeric_limits<float>::infinity());
   carried.news = {-all, all};

@@ -25,6 +25,8 @@ CarriedRegions carry_regions(const ShapeMatching& shape);
 /// that they have, and nothing else. The pull is that of now.
 CarriedRegions reframe_regions(const VectorColumn& positions, std::size_t begin, int iterations,
                                const Execution& execution, ShapeMatching& shape);
+/// Those of a body whose particles come behind: none of their lists is known. Both are of shapes that flow.
+void append_carried(const CarriedRegions& behind, CarriedRegions& carried);
 /// No list is as it was.
 void forget_lists(CarriedRegions& carried);
 /// Row k becomes what row order[k] was.

@@ -131,6 +131,13 @@ void rebuild_shape(Simulation::State& s, BodyState& body, CarriedRegions& carrie
   s.held = false;
 }
 
+void forget_body(Simulation::State& s, BodyState& body) {
+  s.body_slots.give_back(static_cast<std::uint64_t>(body.id));
+  s.bodies.erase(s.bodies.begin() + (&body - s.bodies.data()));
+  for (std::size_t b = 0; b < s.bodies.size(); ++b)
+    s.body_slots.index[slot_of(s.bodies[b].id)] = static_cast<std::uint32_t>(b);
+}
+
 void Simulation::State::rows_changed() {
   rows_moved();
   sph.grid.order.resize(0);
@@ -241,10 +248,7 @@ void erase_body(Simulation::State& s, BodyState& body) {
   const std::size_t old_end = body.end;
   body.end = body.begin;
   shift_rows(s, body, old_end);
-  s.body_slots.give_back(static_cast<std::uint64_t>(body.id));
-  s.bodies.erase(s.bodies.begin() + (&body - s.bodies.data()));
-  for (std::size_t b = 0; b < s.bodies.size(); ++b)
-    s.body_slots.index[slot_of(s.bodies[b].id)] = static_cast<std::uint32_t>(b);
+  forget_body(s, body);
   s.rows_changed();
   wake_beside(s, box);
 }

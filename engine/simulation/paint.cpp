@@ -160,6 +160,17 @@ BlendRange blend_of(Simulation::State& s, const BodyState& body) {
 
 }  // namespace
 
+void paint_alike(Simulation::State& s, BodyState& body, BodyState& other) {
+  if (body.paints_yield != other.paints_yield) {
+    const BodyState& plain = body.paints_yield ? other : body;
+    std::fill(s.store.plastic_yield.begin() + plain.begin, s.store.plastic_yield.begin() + plain.end,
+              yield_of(plain.material->settings));
+  }
+  body.paints_alpha = body.paints_alpha || other.paints_alpha;
+  body.paints_stiffness = body.paints_stiffness || other.paints_stiffness;
+  body.paints_yield = body.paints_yield || other.paints_yield;
+}
+
 void blend_bodies(Simulation::State& s) {
   if (!s.blend_changed) return;
   s.blend_changed = false;

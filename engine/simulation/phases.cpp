@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "shape_matching/reshape.h"
 #include "simulation/damage.h"
+#include "simulation/membership.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 
@@ -73,32 +74,32 @@ void kick_by_pull(Simulation::State& state, BodyState& body, float share) {
   });
 }
 
-namespace {
-
-bool flows(const BodyState& body) {
-  return body.shape.flows && body.matches_shape() && body.shape.built;
+void take_frame(Simulation::State& state, BodyState& body, CarriedRegions& carried) {
+  take_reference(state, body);
+  const std::span<const std::uint32_t> order = state.region_scratch.pillars.order.span();
+  sort_parts(order, state.parts_before);
+  sort_carried(order, carried);
+  build_carried(carried, state.execution, state.region_scratch, body.shape);
 }
+
+namespace {
 
 FlowRule flow_rule(const Material& material) {
   return {.yield = material.plastic_yield.value_or(0.0f),
           .creep = material.plastic_creep.value_or(std::numeric_limits<float>::infinity())};
 }
 
-bool frame_is_due(const Simulation::State& state, const BodyState& body) {
+bool frame_is_due(Simulation::State& state, const BodyState& body) {
   const Material& material = body.material->settings;
   return reframe_is_due(state.store.position, body.begin, {material.merge_flow, material.tear_strain},
-                        state.execution, body.shape);
+                        state.execution, body.shape, state.region_scratch.flow);
 }
 
 /// Where a body is becomes its reference shape, whose regions keep the elastic strain that they have.
 void reframe(Simulation::State& state, BodyState& body) {
   CarriedRegions carried = reframe_regions(state.store.position, body.begin, state.config.rotation_iterations,
                                            state.execution, body.shape);
-  take_reference(state, body);
-  const std::span<const std::uint32_t> order = state.region_scratch.pillars.order.span();
-  sort_parts(order, state.parts_before);
-  sort_carried(order, carried);
-  build_carried(carried, state.execution, state.region_scratch, body.shape);
+  take_frame(state, body, carried);
 }
 
 /// What became of the parts of a body, whose regions are built anew.
@@ -128,7 +129,7 @@ int update_references(Simulation::State& state) {
     const double threshold =
         static_cast<double>(body.material->update_threshold * (1.0f - body.most_alpha()));
     const bool yields = check && body.follows_threshold() && body.judged_external > threshold;
-    const bool reframes = check && !yields && flows(body) && frame_is_due(state, body);
+    const bool reframes = check && !yields && body.flows() && frame_is_due(state, body);
     const bool had_regions = body.matches_shape() && body.shape.built, was_apart = body.apart;
     const auto due = [&] { return body.matches_shape() && !body.shape.built; };
     // A reference shape outlives the step: nothing that is not finite may get into it.

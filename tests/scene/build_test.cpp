@@ -273,6 +273,9 @@ TEST_F(skin_of_scene, names_the_body_whose_skin_cannot_be) {
   const std::string body = "skin = \"box.obj\"\nbox = { count = [9, 9, 9], spacing = 0.2 }";
   const std::string fluid = error_of(scene(body, "[[0, 0], [1, 1]]"));
   EXPECT_NE(fluid.find("is not allowed where alpha reaches 1"), std::string::npos) << fluid;
+  EXPECT_EQ(error_of(scene("merges = true\n" + body)), "no error");
+  const std::string part = error_of(scene("merges = true\n" + body, "0.1\nplastic_yield = 0.1"));
+  EXPECT_NE(part.find("is not allowed on a body that merges and flows"), std::string::npos) << part;
   const std::vector<std::string> missing = problems(
       "[solver]\nsupport_radius = 0.42\n[[material]]\nname = \"a\"\n[[body]]\nmaterial = \"a\"\n"
       "skin = \"none.obj\"\nbox = { count = [9, 9, 9], spacing = 0.2 }\n");

@@ -149,6 +149,7 @@ start = 1
 stop = 7
 jitter = 0.1
 most_particles = 5000
+merges = true
 [[emitter]]
 material = "jelly \"red\""
 width = 2

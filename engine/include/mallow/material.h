@@ -36,7 +36,7 @@ struct Material {
   std::optional<float> plastic_creep = {};
   /// How far matter must have flowed, |G − I| summed since the reference shape was taken, on both sides of
   /// where it touches itself, for the two sides to become one at the next check, >= 0. Less merges what
-  /// hardly touched.
+  /// hardly touched. Two bodies of this material that merge become one likewise: see Body::merges.
   float merge_flow = 0.1f;
   /// Where matter flows and a region has been stretched by more than this since the reference shape was
   /// taken, it tears at the next check, >= 0: what is farther apart than region_radius by then is not held
