@@ -193,7 +193,8 @@ MALLOW_EXPORT Scene parse_scene(const std::string& text, const std::filesystem::
                                 const SceneReadOptions& options = {});
 /// The scene as a TOML document with every value in it, defaults too; read_scene() gives the same scene back.
 MALLOW_EXPORT std::string print_scene(const Scene& scene);
-/// Every key a scene file may hold: one line each with default, range, unit and meaning.
+/// Every key a scene file may hold: one line each with default, range, unit and meaning. Lines that begin
+/// with # say which shapes a body, a paint and a collider may have.
 MALLOW_EXPORT std::string describe_scene_keys();
 
 /// The same scene in steps of `factor` times its own, see mallow/quality.h; frames stay as long as they are.
