@@ -265,6 +265,10 @@ void print_result(const program::Cache* cache, const program::RunReport& report)
   std::printf("particles %zu\nframes %d\nsteps %lld\nsimulated_time %.9g\nstate_hash %s\n",
               report.info.particles, report.frames, static_cast<long long>(report.steps),
               report.simulated_time, program::hash_text(report.state_hash).c_str());
+  const program::RunReport::Events& events = report.events;
+  if (events.torn > 0 || events.merged > 0)
+    std::printf("torn %lld\nmerged %lld\n", static_cast<long long>(events.torn),
+                static_cast<long long>(events.merged));
   if (cache) std::printf("summary %s\n", cache->summary_file().c_str());
 }
 
