@@ -92,6 +92,18 @@ void look_at_presets(const Scene& scene, std::vector<std::string>& all) {
   }
 }
 
+/// Frames that take more steps than anyone waits for.
+void look_at_steps(double frame, double frames, const SimulationInfo& info, std::vector<std::string>& all) {
+  const double step = std::min(static_cast<double>(info.longest_step), info.unlimited_step);
+  if (!(frame > k_most_steps * step)) return;
+  const double steps = std::ceil(frame / step - k_rounding);
+  std::ostringstream text;
+  text << "run: a frame of " << frame << " s takes " << steps << " steps of " << step << " s or more, "
+       << frames * steps << " in all; give a shorter frame_time, or what lets steps be longer: `mallow info` "
+       << "says where theirs comes from";
+  all.push_back(text.str());
+}
+
 /// What flows by less than this share of what it will, hardly flows.
 constexpr double k_least_flow = 0.01;
 
@@ -121,29 +133,23 @@ std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info
   const double seconds = frames * frame;
   if (scene.run.frames == 0) return all;
   look_at_creep(scene, seconds, all);
-  const double step = std::min(static_cast<double>(info.longest_step), info.unlimited_step);
-  if (frame > k_most_steps * step) {
-    std::ostringstream text;
-    text << "run: a frame of " << frame << " s takes " << std::ceil(frame / step - k_rounding) << " steps of "
-         << step << " s or more, " << frames * std::ceil(frame / step - k_rounding)
-         << " in all; the other warnings and `mallow info` say what makes steps short";
-    all.push_back(text.str());
-  }
   const double gravity = static_cast<double>(scene.solver.gravity.norm());
   double spacing = std::numeric_limits<double>::infinity();
   for (const BodyInfo& body : info.bodies) spacing = std::min(spacing, static_cast<double>(body.spacing));
   const double way = 0.5 * gravity * seconds * seconds + fastest(scene) * seconds;
   const double film = frames / scene.render.frames_per_second;
+  const bool in_metres = is_in_metres(scene.solver.gravity);
+  const bool in_milliseconds = in_metres && scene.run.frame_time && seconds > k_fastest_film * film;
+  if (!in_milliseconds) look_at_steps(frame, frames, info, all);
   std::ostringstream text;
   text << "run: " << scene.run.frames << " frames of " << frame << " s cover " << seconds << " s";
   if (way > 0 && way < spacing)
     text << ", in which nothing falls or flies farther than " << way << " m, less than the spacing of "
          << spacing << " m; give more frames, or a longer frame_time";
-  else if (is_in_metres(scene.solver.gravity) &&
-           seconds < (scene.run.frame_time ? k_slowest_film : k_slowest_by_default) * film)
+  else if (in_metres && seconds < (scene.run.frame_time ? k_slowest_film : k_slowest_by_default) * film)
     text << ", and the film of them takes " << film << " s, " << std::round(film / seconds)
          << " times slower; frame_time = " << 1.0 / scene.render.frames_per_second << " shows real time";
-  else if (is_in_metres(scene.solver.gravity) && scene.run.frame_time && seconds > k_fastest_film * film)
+  else if (in_milliseconds)
     text << ", and the film of them takes " << film << " s, " << std::round(seconds / film)
          << " times faster; frame_time is in seconds, and " << 1.0 / scene.render.frames_per_second
          << " shows real time";

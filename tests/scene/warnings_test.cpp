@@ -267,6 +267,9 @@ TEST_F(scene_warnings, say_how_many_steps_a_frame_takes_where_nobody_waits_for_t
   const std::string stiff = "alpha = 0.3\nyoungs_modulus = 2000\ndamping_time = ";
   EXPECT_TRUE(warns(warnings_of(read(jelly(stiff + "100"))), "run: a frame of 0.0333333 s takes "));
   EXPECT_FALSE(warns(warnings_of(read(jelly(stiff + "0.01"))), "run: a frame of"));
+  EXPECT_FALSE(
+      warns(warnings_of(read(falling("0.003", "0.0063", "-9.81", "frame_time = 33\n"))), "run: a frame of"))
+      << "it is in milliseconds";
 }
 
 TEST_F(scene_warnings, name_a_material_that_hides_the_one_that_is_known_by_its_name) {
