@@ -135,6 +135,28 @@ TEST_F(cli_run, report_and_results_count_what_tore_and_merged) {
             std::string::npos);
 }
 
+TEST_F(cli_run, warns_at_its_end_of_a_paste_that_was_crushed) {
+  const auto scene = [&](const std::string& material) {
+    return write(
+               "paste.toml",
+               "[solver]\ngravity = [0, 0, -9.81]\n[[material]]\nname = \"paste\"\nalpha = 0.2\n"
+               "plastic_yield = 0.02\nrest_density = 1000\nyoungs_modulus = 5000\n" +
+                   material +
+                   "[[body]]\nmaterial = \"paste\"\nbox = { count = [10, 10, 6], spacing = 0.005, corner = "
+                   "[0.06, -0.025, 0] }\n[[collider]]\nbox = { min = [-0.4, -0.4, -0.1], max = [0.4, 0.4, 0] "
+                   "}\nangular_velocity = [0, 0, 12]\nfriction = 0.8\n[[collider]]\ncylinder = { start = [0, "
+                   "0, -0.2], end = [0, 0, 0.3], radius = 0.19, inside = true }\n[run]\nframes = "
+                   "20\nframe_time = 0.033\n")
+        .string();
+  };
+  const std::string crushed = "it was crushed, as all strain beyond plastic_yield flows at once";
+  const Outcome at_once = run_mallow({"run", scene(""), "--report", at("report.json")});
+  EXPECT_NE(at_once.err.find(crushed), std::string::npos) << at_once.err;
+  EXPECT_NE(read_text(at("report.json")).find(crushed), std::string::npos);
+  const Outcome creeps = run_mallow({"run", scene("plastic_creep = 20\n")});
+  EXPECT_EQ(creeps.err.find("crushed"), std::string::npos) << creeps.err;
+}
+
 TEST_F(cli_run, steps_are_kept_to_exactly) {
   ASSERT_EQ(run({"--out", at("out"), "--no-surface", "--steps", "4"}).exit_code, 0);
   EXPECT_EQ(read_json(at("out/report.json")).at("steps"), 4);

@@ -22,6 +22,7 @@
 #include "mallow/scene.h"
 #include "program/cache.h"
 #include "program/checkpoint.h"
+#include "program/end_warnings.h"
 #include "program/failure.h"
 #include "program/input_files.h"
 #include "program/interrupt.h"
@@ -294,6 +295,11 @@ void run(const RunOptions& options) {
     if (out) out->write_scene(run.scene);
     close_report("the run has not ended yet");
     run_stages(options, run);
+    for (const std::string& warning :
+         program::end_warnings(run.scene, run.report.info, snapshot(*run.simulation))) {
+      print_warning(warning);
+      run.report.info.warnings.push_back(warning);
+    }
     close_report("");
   } catch (const std::exception& failure) {
     try {
