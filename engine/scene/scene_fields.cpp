@@ -12,6 +12,12 @@ BoundFields joined(BoundFields first, const BoundFields& second) {
 
 }  // namespace
 
+const std::vector<std::string>& section_keys() {
+  static const std::vector<std::string> keys{"solver",  "material", "body",    "collider", "pin",
+                                             "emitter", "sink",     "surface", "run",      "render"};
+  return keys;
+}
+
 BoundFields fields(SceneMaterial& material) {
   const BoundFields look{
       {"color", &material.color, between(0, 1), "", "red, green and blue in pictures, linear",

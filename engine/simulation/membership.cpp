@@ -164,7 +164,7 @@ BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name)
   body.shape.region_radius = region_radius(s.config, material.settings, body.spacing);
   body.shape.region_stride = material.settings.region_stride;
   body.shape.flows = flows(material.settings);
-  check_modulus(s.config, material.settings, body.spacing, body.name, checks);
+  check_modulus(s.config, material.settings, body, checks);
   checks.finish();
   derive_density(s.config, body);
   check_elasticity(s, body, points);

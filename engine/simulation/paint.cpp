@@ -36,7 +36,8 @@ float least_alpha(const Simulation::State& s, const BodyState& body, std::size_t
 /// Whether steps carry this share of a body's modulus; nothing where they are not known yet.
 void check_springs(const Simulation::State& s, const BodyState& body, float share, Checks& checks) {
   if (!s.config.time_step) return;
-  check_elasticity(s.config, with_springs(s.config, body.material->settings, body.spacing), share, checks);
+  const Material& settings = body.material->settings;
+  check_elasticity(s.config, settings, with_springs(s.config, settings, body.spacing), share, checks);
 }
 
 void check_elasticity(const Simulation::State& s, const BodyState& body, Checks& checks) {
