@@ -163,14 +163,15 @@ bool is_thin(const Eigen::Matrix3d& moment) {
   return !(moment.determinant() > static_cast<double>(k_thin) * extent * extent * extent);
 }
 
-Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
-                                 const Eigen::Matrix3d& moment) {
-  if (is_thin(moment)) return Eigen::Matrix3f::Identity();
+ReframedRegion reframed_region(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
+                               const Eigen::Matrix3d& moment) {
+  if (is_thin(moment)) return {};
   const Eigen::Matrix3d f = rotation.transpose() * m * moment.inverse();
   const Eigen::Matrix3d e = 0.5 * (f + f.transpose());
+  const auto strain_of = [&](double size) { return (e / size - Eigen::Matrix3d::Identity()).norm(); };
   if (survives_whole(e)) {
     const Eigen::Matrix3d stretch = rotation * e.inverse() * rotation.transpose();
-    return stretch.cast<float>();
+    return {stretch.cast<float>(), strain_of(bounded_size(e.determinant()))};
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(e);
   const Eigen::Vector3d& found = solver.eigenvalues();
@@ -178,7 +179,8 @@ Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d
   const Eigen::Vector3d strain = size * (found / size).cwiseMax(k_least_strain).cwiseMin(k_most_strain);
   const Eigen::Matrix3d axes = rotation * solver.eigenvectors();
   const Eigen::Matrix3d stretch = axes * strain.cwiseInverse().asDiagonal() * axes.transpose();
-  return stretch.allFinite() ? Eigen::Matrix3f(stretch.cast<float>()) : Eigen::Matrix3f::Identity();
+  if (!stretch.allFinite()) return {};
+  return {stretch.cast<float>(), strain_of(size)};
 }
 
 void list_flowed(float least, const ShapeMatching& shape, Column<std::uint32_t>& which) {
@@ -201,6 +203,22 @@ bool reframe_is_due(const VectorColumn& positions, std::size_t begin, const Fram
   if (most <= limits.merge_flow) return false;
   gather_flowed(positions, begin, limits.merge_flow, shape, scratch);
   return any_part_ways(scratch.here, shape.spacing, scratch.rest, radius, execution, scratch);
+}
+
+bool has_flowed_too_far(const ShapeMatching& shape) {
+  const std::span<const float> flow = shape.plastic.flow.span();
+  const auto far = std::ranges::count_if(flow, [](float k) { return k > k_farthest_flow; });
+  return 2 * static_cast<std::size_t>(far) > flow.size();
+}
+
+bool is_strained_by_a_blow(const std::vector<ReframedRegion>& regions, float yield,
+                           const ShapeMatching& shape) {
+  const Column<float>& yields = shape.plastic.yield;
+  std::size_t strained = 0;
+  for (std::size_t j = 0; j < regions.size(); ++j)
+    strained += regions[j].strain > std::max(static_cast<double>(k_much_strain),
+                                             2.0 * static_cast<double>(yields.empty() ? yield : yields[j]));
+  return 2 * strained > regions.size();
 }
 
 void solve_plastic_regions(const MatchedBodies::Body& body, std::size_t begin, std::size_t end,
@@ -228,7 +246,7 @@ void solve_plastic_regions(const MatchedBodies::Body& body, std::size_t begin, s
   if (body.reframed)
     for (std::size_t j = begin; j < end; ++j)
       (*body.reframed)[j] =
-          reframed_stretch(front_matrix(shape, j), rotation_of(shape, j), stretched_moment(shape, j));
+          reframed_region(front_matrix(shape, j), rotation_of(shape, j), stretched_moment(shape, j));
   lanes.finish(body.input, rule, begin, end, undecided, rotation, sums, stretch, flow);
 }
 

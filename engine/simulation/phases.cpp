@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -95,11 +96,18 @@ bool frame_is_due(Simulation::State& state, const BodyState& body) {
                         state.execution, body.shape, state.region_scratch.flow);
 }
 
-/// Where a body is becomes its reference shape, whose regions keep the elastic strain that they have.
-void reframe(Simulation::State& state, BodyState& body) {
-  CarriedRegions carried = reframe_regions(state.store.position, body.begin, state.config.rotation_iterations,
-                                           state.execution, body.shape);
-  take_frame(state, body, carried);
+/// What the regions of a body take along into a new frame, where it gets one now: at a check where one is due
+/// and no blow strains it, or where it has flowed too far to wait.
+std::optional<CarriedRegions> new_frame(Simulation::State& state, BodyState& body, bool check) {
+  if (!body.flows()) return {};
+  const bool far = has_flowed_too_far(body.shape);
+  if (!far && !(check && frame_is_due(state, body))) return {};
+  check_damage(state);
+  ReframedShape found =
+      reframe_regions(state.store.position, body.begin, flow_rule(body.material->settings).yield,
+                      state.config.rotation_iterations, state.execution, body.shape);
+  if (!far && found.is_strained) return {};
+  return std::move(found.carried);
 }
 
 /// What became of the parts of a body, whose regions are built anew.
@@ -129,15 +137,16 @@ int update_references(Simulation::State& state) {
     const double threshold =
         static_cast<double>(body.material->update_threshold * (1.0f - body.most_alpha()));
     const bool yields = check && body.follows_threshold() && body.judged_external > threshold;
-    const bool reframes = check && !yields && body.flows() && frame_is_due(state, body);
+    std::optional<CarriedRegions> frame = yields ? std::nullopt : new_frame(state, body, check);
+    const bool reframes = frame.has_value();
     const bool had_regions = body.matches_shape() && body.shape.built, was_apart = body.apart;
     const auto due = [&] { return body.matches_shape() && !body.shape.built; };
     // A reference shape outlives the step: nothing that is not finite may get into it.
-    if (yields || reframes || due()) check_damage(state);
+    if (yields || due()) check_damage(state);
     if (yields || reframes) {
       if (had_regions) find_parts(body.shape, state.parts_before);
       if (reframes) {
-        reframe(state, body);
+        take_frame(state, body, *frame);
       } else if (!had_regions || !update_part(state, body)) {
         if (had_regions) kick_by_pull(state, body, 0.5f);
         take_reference(state, body);
