@@ -140,7 +140,7 @@ void take_over(BodyState& body, const BodyState& from) {
 
 /// What regions carry along into a frame where their particles are now.
 CarriedRegions leave_frame(Simulation::State& s, BodyState& body) {
-  weigh_regions(s.store, body);
+  weigh_regions(s.execution.threads, s.store, body);
   return reframe_regions(s.store.position, body.begin, body.material->settings.plastic_yield.value_or(0.0f),
                          s.config.rotation_iterations, s.execution, body.shape)
       .carried;
