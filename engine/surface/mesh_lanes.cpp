@@ -17,10 +17,25 @@ struct Padded {
   float at[(k_side + 3) * k_plane];
 };
 
-/// From the first bit that is set to the last.
-struct BitRange {
-  int first, last;
+/// The x and y of bits that are set, the first and the last.
+struct SetRanges {
+  struct Range {
+    int first, last;
+  } x, y;
 };
+/// slices: a word each x, some bit of which is set.
+SetRanges find_ranges(const std::uint64_t* slices) {
+  std::uint64_t all = 0;
+  SetRanges set{{k_side, 0}, {}};
+  for (int x = 0; x < k_side; ++x) {
+    all |= slices[x];
+    if (slices[x] == 0) continue;
+    if (set.x.first == k_side) set.x.first = x;
+    set.x.last = x;
+  }
+  set.y = {__builtin_ctzll(all) / k_side, (63 - __builtin_clzll(all)) / k_side};
+  return set;
+}
 
 void pad_rows(const float* const* blocks, int from, int x, int y, int end_y, Padded& padded) {
   const float *const below = blocks[0], *const here = blocks[1], *const above = blocks[2];
@@ -32,25 +47,17 @@ void pad_rows(const float* const* blocks, int from, int x, int y, int end_y, Pad
   }
 }
 
-/// Copies what the cells in a range along x and y need.
+/// Copies what the cells that are cut need.
 void pad(const VertexBlock& block, Padded& padded) {
-  std::uint64_t all = 0;
-  BitRange x{k_side, 0};
-  for (int i = 0; i < k_side; ++i) {
-    all |= block.cut->at[i];
-    if (block.cut->at[i] == 0) continue;
-    if (x.first == k_side) x.first = i;
-    x.last = i;
-  }
-  const BitRange y{__builtin_ctzll(all) / k_side, (63 - __builtin_clzll(all)) / k_side};
-  const int end_y = y.last + 3;
-  for (int i = x.first - 1; i <= x.last + 2; ++i) {
-    const int plane = (i & (k_side - 1)) * k_side * k_side;
-    const float* const* const blocks = block.distances + 9 * (i < 0 ? 0 : i < k_side ? 1 : 2);
-    if (y.first == 0) pad_rows(blocks, plane + (k_side - 1) * k_side, i, -1, 0, padded);
-    const int first = y.first == 0 ? 0 : y.first - 1;
-    pad_rows(blocks + 3, plane + first * k_side, i, first, end_y < k_side ? end_y : k_side, padded);
-    pad_rows(blocks + 6, plane, i, k_side, end_y, padded);
+  const SetRanges set = find_ranges(block.cut->at);
+  const int end_y = set.y.last + 3;
+  for (int x = set.x.first - 1; x <= set.x.last + 2; ++x) {
+    const int plane = (x & (k_side - 1)) * k_side * k_side;
+    const float* const* const blocks = block.distances + 9 * (x < 0 ? 0 : x < k_side ? 1 : 2);
+    if (set.y.first == 0) pad_rows(blocks, plane + (k_side - 1) * k_side, x, -1, 0, padded);
+    const int first = set.y.first == 0 ? 0 : set.y.first - 1;
+    pad_rows(blocks + 3, plane + first * k_side, x, first, end_y < k_side ? end_y : k_side, padded);
+    pad_rows(blocks + 6, plane, x, k_side, end_y, padded);
   }
 }
 
@@ -213,47 +220,46 @@ void place_vertices(const VertexBlock& block, const VertexList& list, const Vert
     place<true>(block, list, to);
 }
 
-/// The first vertices of the cells around a block's edges: cells at −1 to 7 along each axis. A row of cells
-/// lies at 4 to 11.
-struct VertexTable {
-  static constexpr int k_row = 12, k_plane = (k_side + 1) * k_row, k_first = k_plane + k_row + 4,
+/// What is known of the cells around a block's edges, at −1 to 7 along each axis. Cells lie where the bits of
+/// BlockBits do; those one below along z have a table of their own.
+template <class Value>
+struct CellTable {
+  static constexpr int k_row = k_side, k_plane = (k_side + 1) * k_row, k_first = k_plane + k_row,
                        k_size = (k_side + 1) * k_plane;
-  std::uint32_t at[k_size];
+  Value at[2][k_size + 1];  ///< [whether one below]; a row is written with one value behind it
 };
+/// Their first vertices.
+using VertexTable = CellTable<std::uint32_t>;
+/// Which of k_cell_patches they have, where they have more than one patch; else number 0, of whose patches
+/// all edges are of the first.
+using PatchTable = CellTable<std::uint16_t>;
 
-MALLOW_INLINE void fill_row(const QuadBlock::Cells* blocks, int row, std::uint32_t* to) {
-  if (blocks[0].vertex != nullptr) to[-1] = blocks[0].first_vertex + blocks[0].vertex[row + k_side - 1];
-  if (blocks[1].vertex != nullptr)
-    store(widened(blocks[1].vertex + row) + any_lane(blocks[1].first_vertex), to);
+MALLOW_INLINE void fill_row(const QuadBlock::Cells* blocks, int row, int to, VertexTable& table) {
+  if (blocks[1].vertex != nullptr) {
+    const Ints vertices = widened(blocks[1].vertex + row) + any_lane(blocks[1].first_vertex);
+    store(vertices, table.at[0] + to);
+    store(vertices, table.at[1] + to + 1);
+  }
+  if (blocks[0].vertex != nullptr)
+    table.at[1][to] = blocks[0].first_vertex + blocks[0].vertex[row + k_side - 1];
 }
 
 void fill(const QuadBlock& block, VertexTable& table) {
-  std::uint64_t all = 0;
-  int first = k_side, last = 0;
-  for (int x = 0; x < k_side; ++x) {
-    const std::uint64_t word = block.edges[0].at[x] | block.edges[1].at[x] | block.edges[2].at[x];
-    all |= word;
-    if (word == 0) continue;
-    if (first == k_side) first = x;
-    last = x;
-  }
-  const BitRange y{__builtin_ctzll(all) / k_side, (63 - __builtin_clzll(all)) / k_side};
-  for (int x = first - 1; x <= last; ++x) {
+  std::uint64_t slices[k_side];
+  for (int x = 0; x < k_side; ++x)
+    slices[x] = block.edges[0].at[x] | block.edges[1].at[x] | block.edges[2].at[x];
+  const SetRanges set = find_ranges(slices);
+  for (int x = set.x.first - 1; x <= set.x.last; ++x) {
     const QuadBlock::Cells* const blocks = block.around + (x < 0 ? 0 : 4);
     const int plane = (x & (k_side - 1)) * k_side * k_side;
-    std::uint32_t* const to = table.at + VertexTable::k_first + x * VertexTable::k_plane;
-    if (y.first == 0) fill_row(blocks, plane + (k_side - 1) * k_side, to - VertexTable::k_row);
-    for (int j = y.first == 0 ? 0 : y.first - 1; j <= y.last; ++j)
-      fill_row(blocks + 2, plane + j * k_side, to + j * VertexTable::k_row);
+    const int to = VertexTable::k_first + x * VertexTable::k_plane;
+    if (set.y.first == 0) fill_row(blocks, plane + (k_side - 1) * k_side, to - VertexTable::k_row, table);
+    for (int y = set.y.first == 0 ? 0 : set.y.first - 1; y <= set.y.last; ++y)
+      fill_row(blocks + 2, plane + y * k_side, to + y * VertexTable::k_row, table);
   }
 }
 
-/// Which of k_cell_patches the cells with more than one patch have, in the places of VertexTable; the others
-/// have number 0, whose edges are all of one patch.
-struct PatchTable {
-  std::uint16_t at[VertexTable::k_size];
-};
-
+/// Returns whether there is any cell with more than one patch.
 bool fill(const QuadBlock& block, PatchTable& table) {
   std::size_t count = 0;
   for (const QuadBlock::Cells& cells : block.around) count += cells.patched_count;
@@ -266,54 +272,13 @@ bool fill(const QuadBlock& block, PatchTable& table) {
       const int x = (cell >> 6) - (k & 4 ? 0 : k_side), y = (cell >> 3 & 7) - (k & 2 ? 0 : k_side),
                 z = (cell & 7) - (k & 1 ? 0 : k_side);
       if (x < -1 || y < -1 || z < -1) continue;
-      table.at[VertexTable::k_first + x * VertexTable::k_plane + y * VertexTable::k_row + z] =
-          cells.patched[i].patches;
+      const int row = PatchTable::k_first + x * PatchTable::k_plane + y * PatchTable::k_row;
+      if (z >= 0) table.at[0][row + z] = cells.patched[i].patches;
+      if (z + 1 < k_side) table.at[1][row + z + 1] = cells.patched[i].patches;
     }
   }
   return true;
 }
-
-/// The four cells around an edge, counter-clockwise seen from outside.
-struct QuadStep {
-  std::int16_t cell[4];   ///< in VertexTable, from the edge's row on
-  std::uint8_t below[4];  ///< bit a: one below the edge along axis a
-  std::uint8_t edge[4];   ///< which of the cell's edges it is
-};
-struct QuadSteps {
-  QuadStep at[2][3 * k_side];  ///< [whether the edge leads outside][3 z + axis]
-};
-constexpr QuadSteps find_steps() {
-  constexpr int k_steps[3] = {VertexTable::k_plane, VertexTable::k_row, 1};
-  QuadSteps steps{};
-  for (int outwards = 0; outwards < 2; ++outwards) {
-    for (int e = 0; e < 3 * k_side; ++e) {
-      const int axis = e % 3, u_axis = (axis + 1) % 3, v_axis = (axis + 2) % 3;
-      for (int k = 0; k < 4; ++k) {
-        // Counter-clockwise seen from where the edge leads; where that is inside, the other way round.
-        constexpr int k_around[4][2] = {{1, 1}, {0, 1}, {0, 0}, {1, 0}};
-        const int u = k_around[k][0], v = k_around[k][1], to = outwards ? k : (4 - k) % 4;
-        QuadStep& step = steps.at[outwards][e];
-        step.cell[to] = static_cast<std::int16_t>(e / 3 - u * k_steps[u_axis] - v * k_steps[v_axis]);
-        step.below[to] = static_cast<std::uint8_t>(u << u_axis | v << v_axis);
-        step.edge[to] = static_cast<std::uint8_t>(4 * axis + 2 * u + v);
-      }
-    }
-  }
-  return steps;
-}
-constexpr QuadSteps k_steps = find_steps();
-
-/// By a row of bits: bit z at 3 z.
-struct SpreadBits {
-  std::uint32_t at[256];
-};
-constexpr SpreadBits find_spread() {
-  SpreadBits spread{};
-  for (unsigned row = 0; row < 256; ++row)
-    for (int z = 0; z < k_side; ++z) spread.at[row] |= (row >> z & 1) << (3 * z);
-  return spread;
-}
-constexpr SpreadBits k_spread = find_spread();
 
 /// By a bit each axis: a block below along these.
 constexpr float k_shift[8][4] = {{0, 0, 0},  {-8, 0, 0},  {0, -8, 0},  {-8, -8, 0},
@@ -327,86 +292,124 @@ MALLOW_INLINE Quad load_quad(const float* from) {
   return quad;
 }
 
-/// The vertices of an edge's quad, turned so that its shorter diagonal is from the first to the third. Ties,
-/// as on flat faces, are not left to rounding. first: its row in the tables. walls: the axes along which
-/// cells below are in another block.
-template <bool patched, bool border>
-MALLOW_INLINE QuadInts quad_of(const QuadBlock& block, const VertexTable& vertices,
-                               [[maybe_unused]] const PatchTable& patches, std::ptrdiff_t first,
-                               const QuadStep& step, [[maybe_unused]] unsigned walls) {
-  std::uint32_t v[4];
+/// What quads are written from.
+struct QuadTables {
+  const float* local;
+  const std::uint8_t* patch_of_edge;
+  VertexTable vertices;
+  PatchTable patches;
+};
+
+/// A kind of edges whose quads are written alike.
+struct EdgeKind {
+  int axis;
+  bool outwards;  ///< whether they lead outside
+  bool border;    ///< whether cells around them are in blocks below
+  bool patched;   ///< whether cells may have more than one patch
+};
+
+/// The edges of a block from voxels of one x, and where their triangles go.
+struct EdgeSlice {
+  std::uint64_t edges[3];
+  int x;
+  QuadInts first_in_mesh;
+  std::uint32_t* to;
+};
+
+/// The vertices of the quad about an edge, turned so that its shorter diagonal is from the first to the
+/// third. Ties, as on flat faces, are not left to rounding. bit: of the edge in its slice.
+template <EdgeKind kind>
+MALLOW_INLINE QuadInts quad_of(const QuadTables& tables, const EdgeSlice& slice, int bit) {
+  constexpr int k_u = (kind.axis + 1) % 3, k_v = (kind.axis + 2) % 3;
+  // The cells around it, counter-clockwise seen from where it leads; where that is inside, the other way
+  // round.
+  constexpr int k_around[2][4][2] = {{{1, 1}, {1, 0}, {0, 0}, {0, 1}}, {{1, 1}, {0, 1}, {0, 0}, {1, 0}}};
+  [[maybe_unused]] const unsigned walls =
+      (slice.x == 0 ? 1u : 0u) | (bit < k_side ? 2u : 0u) | (bit % k_side == 0 ? 4u : 0u);
+  std::uint32_t vertex[4];
   Quad place[4];
 #pragma GCC unroll 4
   for (int k = 0; k < 4; ++k) {
-    const std::ptrdiff_t cell = first + step.cell[k];
-    v[k] = vertices.at[cell];
-    if constexpr (patched)
-      v[k] += block.patch_of_edge[std::size_t{patches.at[cell]} * k_cell_edges + step.edge[k]];
-    place[k] = load_quad(block.local + 3 * std::size_t{v[k]});
-    if constexpr (border) place[k] += load_quad(k_shift[step.below[k] & walls]);
+    const int u = k_around[kind.outwards][k][0], v = k_around[kind.outwards][k][1];
+    const int below = u << k_u | v << k_v;  // bit a: one below along axis a
+    const std::ptrdiff_t cell = VertexTable::k_first + (slice.x - (below & 1)) * VertexTable::k_plane + bit -
+                                (below >> 1 & 1) * VertexTable::k_row;
+    vertex[k] = tables.vertices.at[below >> 2][cell];
+    if constexpr (kind.patched)
+      vertex[k] +=
+          tables
+              .patch_of_edge[tables.patches.at[below >> 2][cell] * k_cell_edges + 4 * kind.axis + 2 * u + v];
+    place[k] = load_quad(tables.local + 3 * std::size_t{vertex[k]});
+    if constexpr (kind.border) place[k] += load_quad(k_shift[walls & static_cast<unsigned>(below)]);
   }
+  const QuadInts quad = QuadInts{static_cast<int>(vertex[0]), static_cast<int>(vertex[1]),
+                                 static_cast<int>(vertex[2]), static_cast<int>(vertex[3])} +
+                        slice.first_in_mesh;
   const Quad a = place[1] - place[3], b = place[0] - place[2];
-  const Quad xy = __builtin_shufflevector(a, b, 0, 4, 1, 5), zz = __builtin_shufflevector(a, b, 2, 6, 2, 6);
-  const Quad squares = xy * xy, z_squares = zz * zz;
+  const Quad xy = __builtin_shufflevector(a, b, 0, 4, 1, 5), z = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Quad squares = xy * xy, z_squares = z * z;
   const Quad lengths = squares + (__builtin_shufflevector(squares, squares, 2, 3, 2, 3) + z_squares);
-  const QuadInts turned = __builtin_shufflevector(lengths, lengths, 0, 0, 0, 0) <
-                          0.99f * __builtin_shufflevector(lengths, lengths, 1, 1, 1, 1);
-  const QuadInts quad = {static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]),
-                         static_cast<int>(v[3])};
-  return turned ? __builtin_shufflevector(quad, quad, 1, 2, 3, 0) : quad;
+  const QuadInts other = __builtin_shufflevector(lengths, lengths, 0, 0, 0, 0) <
+                         0.99f * __builtin_shufflevector(lengths, lengths, 1, 1, 1, 1);
+  return other ? __builtin_shufflevector(quad, quad, 1, 2, 3, 0) : quad;
+}
+
+/// Writes the quads of some edges of a kind, each behind those of all cells before and of axes before.
+template <EdgeKind kind>
+MALLOW_INLINE void write_kind(const QuadTables& tables, const EdgeSlice& slice, std::uint64_t some) {
+  for (; some != 0; some &= some - 1) {
+    const std::uint64_t through = some ^ (some - 1), below = through >> 1;
+    const int before = __builtin_popcountll(slice.edges[0] & (kind.axis > 0 ? through : below)) +
+                       __builtin_popcountll(slice.edges[1] & (kind.axis > 1 ? through : below)) +
+                       __builtin_popcountll(slice.edges[2] & below);
+    const QuadInts quad = quad_of<kind>(tables, slice, __builtin_ctzll(some));
+    const QuadInts one = __builtin_shufflevector(quad, quad, 0, 1, 2, 0),
+                   two = __builtin_shufflevector(quad, quad, 2, 3, 2, 3);
+    std::uint32_t* const to = slice.to + 6 * static_cast<std::ptrdiff_t>(before);
+    __builtin_memcpy(to, &one, sizeof one);
+    __builtin_memcpy(to + 4, &two, sizeof two / 2);
+  }
+}
+
+template <int axis, bool patched>
+MALLOW_INLINE void write_axis(const QuadTables& tables, const EdgeSlice& slice, std::uint64_t inside) {
+  // Voxels whose cells below along an axis are in the block.
+  constexpr std::uint64_t k_above[3] = {0, ~std::uint64_t{255}, 0xfefefefefefefefe};
+  const std::uint64_t edges = slice.edges[axis];
+  std::uint64_t inner = edges;
+  for (int a = 0; a < 3; ++a)
+    if (a != axis && (a > 0 || slice.x == 0)) inner &= k_above[a];
+  write_kind<EdgeKind{axis, true, false, patched}>(tables, slice, inner & inside);
+  write_kind<EdgeKind{axis, false, false, patched}>(tables, slice, inner & ~inside);
+  if (inner == edges) return;
+  write_kind<EdgeKind{axis, true, true, patched}>(tables, slice, edges & ~inner & inside);
+  write_kind<EdgeKind{axis, false, true, patched}>(tables, slice, edges & ~inner & ~inside);
 }
 
 template <bool patched>
-void write(const QuadBlock& block, const VertexTable& vertices, const PatchTable& patches,
-           std::uint32_t* to) {
-  const auto& edges = block.edges;
-  const QuadInts in_mesh = QuadInts{} + static_cast<int>(block.first_in_mesh);
+void write(const QuadBlock& block, const QuadTables& tables, std::uint32_t* to) {
   for (int x = 0; x < k_side; ++x) {
-    std::uint64_t left = edges[0].at[x] | edges[1].at[x] | edges[2].at[x];
-    while (left != 0) {
-      const int y = __builtin_ctzll(left) / k_side, row = y * k_side;
-      left &= ~(std::uint64_t{255} << row);
-      const auto spread = [&](const BlockBits& bits) { return k_spread.at[bits.at[x] >> row & 255]; };
-      const std::uint32_t cut = spread(edges[0]) | spread(edges[1]) << 1 | spread(edges[2]) << 2;
-      const std::uint32_t outwards = spread(*block.inside) * 7;
-      const std::ptrdiff_t first = VertexTable::k_first + x * VertexTable::k_plane + y * VertexTable::k_row;
-      const unsigned walls = (x == 0 ? 1u : 0u) | (y == 0 ? 2u : 0u);
-      const auto each = [&](std::uint32_t some, const auto& find) {
-        for (; some != 0; some &= some - 1) {
-          const int e = __builtin_ctz(some);
-          const QuadInts quad = find(k_steps.at[outwards >> e & 1][e]) + in_mesh;
-          const QuadInts one = __builtin_shufflevector(quad, quad, 0, 1, 2, 0);
-          const QuadInts two = __builtin_shufflevector(quad, quad, 2, 3, 2, 3);
-          __builtin_memcpy(to, &one, sizeof one);
-          __builtin_memcpy(to + 4, &two, sizeof two / 2);
-          to += 6;
-        }
-      };
-      const auto in_block = [&](const QuadStep& step) {
-        return quad_of<patched, false>(block, vertices, patches, first, step, 0);
-      };
-      const auto at_walls = [&](unsigned of) {
-        return [&, of](const QuadStep& step) {
-          return quad_of<patched, true>(block, vertices, patches, first, step, of);
-        };
-      };
-      each(cut & 7, at_walls(walls | 4));
-      if (walls == 0)
-        each(cut & ~7u, in_block);
-      else
-        each(cut & ~7u, at_walls(walls));
-    }
+    const EdgeSlice slice = {{block.edges[0].at[x], block.edges[1].at[x], block.edges[2].at[x]},
+                             x,
+                             QuadInts{} + static_cast<int>(block.first_in_mesh),
+                             to};
+    if ((slice.edges[0] | slice.edges[1] | slice.edges[2]) == 0) continue;
+    write_axis<0, patched>(tables, slice, block.inside->at[x]);
+    write_axis<1, patched>(tables, slice, block.inside->at[x]);
+    write_axis<2, patched>(tables, slice, block.inside->at[x]);
+    for (const std::uint64_t edges : slice.edges) to += 6 * __builtin_popcountll(edges);
   }
 }
 
 void write_quads(const QuadBlock& block, std::uint32_t* triangles) noexcept {
-  VertexTable vertices;
-  PatchTable patches;
-  fill(block, vertices);
-  if (fill(block, patches))
-    write<true>(block, vertices, patches, triangles);
+  QuadTables tables;
+  tables.local = block.local;
+  tables.patch_of_edge = block.patch_of_edge;
+  fill(block, tables.vertices);
+  if (fill(block, tables.patches))
+    write<true>(block, tables, triangles);
   else
-    write<false>(block, vertices, patches, triangles);
+    write<false>(block, tables, triangles);
 }
 
 }  // namespace
