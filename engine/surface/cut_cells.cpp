@@ -14,6 +14,11 @@ constexpr BlockBits all_bits(std::uint64_t word) {
 }
 constexpr BlockBits k_outside = all_bits(0), k_inside = all_bits(UINT64_MAX);
 
+/// Neighbour slots of a block and those below it, at an offset of (dx, dy, dz) − 1, and of those above it, at
+/// one of (dx, dy, dz), both by 4 dx + 2 dy + dz.
+constexpr std::array<std::size_t, 8> k_slots_below = {0, 1, 3, 4, 9, 10, 12, 13},
+                                     k_slots_above = {13, 14, 16, 17, 22, 23, 25, 26};
+
 const CellLanes& best_cell_lanes() {
   static const InstructionLevel level = best_instruction_level();
   return MALLOW_SELECT(level, cell_lanes);
@@ -36,11 +41,8 @@ void CutCells::choose_blocks(const SurfaceField& field) {
   place_.assign(n, k_no_block);
   for (std::uint32_t b = 0; b < n; ++b) {
     if (field.kind(b) != BlockKind::surface) continue;
-    for (int below = 0; below < 8; ++below) {
-      const std::uint32_t other =
-          field.neighbors(b)[neighbor_slot(-(below >> 2), -(below >> 1 & 1), -(below & 1))];
-      if (other != k_no_block) place_[other] = 0;
-    }
+    for (const std::size_t slot : k_slots_below)
+      if (const std::uint32_t other = field.neighbors(b)[slot]; other != k_no_block) place_[other] = 0;
   }
   for (std::uint32_t b = 0; b < n; ++b) {
     if (place_[b] == k_no_block) continue;
@@ -51,16 +53,10 @@ void CutCells::choose_blocks(const SurfaceField& field) {
 
 void CutCells::find_signs(const SurfaceField& field, std::size_t at) {
   const std::uint32_t block = blocks_[at];
-  BlockCells& cells = cells_[at];
-  for (std::size_t k = 0; k < 8; ++k) {
-    // Offsets of −1 and 0: neighbour slots 0, 1, 3, 4, 9, 10, 12, 13.
-    const std::uint32_t other = field.neighbors(block)[(k >> 2) * 9 + (k >> 1 & 1) * 3 + (k & 1)];
-    cells.around[k] = other == k_no_block ? k_no_block : place_[other];
-  }
   if (field.kind(block) == BlockKind::surface)
-    best_cell_lanes().find_signs(field.distances(block), cells.inside);
+    best_cell_lanes().find_signs(field.distances(block), cells_[at].inside);
   else
-    cells.inside = field.kind(block) == BlockKind::inside ? k_inside : k_outside;
+    cells_[at].inside = field.kind(block) == BlockKind::inside ? k_inside : k_outside;
 }
 
 /// Of the voxels of any block of the field, or of none.
@@ -73,8 +69,8 @@ const BlockBits& CutCells::signs(const SurfaceField& field, std::uint32_t block)
 void CutCells::find_bits(const SurfaceField& field, std::size_t at, CornerBits& corners,
                          CellBits& bits) const {
   const BlockBits* inside[8];
-  for (int k = 0; k < 8; ++k)
-    inside[k] = &signs(field, field.neighbors(blocks_[at])[neighbor_slot(k >> 2, k >> 1 & 1, k & 1)]);
+  for (std::size_t k = 0; k < 8; ++k)
+    inside[k] = &signs(field, field.neighbors(blocks_[at])[k_slots_above[k]]);
   best_cell_lanes().find_cells(inside, corners, bits);
 }
 
@@ -96,11 +92,10 @@ unsigned CutCells::corners_beside(const SurfaceField& field, std::size_t at, con
 
 /// Decides which patches of ambiguous cells are joined, lists the cells that have more than one, and counts
 /// the vertices of these.
-void CutCells::find_patched(const SurfaceField& field, std::size_t at, const CornerBits& corners,
-                            const BlockBits& unclear) {
+void CutCells::find_patched(const SurfaceField& field, std::size_t at, const CornerBits& corners) {
   BlockCells& cells = cells_[at];
   for (int x = 0; x < k_block_side; ++x) {
-    for (std::uint64_t left = unclear.at[x]; left != 0; left &= left - 1) {
+    for (std::uint64_t left = cells.bits.unclear.at[x]; left != 0; left &= left - 1) {
       const int bit = std::countr_zero(left), y = bit / k_block_side, z = bit % k_block_side;
       unsigned patches = corners_of(corners, x, y, z);
       if (const int face = k_cell_patches[patches].twice; face >= 0) {
@@ -118,16 +113,16 @@ void CutCells::find_patched(const SurfaceField& field, std::size_t at, const Cor
 
 void CutCells::find_cells(const SurfaceField& field, std::size_t at) {
   CornerBits corners;
-  CellBits bits;
-  find_bits(field, at, corners, bits);
   BlockCells& cells = cells_[at];
+  find_bits(field, at, corners, cells.bits);
   cells.patched.clear();
-  cells.cut = bits.cut;
-  cells.vertices = bits.cells;
-  cells.quads = bits.quads;
-  if (bits.cells == 0) return;
-  std::copy(std::begin(bits.edges), std::end(bits.edges), cells.edges);
-  find_patched(field, at, corners, bits.unclear);
+  cells.vertices = cells.bits.cells;
+  if (cells.vertices == 0) return;
+  for (std::size_t k = 0; k < 8; ++k) {
+    const std::uint32_t other = field.neighbors(blocks_[at])[k_slots_below[k]];
+    cells.around[k] = other == k_no_block ? k_no_block : place_[other];
+  }
+  find_patched(field, at, corners);
 }
 
 void CutCells::find(const SurfaceField& field, const Threads& threads) {
@@ -148,7 +143,7 @@ void CutCells::find(const SurfaceField& field, const Threads& threads) {
     cells.first_vertex = vertices_;
     cells.first_quad = quads_;
     vertices_ += cells.vertices;
-    quads_ += cells.quads;
+    quads_ += cells.bits.quads;
   }
 }
 
@@ -165,7 +160,7 @@ void CutCells::find_corners(const SurfaceField& field, std::size_t at,
 
 void CutCells::list_vertices(std::size_t at, CellList& list) {
   BlockCells& cells = cells_[at];
-  std::size_t n = best_cell_lanes().list_cells(cells.cut, list.cells.data(), cells.vertex.data());
+  std::size_t n = best_cell_lanes().list_cells(cells.bits.cut, list.cells.data(), cells.vertex.data());
   list.vertices = {cells.vertices, list.cells.data(), nullptr};
   if (!cells.patched.empty()) {
     // From the last cell on, as cells move up to make room for those that are there several times.
@@ -197,7 +192,7 @@ QuadBlock CutCells::quad_block(std::size_t at) const {
     block.around[k] = {of.vertex.data(), of.first_vertex, of.patched.data(), of.patched.size()};
   }
   block.inside = &cells.inside;
-  block.edges = cells.edges;
+  block.edges = cells.bits.edges;
   block.patch_of_edge = k_patch_of_edge.at[0];
   return block;
 }

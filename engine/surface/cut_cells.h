@@ -19,18 +19,17 @@ inline std::size_t cell_at(int x, int y, int z) {
 
 /// What the cells of a block hold; a cell has its lowest voxel in the block.
 struct BlockCells {
-  BlockBits inside;    ///< voxels
-  BlockBits cut;       ///< cells
-  BlockBits edges[3];  ///< that are cut, by axis and their lower voxel; set where `quads` is not 0
+  BlockBits inside;  ///< voxels
+  CellBits bits;
   std::array<std::uint16_t, k_block_voxels>
       vertex;                        ///< first vertex, from the block's first on; of cut cells
   std::vector<PatchedCell> patched;  ///< those with more than one vertex, in order
   /// Places among CutCells::blocks() of the block itself and those below it, number 4 dx + 2 dy + dz of one
-  /// at an offset of (dx, dy, dz) − 1; k_no_block where it has no cells.
+  /// at an offset of (dx, dy, dz) − 1; k_no_block where it has no cells. Set where there are quads.
   std::array<std::uint32_t, 8> around;
-  std::uint32_t first_vertex, vertices, first_quad, quads;
+  std::uint32_t first_vertex, vertices, first_quad;
 
-  bool is_cut(std::size_t cell) const { return (cut.at[cell / 64] >> (cell % 64) & 1) != 0; }
+  bool is_cut(std::size_t cell) const { return (bits.cut.at[cell / 64] >> (cell % 64) & 1) != 0; }
 };
 
 /// A corner of a quad.
@@ -85,8 +84,7 @@ class CutCells {
   void find_signs(const SurfaceField& field, std::size_t at);
   void find_bits(const SurfaceField& field, std::size_t at, CornerBits& corners, CellBits& bits) const;
   void find_cells(const SurfaceField& field, std::size_t at);
-  void find_patched(const SurfaceField& field, std::size_t at, const CornerBits& corners,
-                    const BlockBits& unclear);
+  void find_patched(const SurfaceField& field, std::size_t at, const CornerBits& corners);
   unsigned corners_beside(const SurfaceField& field, std::size_t at, const CornerBits& corners, int x, int y,
                           int z, int face) const;
   std::uint32_t vertex_at_edge(std::uint32_t at, std::size_t cell, int edge) const;
@@ -100,7 +98,7 @@ class CutCells {
 template <class Visit>
 void CutCells::for_each_cut(std::size_t at, const Visit& visit) const {
   for (int x = 0; x < k_block_side; ++x) {
-    for (std::uint64_t left = cells_[at].cut.at[x]; left != 0; left &= left - 1) {
+    for (std::uint64_t left = cells_[at].bits.cut.at[x]; left != 0; left &= left - 1) {
       const int bit = std::countr_zero(left);
       visit(cell_at(x, 0, bit), x, bit / k_block_side, bit % k_block_side);
     }
@@ -110,11 +108,11 @@ void CutCells::for_each_cut(std::size_t at, const Visit& visit) const {
 template <class Visit>
 void CutCells::for_each_quad(std::size_t at, const Visit& visit) const {
   const BlockCells& cells = cells_[at];
-  if (cells.quads == 0) return;
+  if (cells.bits.quads == 0) return;
   for_each_cut(at, [&](std::size_t cell, int x, int y, int z) {
     for (int axis = 0; axis < 3; ++axis) {
       const int bit = y * k_block_side + z;
-      if ((cells.edges[axis].at[x] >> bit & 1) == 0) continue;
+      if ((cells.bits.edges[axis].at[x] >> bit & 1) == 0) continue;
       // The cells around the edge, counter-clockwise seen from where it leads.
       constexpr int k_around[4][2] = {{1, 1}, {0, 1}, {0, 0}, {1, 0}};
       constexpr int k_steps[3] = {k_block_side * k_block_side, k_block_side, 1};

@@ -46,9 +46,9 @@ void DualMesher::place_vertices(const SurfaceField& field, std::size_t at, Mesh&
   cells_.list_vertices(at, list);
   const std::uint32_t block = cells_.blocks()[at];
   VertexBlock from;
-  for (std::size_t k = 0; k < std::size(from.distances); ++k)
-    from.distances[k] = distances_of(field, field.neighbors(block)[k]);
-  from.cut = &cells.cut;
+  const auto& neighbors = field.neighbors(block);
+  for (std::size_t k = 0; k < neighbors.size(); ++k) from.distances[k] = distances_of(field, neighbors[k]);
+  from.cut = &cells.bits.cut;
   for (Eigen::Index a = 0; a < 3; ++a) {
     from.first[a] = k_block_side * field.blocks().blocks()[block][a];
     from.origin[a] = field.frame().origin[a];
@@ -62,7 +62,7 @@ void DualMesher::place_vertices(const SurfaceField& field, std::size_t at, Mesh&
 
 void DualMesher::write_triangles(std::size_t at, Mesh& mesh) const {
   const BlockCells& cells = cells_.cells(at);
-  if (cells.quads == 0) return;
+  if (cells.bits.quads == 0) return;
   QuadBlock block = cells_.quad_block(at);
   block.local = local_.data()->data();
   block.first_in_mesh = first_vertex_;

@@ -61,32 +61,20 @@ void pad(const VertexBlock& block, Padded& padded) {
   }
 }
 
-/// The distances about eight cells, a lane each, from voxels at −1 to 2 along each axis: those that are next
-/// to a corner along some axis.
-struct Around {
-  Floats inner[2][2][4];     ///< [x][y][z + 1]
-  Floats beside_x[2][2][2];  ///< x of −1 and 2, [y][z]
-  Floats beside_y[2][2][2];  ///< [x], y of −1 and 2, [z]
-  const Floats& corner(int c) const { return inner[c >> 2][c >> 1 & 1][1 + (c & 1)]; }
+/// Eight cells, a lane each: the voxels of a Padded, and the cells' lowest corners in it.
+struct EightCells {
+  const float* voxels;
+  std::uint32_t at[k_cluster];
+};
+/// Distances at corners of cells, and below and above them along z: [x][y][z + 1].
+struct Corners {
+  Floats at[2][2][4];
+  const Floats& corner(int c) const { return at[c >> 2][c >> 1 & 1][1 + (c & 1)]; }
 };
 
-MALLOW_INLINE void load_around(const float* voxels, const std::uint32_t* cells, Around& v) {
-  constexpr int k_plane = Padded::k_plane, k_row = Padded::k_row;
-  const auto two = [&](int x, int y, Floats* to) {
-    Floats row[4];
-    load_named(voxels + x * k_plane + y * k_row, 1, cells, row);
-    to[0] = row[0];
-    to[1] = row[1];
-  };
-#pragma GCC unroll 2
-  for (int i = 0; i < 2; ++i) {
-#pragma GCC unroll 2
-    for (int j = 0; j < 2; ++j) {
-      load_named(voxels + i * k_plane + j * k_row - 1, 1, cells, v.inner[i][j]);
-      two(3 * i - 1, j, v.beside_x[i][j]);
-      two(i, 3 * j - 1, v.beside_y[i][j]);
-    }
-  }
+/// Four voxels from (x, y, z) on along z.
+MALLOW_INLINE void load_row(const EightCells& cells, int x, int y, int z, Floats* row) {
+  load_named(cells.voxels + x * Padded::k_plane + y * Padded::k_row + z, 1, cells.at, row);
 }
 
 MALLOW_INLINE Ints any_lane(std::uint32_t value) {
@@ -97,7 +85,7 @@ MALLOW_INLINE Ints any_lane(std::uint32_t value) {
 /// corner, as cells that share it would put their vertices in one place. edges: a bit each of those of the
 /// patch; the others of its cell count for nothing.
 template <bool patched>
-MALLOW_INLINE ClusterVec3 middle_of_cuts(const Around& v, [[maybe_unused]] const Ints& edges) {
+MALLOW_INLINE ClusterVec3 middle_of_cuts(const Corners& v, [[maybe_unused]] const Ints& edges) {
   Ints inside[8];
 #pragma GCC unroll 8
   for (int c = 0; c < 8; ++c) inside[c] = is_larger(Floats{}, v.corner(c));
@@ -120,20 +108,29 @@ MALLOW_INLINE ClusterVec3 middle_of_cuts(const Around& v, [[maybe_unused]] const
   return ClusterVec3{sum[0], sum[1], sum[2]} / edge_count;
 }
 
-/// The direction in which distances grow: differences of the voxels around each corner, interpolated.
-MALLOW_INLINE ClusterVec3 normals_at(const Around& v, const ClusterVec3& in_cell) {
+/// The direction in which distances grow: differences of the voxels around each corner, interpolated. Voxels
+/// beside the cells are loaded where they are used, as there are more than registers.
+MALLOW_INLINE ClusterVec3 normals_at(const EightCells& cells, const Corners& v, const ClusterVec3& in_cell) {
   const Floats wx[2] = {1.0f - in_cell.x, in_cell.x}, wy[2] = {1.0f - in_cell.y, in_cell.y},
                wz[2] = {1.0f - in_cell.z, in_cell.z};
+  Floats w[8];
   ClusterVec3 g = {};
 #pragma GCC unroll 8
   for (int c = 0; c < 8; ++c) {
-    const int x = c >> 2, y = c >> 1 & 1, z = c & 1;
-    const Floats w = wx[x] * wy[y] * wz[z];
-    const Floats along_x =
-        x == 0 ? v.corner(c | 4) - v.beside_x[0][y][z] : v.beside_x[1][y][z] - v.corner(c & 3);
-    const Floats along_y =
-        y == 0 ? v.corner(c | 2) - v.beside_y[x][0][z] : v.beside_y[x][1][z] - v.corner(c & 5);
-    g += w * ClusterVec3{along_x, along_y, v.inner[x][y][z + 2] - v.inner[x][y][z]};
+    const Floats* const row = v.at[c >> 2][c >> 1 & 1] + (c & 1);
+    w[c] = wx[c >> 2] * wy[c >> 1 & 1] * wz[c & 1];
+    g.z += w[c] * (row[2] - row[0]);
+  }
+#pragma GCC unroll 4
+  for (int k = 0; k < 4; ++k) {
+    const int i = k >> 1, j = k & 1, first = 4 * i + 2 * j;
+    Floats beside[4];
+    load_row(cells, 3 * i - 1, j, 0, beside);
+    for (int c = first; c < first + 2; ++c)
+      g.x += w[c] * (i == 0 ? v.corner(c | 4) - beside[c & 1] : beside[c & 1] - v.corner(c & 3));
+    load_row(cells, i, 3 * j - 1, 0, beside);
+    for (int c = first; c < first + 2; ++c)
+      g.y += w[c] * (j == 0 ? v.corner(c | 2) - beside[c & 1] : beside[c & 1] - v.corner(c & 5));
   }
   const Floats square = squared(g);
   const Ints slope = is_larger(square, Floats{});
@@ -187,14 +184,16 @@ void place(const VertexBlock& block, const VertexList& list, const VertexRows& t
   for (std::size_t i = 0; i < list.count; i += k_cluster) {
     const Ints cells = widened(list.cells + i);
     const Ints x = cells >> 6, y = cells >> 3 & 7, z = cells & 7;
-    std::uint32_t places[k_cluster];
-    store(x * Padded::k_plane + y * Padded::k_row + z, places);
-    Around around;
-    load_around(padded.at + Padded::k_first, places, around);
+    EightCells eight;
+    eight.voxels = padded.at + Padded::k_first;
+    store(x * Padded::k_plane + y * Padded::k_row + z, eight.at);
+    Corners corners;
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; ++k) load_row(eight, k >> 1, k & 1, -1, corners.at[k >> 1][k & 1]);
     Ints edges = {};
     if constexpr (patched) edges = widened(list.edges + i);
-    const ClusterVec3 in_cell = middle_of_cuts<patched>(around, edges);
-    const ClusterVec3 normals = normals_at(around, in_cell);
+    const ClusterVec3 in_cell = middle_of_cuts<patched>(corners, edges);
+    const ClusterVec3 normals = normals_at(eight, corners, in_cell);
     const ClusterVec3 local =
         in_cell + ClusterVec3{__builtin_convertvector(x, Floats), __builtin_convertvector(y, Floats),
                               __builtin_convertvector(z, Floats)};
