@@ -29,6 +29,12 @@ MALLOW_INLINE Ints load(const std::uint32_t* from) {
   __builtin_memcpy(&values, from, sizeof values);
   return values;
 }
+MALLOW_INLINE Ints load(const std::uint16_t* from) {
+  using Shorts = std::uint16_t __attribute__((vector_size(k_cluster * sizeof(std::uint16_t))));
+  Shorts values;
+  __builtin_memcpy(&values, from, sizeof values);
+  return __builtin_convertvector(values, Ints);
+}
 MALLOW_INLINE ClusterVec3 load(const ConstVectors& from, std::size_t first) {
   return {load(from.x + first), load(from.y + first), load(from.z + first)};
 }

@@ -65,6 +65,17 @@ void find_unclear(const CornerBits& corners, const BlockBits& cut, BlockBits& un
   }
 }
 
+/// all: the bits of all x together, some of which are set.
+BitRange find_range(const BlockBits& bits, std::uint64_t all) {
+  BitRange range{k_side, 0, __builtin_ctzll(all) / k_side, (63 - __builtin_clzll(all)) / k_side};
+  for (int x = 0; x < k_side; ++x) {
+    if (bits.at[x] == 0) continue;
+    if (range.first_x == k_side) range.first_x = x;
+    range.last_x = x;
+  }
+  return range;
+}
+
 MALLOW_INLINE std::uint32_t count(const BlockBits& bits) {
   std::uint32_t n = 0;
   for (const std::uint64_t word : bits.at) n += static_cast<std::uint32_t>(__builtin_popcountll(word));
@@ -91,6 +102,7 @@ void find_cells(const BlockBits* const* inside, CornerBits& corners, CellBits& c
     cells.edges[2].at[x] = at[0][x] ^ at[1][x];
   }
   find_unclear(corners, cells.cut, cells.unclear);
+  cells.range = find_range(cells.cut, some);
   cells.cells = count(cells.cut);
   cells.quads = count(cells.edges[0]) + count(cells.edges[1]) + count(cells.edges[2]);
 }

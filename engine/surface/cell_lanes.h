@@ -17,12 +17,18 @@ struct BlockBits {
 struct CornerBits {
   std::uint64_t at[4][k_block_side + 1];
 };
-/// What the signs of voxels tell of a block's cells.
+/// The first and the last x and y that bits of a block have.
+struct BitRange {
+  int first_x, last_x, first_y, last_y;
+};
+/// What the signs of voxels tell of a block's cells. Where no cell is cut, only `cut`, `cells` and `quads`
+/// are set.
 struct CellBits {
   BlockBits cut;               ///< cells with corners on both sides
   BlockBits edges[3];          ///< edges from the lowest corner along an axis that are cut
   BlockBits unclear;           ///< holds all cells that may have more than one patch, and some others
-  std::uint32_t cells, quads;  ///< how many cells and edges are cut; where no cell is, the rest is not set
+  BitRange range;              ///< of the cells that are cut
+  std::uint32_t cells, quads;  ///< how many cells and edges are cut
 };
 
 /// Signs of voxels and cells, 64 at a time.

@@ -192,6 +192,7 @@ QuadBlock CutCells::quad_block(std::size_t at) const {
     block.around[k] = {of.vertex.data(), of.first_vertex, of.patched.data(), of.patched.size()};
   }
   block.inside = &cells.inside;
+  block.range = cells.bits.range;
   block.edges = cells.bits.edges;
   block.patch_of_edge = k_patch_of_edge.at[0];
   return block;

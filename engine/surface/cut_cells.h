@@ -8,8 +8,9 @@
 #include "core/threads.h"
 #include "surface/cell_lanes.h"
 #include "surface/dual_cells.h"
-#include "surface/mesh_lanes.h"
+#include "surface/quad_lanes.h"
 #include "surface/surface_field.h"
+#include "surface/vertex_lanes.h"
 
 namespace mallow {
 
@@ -72,7 +73,7 @@ class CutCells {
   template <class Visit>
   void for_each_cut(std::size_t at, const Visit& visit) const;
   /// Calls visit(std::array<QuadCorner, 4>) for the edges that are cut and start at a voxel of the block,
-  /// with the cells around them counter-clockwise seen from outside; in the order of MeshLanes::write_quads.
+  /// with the cells around them counter-clockwise seen from outside; in the order of QuadLanes::write_quads.
   template <class Visit>
   void for_each_quad(std::size_t at, const Visit& visit) const;
 

@@ -8,9 +8,14 @@
 namespace mallow {
 namespace {
 
-const MeshLanes& best_mesh_lanes() {
+const VertexLanes& best_vertex_lanes() {
   static const InstructionLevel level = best_instruction_level();
-  return MALLOW_SELECT(level, mesh_lanes);
+  return MALLOW_SELECT(level, vertex_lanes);
+}
+
+const QuadLanes& best_quad_lanes() {
+  static const InstructionLevel level = best_instruction_level();
+  return MALLOW_SELECT(level, quad_lanes);
 }
 
 constexpr std::array<float, k_block_voxels> all_voxels(float distance) {
@@ -48,14 +53,14 @@ void DualMesher::place_vertices(const SurfaceField& field, std::size_t at, Mesh&
   VertexBlock from;
   const auto& neighbors = field.neighbors(block);
   for (std::size_t k = 0; k < neighbors.size(); ++k) from.distances[k] = distances_of(field, neighbors[k]);
-  from.cut = &cells.bits.cut;
+  from.range = cells.bits.range;
   for (Eigen::Index a = 0; a < 3; ++a) {
     from.first[a] = k_block_side * field.blocks().blocks()[block][a];
     from.origin[a] = field.frame().origin[a];
   }
   from.voxel_size = field.frame().voxel_size;
   const std::size_t first = first_vertex_ + std::size_t{cells.first_vertex};
-  best_mesh_lanes().place_vertices(
+  best_vertex_lanes().place_vertices(
       from, list.vertices,
       {local_[cells.first_vertex].data(), mesh.vertices[first].data(), mesh.normals[first].data()});
 }
@@ -67,7 +72,7 @@ void DualMesher::write_triangles(std::size_t at, Mesh& mesh) const {
   block.local = local_.data()->data();
   block.first_in_mesh = first_vertex_;
   const std::size_t first = first_triangle_ + 2 * std::size_t{cells.first_quad};
-  best_mesh_lanes().write_quads(block, mesh.triangles[first].data());
+  best_quad_lanes().write_quads(block, mesh.triangles[first].data());
 }
 
 /// Closes the gaps that merged vertices leave, and writes the triangles between what is left.
