@@ -140,7 +140,8 @@ MALLOW_INLINE QuadInts quad_of(const QuadTables& tables, const EdgeSlice& slice,
   const Quad lengths = squares + (__builtin_shufflevector(squares, squares, 2, 3, 2, 3) + z_squares);
   const QuadInts other = __builtin_shufflevector(lengths, lengths, 0, 0, 0, 0) <
                          0.99f * __builtin_shufflevector(lengths, lengths, 1, 1, 1, 1);
-  return other ? __builtin_shufflevector(quad, quad, 1, 2, 3, 0) : quad;
+  const QuadInts turned = __builtin_shufflevector(quad, quad, 1, 2, 3, 0);
+  return other ? turned : quad;
 }
 
 /// Writes the quads of some edges of a kind, each behind those of all cells before and of axes before.

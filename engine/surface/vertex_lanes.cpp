@@ -71,7 +71,7 @@ MALLOW_INLINE ClusterVec3 middle_of_cuts(const Corners& v, [[maybe_unused]] cons
     const int axis = e / 4, u = e >> 1 & 1, w = e & 1, u_axis = (axis + 1) % 3, w_axis = (axis + 2) % 3;
     const int low_corner = u << (2 - u_axis) | w << (2 - w_axis), high_corner = low_corner | 1 << (2 - axis);
     Ints cut = inside[low_corner] ^ inside[high_corner];
-    if constexpr (patched) cut &= is_equal(edges & (1 << e), 1 << e);
+    if constexpr (patched) cut &= is_equal(edges & static_cast<int>(1u << e), 1 << e);
     count -= cut;
     const Floats low = v.corner(low_corner), high = v.corner(high_corner);
     const Floats at = smaller(larger(low / (low - high), all(0.01f)), all(0.99f));
