@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <random>
 #include <vector>
@@ -39,6 +42,16 @@ struct Blocks {
     lanes.list_cells(cells.cut, list.data(), place.data());
     for (std::size_t i = 0; i < list.size(); ++i)
       edges.push_back(static_cast<std::uint16_t>(random() & k_all_edges));
+  }
+
+  /// Of a voxel from the middle block's first one on, or beside that block.
+  double distance(const Eigen::Vector3i& voxel) const {
+    std::size_t block = 0, at = 0;
+    for (const int x : voxel) {
+      block = 3 * block + static_cast<std::size_t>((x + 8) / 8);
+      at = 8 * at + static_cast<std::size_t>((x + 8) % 8);
+    }
+    return static_cast<double>(distances[block][at]);
   }
 
   /// Local places, vertices and normals.
@@ -94,23 +107,57 @@ TEST(mesh_lanes, vertices_have_the_same_bits_at_every_instruction_level_and_stay
   }
 }
 
-TEST(mesh_lanes, a_vertex_lies_in_its_cell_and_its_normal_has_length_one) {
-  const Blocks blocks(9);
-  const std::size_t n = blocks.cells.cells;
-  const std::vector<float> rows = blocks.vertices(best_instruction_level(), n, false);
-  for (std::size_t v = 0; v < n; ++v) {
-    const int cell = blocks.list[v], corner[3] = {cell / 64, cell / 8 % 8, cell % 8};
-    float square = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const float local = rows[3 * v + a];
-      ASSERT_GT(local, static_cast<float>(corner[a]));
-      ASSERT_LT(local, static_cast<float>(corner[a]) + 1);
-      const double world = 0.1 * static_cast<double>(a) - 1 +
-                           0.03 * (8.0 * static_cast<double>(a + 1) + static_cast<double>(local));
-      ASSERT_EQ(rows[3 * (n + v) + a], static_cast<float>(world));
-      square += rows[3 * (2 * n + v) + a] * rows[3 * (2 * n + v) + a];
+/// Where the surface cuts a cell's edges, in the mean, from the cell's lowest corner on; in double.
+Eigen::Vector3d literal_place(const Blocks& blocks, const Eigen::Vector3i& cell) {
+  Eigen::Vector3d sum(0, 0, 0);
+  int count = 0;
+  for (int e = 0; e < k_cell_edges; ++e) {
+    const auto [low, high] = edge_corners(e);
+    const Eigen::Vector3i from(low >> 2, low >> 1 & 1, low & 1), to(high >> 2, high >> 1 & 1, high & 1);
+    const double a = blocks.distance(cell + from), b = blocks.distance(cell + to);
+    if ((a < 0) == (b < 0)) continue;
+    sum += from.cast<double>() + std::clamp(a / (a - b), 0.01, 0.99) * (to - from).cast<double>();
+    ++count;
+  }
+  return sum / count;
+}
+
+/// Differences of the voxels around a cell's corners, interpolated at a place in it.
+Eigen::Vector3d literal_slope(const Blocks& blocks, const Eigen::Vector3i& cell, const Eigen::Vector3d& at) {
+  Eigen::Vector3d slope(0, 0, 0);
+  for (int c = 0; c < 8; ++c) {
+    const Eigen::Vector3i corner(c >> 2, c >> 1 & 1, c & 1);
+    double weight = 1;
+    for (Eigen::Index a = 0; a < 3; ++a) weight *= corner[a] == 1 ? at[a] : 1 - at[a];
+    for (Eigen::Index a = 0; a < 3; ++a) {
+      const Eigen::Vector3i step = Eigen::Vector3i::Unit(a);
+      slope[a] += weight * (blocks.distance(cell + corner + step) - blocks.distance(cell + corner - step));
     }
-    ASSERT_NEAR(square, 1, 1e-5f);
+  }
+  return slope;
+}
+
+TEST(mesh_lanes, a_vertex_is_the_mean_of_cuts_and_its_normal_the_slope_there) {
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const Blocks blocks(seed);
+    const std::size_t n = blocks.cells.cells;
+    ASSERT_GT(n, 400u);
+    const std::vector<float> rows = blocks.vertices(best_instruction_level(), n, false);
+    for (std::size_t v = 0; v < n; ++v) {
+      const auto row = [&](std::size_t column) {
+        const float* const x = rows.data() + 3 * (column * n + v);
+        return Eigen::Vector3d(static_cast<double>(x[0]), static_cast<double>(x[1]),
+                               static_cast<double>(x[2]));
+      };
+      const Eigen::Vector3i cell(blocks.list[v] / 64, blocks.list[v] / 8 % 8, blocks.list[v] % 8);
+      const Eigen::Vector3d place = literal_place(blocks, cell), local = cell.cast<double>() + place;
+      ASSERT_LT((row(0) - local).norm(), 2e-6);
+      const Eigen::Vector3d world =
+          Eigen::Vector3d(-1, -0.9, -0.8) + 0.03 * (Eigen::Vector3d(8, 16, 24) + local);
+      ASSERT_LT((row(1) - world).norm(), 2e-7);
+      const Eigen::Vector3d slope = literal_slope(blocks, cell, place);
+      ASSERT_LT((row(2) - slope.normalized()).norm(), 1e-5 / std::min(1.0, slope.norm()));
+    }
   }
 }
 
