@@ -54,15 +54,15 @@ void CutCells::choose_blocks(const SurfaceField& field) {
 void CutCells::find_signs(const SurfaceField& field, std::size_t at) {
   const std::uint32_t block = blocks_[at];
   if (field.kind(block) == BlockKind::surface)
-    best_cell_lanes().find_signs(field.distances(block), cells_[at].inside);
+    best_cell_lanes().find_signs(field.distances(block), inside_[at]);
   else
-    cells_[at].inside = field.kind(block) == BlockKind::inside ? k_inside : k_outside;
+    inside_[at] = field.kind(block) == BlockKind::inside ? k_inside : k_outside;
 }
 
 /// Of the voxels of any block of the field, or of none.
 const BlockBits& CutCells::signs(const SurfaceField& field, std::uint32_t block) const {
   if (block == k_no_block) return k_outside;
-  if (const std::uint32_t at = place_[block]; at != k_no_block) return cells_[at].inside;
+  if (const std::uint32_t at = place_[block]; at != k_no_block) return inside_[at];
   return field.kind(block) == BlockKind::inside ? k_inside : k_outside;
 }
 
@@ -127,6 +127,7 @@ void CutCells::find_cells(const SurfaceField& field, std::size_t at) {
 
 void CutCells::find(const SurfaceField& field, const Threads& threads) {
   choose_blocks(field);
+  inside_.resize(blocks_.size());
   cells_.resize(blocks_.size());
   const auto each = [&](const auto& work) {
     parallel_for(
@@ -139,12 +140,17 @@ void CutCells::find(const SurfaceField& field, const Threads& threads) {
   each([&](std::size_t at) { find_signs(field, at); });
   each([&](std::size_t at) { find_cells(field, at); });
   vertices_ = quads_ = 0;
+  std::size_t numbered = 0;
   for (BlockCells& cells : cells_) {
     cells.first_vertex = vertices_;
     cells.first_quad = quads_;
     vertices_ += cells.vertices;
     quads_ += cells.bits.quads;
+    numbered += cells.vertices > 0 ? 1 : 0;
   }
+  numbers_.resize(numbered);
+  auto numbers = numbers_.begin();
+  for (BlockCells& cells : cells_) cells.vertex = cells.vertices > 0 ? (numbers++)->data() : nullptr;
 }
 
 void CutCells::find_corners(const SurfaceField& field, std::size_t at,
@@ -160,7 +166,7 @@ void CutCells::find_corners(const SurfaceField& field, std::size_t at,
 
 void CutCells::list_vertices(std::size_t at, CellList& list) {
   BlockCells& cells = cells_[at];
-  std::size_t n = best_cell_lanes().list_cells(cells.bits.cut, list.cells.data(), cells.vertex.data());
+  std::size_t n = best_cell_lanes().list_cells(cells.bits.cut, list.cells.data(), cells.vertex);
   list.vertices = {cells.vertices, list.cells.data(), nullptr};
   if (!cells.patched.empty()) {
     // From the last cell on, as cells move up to make room for those that are there several times.
@@ -189,9 +195,9 @@ QuadBlock CutCells::quad_block(std::size_t at) const {
   for (std::size_t k = 0; k < 8; ++k) {
     if (cells.around[k] == k_no_block) continue;
     const BlockCells& of = cells_[cells.around[k]];
-    block.around[k] = {of.vertex.data(), of.first_vertex, of.patched.data(), of.patched.size()};
+    block.around[k] = {of.vertex, of.first_vertex, of.patched.data(), of.patched.size()};
   }
-  block.inside = &cells.inside;
+  block.inside = &inside_[at];
   block.range = cells.bits.range;
   block.edges = cells.bits.edges;
   block.patch_of_edge = k_patch_of_edge.at[0];
@@ -210,7 +216,8 @@ std::uint32_t CutCells::vertex_at_edge(std::uint32_t at, std::size_t cell, int e
 }
 
 std::size_t CutCells::bytes() const {
-  std::size_t bytes = cells_.capacity() * sizeof(BlockCells) +
+  std::size_t bytes = cells_.capacity() * sizeof(BlockCells) + inside_.capacity() * sizeof(BlockBits) +
+                      numbers_.capacity() * sizeof numbers_[0] +
                       (blocks_.capacity() + place_.capacity()) * sizeof(std::uint32_t);
   for (const BlockCells& cells : cells_) bytes += cells.patched.capacity() * sizeof(PatchedCell);
   return bytes;

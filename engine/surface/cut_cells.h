@@ -20,10 +20,9 @@ inline std::size_t cell_at(int x, int y, int z) {
 
 /// What the cells of a block hold; a cell has its lowest voxel in the block.
 struct BlockCells {
-  BlockBits inside;  ///< voxels
   CellBits bits;
-  std::array<std::uint16_t, k_block_voxels>
-      vertex;                        ///< first vertex, from the block's first on; of cut cells
+  /// First vertex of each cell that is cut, from the block's first on; null where none is.
+  std::uint16_t* vertex;
   std::vector<PatchedCell> patched;  ///< those with more than one vertex, in order
   /// Places among CutCells::blocks() of the block itself and those below it, number 4 dx + 2 dy + dz of one
   /// at an offset of (dx, dy, dz) − 1; k_no_block where it has no cells. Set where there are quads.
@@ -64,7 +63,7 @@ class CutCells {
   std::uint32_t vertices() const { return vertices_; }
   std::uint32_t quads() const { return quads_; }
 
-  /// Lists the vertices of a block, and sets BlockCells::vertex.
+  /// Lists the vertices of a block, and numbers them in BlockCells::vertex.
   void list_vertices(std::size_t at, CellList& list);
   /// What the quads of a block are written from, but for vertices.
   QuadBlock quad_block(std::size_t at) const;
@@ -92,7 +91,10 @@ class CutCells {
 
   std::vector<std::uint32_t> blocks_;
   std::vector<std::uint32_t> place_;  ///< of each block of the field among them
+  // What all blocks beside a block look at is kept apart from what few do.
+  std::vector<BlockBits> inside_;  ///< voxels of each
   std::vector<BlockCells> cells_;
+  std::vector<std::array<std::uint16_t, k_block_voxels>> numbers_;  ///< of vertices, of blocks that have any
   std::uint32_t vertices_ = 0, quads_ = 0;
 };
 
@@ -131,7 +133,7 @@ void CutCells::for_each_quad(std::size_t at, const Visit& visit) const {
         const std::uint32_t of =
             cells.around[static_cast<std::size_t>(7 + 4 * block.x() + 2 * block.y() + block.z())];
         // Where the edge leads inside, counter-clockwise is the other way round.
-        const std::size_t corner = cells.inside.at[x] >> bit & 1 ? k : (4 - k) % 4;
+        const std::size_t corner = inside_[at].at[x] >> bit & 1 ? k : (4 - k) % 4;
         quad[corner] = {vertex_at_edge(of, there, 4 * axis + 2 * u + v), of, there, block};
       }
       visit(quad);
