@@ -124,10 +124,10 @@ MALLOW_INLINE QuadInts quad_of(const QuadTables& tables, const EdgeSlice& slice,
     const std::ptrdiff_t cell =
         first - (below & 1) * VertexTable::k_plane - (below >> 1 & 1) * VertexTable::k_row;
     vertex[k] = tables.vertices.at[below >> 2][cell];
-    if constexpr (kind.patched)
-      vertex[k] +=
-          tables
-              .patch_of_edge[tables.patches.at[below >> 2][cell] * k_cell_edges + 4 * kind.axis + 2 * u + v];
+    if constexpr (kind.patched) {
+      const int edge = 4 * kind.axis + 2 * u + v;
+      vertex[k] += tables.patch_of_edge[tables.patches.at[below >> 2][cell] * k_cell_edges + edge];
+    }
     place[k] = load_quad(tables.local + 3 * std::size_t{vertex[k]});
     if constexpr (kind.border) place[k] += load_quad(k_shift[walls & static_cast<unsigned>(below)]);
   }

@@ -32,6 +32,7 @@ struct QuadBlock {
   std::uint32_t first_in_mesh;        ///< added to all vertices
 };
 
+/// Quads of one block.
 struct QuadLanes {
   /// Two triangles for each edge that is cut, counter-clockwise seen from outside, in the order of cells and
   /// axes.

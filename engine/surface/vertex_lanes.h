@@ -37,6 +37,7 @@ struct VertexRows {
   float* normals;
 };
 
+/// Vertices of one block.
 struct VertexLanes {
   /// Each vertex goes to the mean of where the surface cuts its edges; its normal is the direction in which
   /// distances grow there.
