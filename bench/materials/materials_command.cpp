@@ -18,8 +18,10 @@ namespace mallow::bench {
 namespace {
 
 constexpr const char* k_bars = "bars";  // among the names of materials
-constexpr std::pair<const char*, void (*)(int, const AddNumber&)> k_numbers[] = {
-    {"volume", measure_volume}, {"yield", measure_yield}, {"heat", measure_heat}};
+constexpr std::pair<const char*, void (*)(int, const AddNumber&)> k_numbers[] = {{"volume", measure_volume},
+                                                                                 {"yield", measure_yield},
+                                                                                 {"cost", measure_yield_cost},
+                                                                                 {"heat", measure_heat}};
 constexpr double k_refined[] = {1, 1.5, 2};
 constexpr double k_steps[] = {0.25, 0.5, 1, 2};
 
@@ -129,7 +131,7 @@ void add_materials_command(CLI::App& app) {
                                   *options, [options] { run_materials(*options); });
   command
       ->add_option("--materials", options->materials,
-                   "Some of them, or bars, volume, yield, heat, in place of all")
+                   "Some of them, or bars, volume, yield, cost, heat, in place of all")
       ->delimiter(',');
   command->add_flag("--coarse", options->coarse, "At one spacing only");
 }

@@ -77,9 +77,15 @@ bool reframe_is_due(const Group& group, const std::vector<Particle>& particles) 
                        &Particle::reference, radius);
 }
 
-void reframe(const Group& group, std::vector<Particle>& particles) {
+bool has_flowed_too_far(const Group& group, const std::vector<Particle>& particles) {
+  const auto far = [&](std::size_t id) { return particles[id].region.flow > 1.2; };
+  return 2 * static_cast<std::size_t>(std::ranges::count_if(group.members, far)) > group.members.size();
+}
+
+bool reframe(const Group& group, bool waits, std::vector<Particle>& particles) {
   match_shape(group, particles);
   std::vector<Matrix> stretches;
+  std::size_t strained = 0;
   for (const std::size_t id : group.members) {
     const Region& region = particles[id].region;
     stretches.push_back(Matrix::Identity());
@@ -87,13 +93,16 @@ void reframe(const Group& group, std::vector<Particle>& particles) {
     const Eigen::SelfAdjointEigenSolver<Matrix> solver(elastic_strain(region));
     const Vec found = solver.eigenvalues();
     const double size = found.minCoeff() > 0 ? std::clamp(std::cbrt(found.prod()), 0.3, 1.25) : 1;
+    strained += (found / size - Vec::Ones()).norm() > std::max(0.25, 2.0 * *group.material.plastic_yield);
     const Vec clipped = size * (found / size).cwiseMax(0.8).cwiseMin(1.25);
     const Matrix axes = region.rotation * solver.eigenvectors();
     stretches.back() = axes * clipped.cwiseInverse().asDiagonal() * axes.transpose();
   }
+  if (waits && 2 * strained > stretches.size()) return false;
   take_reference(group, particles);
   for (std::size_t k = 0; k < stretches.size(); ++k)
     particles[group.members[k]].region.stretch = stretches[k];
+  return true;
 }
 
 }  // namespace mallow::textbook

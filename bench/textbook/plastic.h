@@ -12,7 +12,10 @@ void flow(const Group& group, double time_step, std::vector<Particle>& particles
 /// Whether its positions should become its reference shape: it has flowed far, is torn, or is pressed
 /// together.
 bool reframe_is_due(const Group& group, const std::vector<Particle>& particles);
-/// Takes them, and leaves the elastic strain that regions have.
-void reframe(const Group& group, std::vector<Particle>& particles);
+/// Whether half of it has flowed so far that this waits for no check.
+bool has_flowed_too_far(const Group& group, const std::vector<Particle>& particles);
+/// Takes them, and leaves the elastic strain that regions have. Where `waits`, not if a blow strains half of
+/// them; returns whether it did.
+bool reframe(const Group& group, bool waits, std::vector<Particle>& particles);
 
 }  // namespace mallow::textbook

@@ -182,22 +182,26 @@ bool Textbook::needs_sph() const {
 
 // Section 6 of the model [TK 3.2, eq. 14].
 int Textbook::update_references() {
-  if (!check_is_due()) return 0;
+  const bool check = check_is_due();
   int updated = 0;
   for (Group& group : groups_) {
+    const Material& material = group.material;
+    const bool flows = material.plastic_yield && group.alpha < 1 && group.keeps_reference();
+    const bool far = flows && has_flowed_too_far(group, particles_);
+    if (!check) {
+      if (far) updated += reframe(group, false, particles_);
+      continue;
+    }
     const double threshold = group.update_threshold * (1 - group.most_alpha);
     const double judged = std::exchange(group.judged_external, 0);
     group.external.clear();
     if (!group.keeps_reference()) continue;
-    const Material& material = group.material;
     const bool melts = material.alpha.highest() > 0.9f && material.alpha.lowest() < material.alpha.highest();
     if ((!material.plastic_yield || material.update_threshold || melts) && judged > threshold) {
       kick_by_pull(group, 0.5);
       rest_anew(group, judged, particles_);
       kick_by_pull(group, -0.5);
-    } else if (material.plastic_yield && group.alpha < 1 && reframe_is_due(group, particles_)) {
-      reframe(group, particles_);
-    } else {
+    } else if (!flows || !(far || reframe_is_due(group, particles_)) || !reframe(group, !far, particles_)) {
       continue;
     }
     ++updated;

@@ -80,7 +80,8 @@ struct FieldTable<Material> {
             "mean external acceleration that updates the reference shape, at alpha 0, γ_u",
             "40 times gravity, never with plastic_yield unless it melts"},
       Field{"plastic_yield", &Material::plastic_yield, k_not_negative, "",
-            "strain beyond which matter flows where it is", "nothing flows"},
+            "strain beyond which matter flows where it is",
+            "no strain flows; update_threshold alone reshapes it"},
       Field{"plastic_yield_by_temperature", &Material::plastic_yield_by_temperature, k_not_negative, "",
             "plastic_yield by temperature, [[temperature, strain], ...]", "plastic_yield"},
       Field{"plastic_creep", &Material::plastic_creep, k_positive, "1/s",
@@ -212,6 +213,9 @@ struct FieldTable<Emitter> {
             "random displacement of every particle across the flow, per axis"},
       Field{"most_particles", &Emitter::most_particles, between(1, k_most_particles), "",
             "the strand grows no longer than that"},
+      Field{
+          "merges", &Emitter::merges, k_any, "",
+          "the strand acts on others of its material that merge as on itself; if it flows, they become one"},
   };
 };
 

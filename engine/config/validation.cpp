@@ -38,25 +38,35 @@ void check(const Material& material, Checks& checks) {
   const bool melts = material.solidus && material.liquidus && *material.liquidus > *material.solidus;
   if (material.latent_heat > 0 && !melts)
     checks.problem("material.latent_heat", "needs a solidus, and a liquidus above it");
-  if (!material.temperature && (material.alpha_by_temperature || material.viscosity_by_temperature ||
-                                material.plastic_yield_by_temperature))
-    checks.problem("material.temperature", "is missing: something follows it");
+  const char* const follower = material.alpha_by_temperature           ? "alpha_by_temperature"
+                               : material.viscosity_by_temperature     ? "viscosity_by_temperature"
+                               : material.plastic_yield_by_temperature ? "plastic_yield_by_temperature"
+                                                                       : nullptr;
+  if (!material.temperature && follower)
+    checks.problem("material.temperature",
+                   std::string("is missing: ") + follower +
+                       " needs the temperature of the particles at the start, a number in kelvins; 293 is "
+                       "that of a room");
   if (material.youngs_modulus && material.elastic_time_step)
     checks.problem("material.youngs_modulus", "is not allowed beside elastic_time_step: give one of the two");
 }
 
 namespace {
 
-std::string not_allowed_in(const std::string& name) {
-  return " is not allowed" + (name.empty() ? std::string() : " in material '" + name + "'");
+std::string not_allowed_in(const std::string& where) {
+  return " is not allowed" + (where.empty() ? std::string() : " in " + where);
+}
+
+std::string material_named(const std::string& name) {
+  return name.empty() ? std::string() : "material '" + name + "'";
 }
 
 }  // namespace
 
 /// Damping takes its part of the pull that a step carries. With θ = τ/Δt and s = 1 − exp(−ζ Δt), linear
 /// theory has a (1 + 2 θ) < 4 − 2 s; tumbling bodies ask for k_stiffest.
-void check_damping(const SolverConfig& config, const Material& material, const std::string& name,
-                   Checks& checks) {
+void check_damping(const SolverConfig& config, const Material& material, const std::string& where,
+                   const char* softer, Checks& checks) {
   const double rate = static_cast<double>(material.deformation_damping.value_or(0.0f));
   if (!config.time_step || !(material.damping_time > 0 || rate > 0)) return;
   const double base = static_cast<double>(*config.time_step);
@@ -66,9 +76,9 @@ void check_damping(const SolverConfig& config, const Material& material, const s
       (1 - static_cast<double>(material.alpha.lowest())) * step * step / (base * elastic_step);
   const auto refuse = [&](const char* key, double value, double most) {
     std::ostringstream text;
-    text << value << not_allowed_in(name) << ": at most " << std::max(0.0, most)
-         << ", as a body damped more would gain energy in steps of " << step
-         << " s; a larger material.elastic_time_step, which is softer, allows more";
+    text << value << not_allowed_in(where) << ": at most " << std::max(0.0, most)
+         << ", as a body damped more would gain energy in steps of " << step << " s; " << softer
+         << ", which is softer, allows more";
     checks.problem(key, text.str());
   };
   const double time = static_cast<double>(material.damping_time);
@@ -86,7 +96,8 @@ void check_stiffness(const SolverConfig& config, const Material& material, const
   constexpr double k_rounding = 1e-5;  // of what is typed with six digits
   // What a modulus asks for is known once bodies are there: check_modulus().
   if (material.alpha.keys().empty() || material.youngs_modulus) return;
-  check_damping(config, material, name, checks);
+  const std::string where = material_named(name);
+  check_damping(config, material, where, "a larger material.elastic_time_step", checks);
   // Left out, Δt_SM is Δt0, whatever that is; given, it is judged once that is known.
   if (material.elastic_time_step && !config.time_step) return;
   const double factor = static_cast<double>(config.time_step_factor);
@@ -94,7 +105,7 @@ void check_stiffness(const SolverConfig& config, const Material& material, const
   std::ostringstream text;
   if (!material.elastic_time_step) {
     if (share <= 1 + k_rounding) return;
-    text << config.time_step_factor << not_allowed_in(name)
+    text << config.time_step_factor << not_allowed_in(where)
          << ": (1 - alpha) time_step_factor^2 must be at most " << most
          << ", as elasticity would gain energy; at alpha " << material.alpha.lowest() << " at most "
          << std::sqrt(most / (1 - static_cast<double>(material.alpha.lowest())));
@@ -103,29 +114,75 @@ void check_stiffness(const SolverConfig& config, const Material& material, const
   }
   const double least = share * static_cast<double>(*config.time_step);
   if (static_cast<double>(*material.elastic_time_step) >= least * (1 - k_rounding)) return;
-  text << *material.elastic_time_step << not_allowed_in(name) << ": at least (1 - alpha) "
+  text << *material.elastic_time_step << not_allowed_in(where) << ": at least (1 - alpha) "
        << (factor == 1 ? "" : "time_step_factor^2 ") << "solver.time_step/" << most << " = " << least
        << ", as a stiffer body would gain energy; lower solver.time_step (now " << *config.time_step << ")";
   checks.problem("material.elastic_time_step", text.str());
 }
 
-void check_elasticity(const SolverConfig& config, const Material& material, float share, Checks& checks) {
+namespace {
+
+/// What the stiffest particle of a body asks of a step.
+struct StiffestSpring {
+  const SolverConfig& config;
+  const Material& material;
+  double base, elastic_step;  ///< Δt0 and Δt_SM [s]
+
+  /// Shares of the modulus that steps of time_step_factor `shorter` Δt0 carry. What a modulus is in Δt_SM
+  /// changes with Δt0; left out, Δt_SM is Δt0.
+  double most_share(double shorter) const {
+    const double own = shorter * base;
+    const double step = static_cast<double>(config.time_step_factor) * own;
+    const double springs = material.youngs_modulus      ? elastic_step / shorter
+                           : material.elastic_time_step ? elastic_step
+                                                        : own;
+    return most_of(step) * own * springs / (step * step);
+  }
+  /// a that a step carries, beside its damping.
+  double most_of(double step) const {
+    constexpr double k_linear = 0.9;
+    const double damped = 1 + 2 * static_cast<double>(material.damping_time) / step;
+    const double rate = static_cast<double>(material.deformation_damping.value_or(0.0f));
+    return std::min(
+        std::min(static_cast<double>(k_stiffest), 2 * k_linear * (2 + std::expm1(-rate * step))) / damped,
+        static_cast<double>(most_pull(material)));
+  }
+  /// Δt0 that carries a share, or 0 where no shorter one does [s].
+  double base_for(double share) const {
+    if (!material.youngs_modulus && !material.elastic_time_step) return 0;
+    double carries = 1e-12, fails = 1;
+    if (most_share(carries) < share) return 0;
+    for (int k = 0; k < 100; ++k) {
+      const double between = std::sqrt(carries * fails);
+      (most_share(between) < share ? fails : carries) = between;
+    }
+    return 0.99 * carries * base;
+  }
+  /// Δt_SM that does, at this Δt0 [s].
+  double elastic_step_for(double share) const { return 1.01 * elastic_step * share / most_share(1); }
+};
+
+}  // namespace
+
+void check_elasticity(const SolverConfig& config, const Material& material, const Material& springs,
+                      float share, Checks& checks) {
   if (!config.time_step) return;
-  const double base = static_cast<double>(*config.time_step);
-  const double step = static_cast<double>(config.time_step_factor) * base;
-  const double elastic_step = static_cast<double>(material.elastic_time_step.value_or(*config.time_step));
-  const double damped = 1 + 2 * static_cast<double>(material.damping_time) / step;
-  const double rate = static_cast<double>(material.deformation_damping.value_or(0.0f));
-  constexpr double k_linear = 0.9, k_rounding = 1e-5;
-  const double most_of_step = std::min(
-      std::min(static_cast<double>(k_stiffest), 2 * k_linear * (2 + std::expm1(-rate * step))) / damped,
-      static_cast<double>(most_pull(material)));
-  const double most = most_of_step * base * elastic_step / (step * step);
-  if (static_cast<double>(share) <= most * (1 + k_rounding)) return;
+  const double base = static_cast<double>(*config.time_step), asked = static_cast<double>(share);
+  const StiffestSpring spring{config, material, base,
+                              static_cast<double>(springs.elastic_time_step.value_or(*config.time_step))};
+  const double most = spring.most_share(1);
+  constexpr double k_rounding = 1e-5;
+  if (asked <= most * (1 + k_rounding)) return;
   std::ostringstream text;
   text << "makes (1 - alpha) times stiffness " << share << " at some particle: at most " << most
-       << " is allowed, as a stiffer body would gain energy; lower solver.time_step (now " << base
-       << "), or raise material.elastic_time_step";
+       << " is allowed, as a stiffer body would gain energy; lower it";
+  text.precision(3);
+  if (const double step = spring.base_for(asked); step > 0)
+    text << ", or solver.time_step (now " << base << ") to " << step << " s";
+  if (material.youngs_modulus)
+    text << ", or material.youngs_modulus";
+  else
+    text << ", or raise material.elastic_time_step to " << spring.elastic_step_for(asked) << " s";
   checks.problem("body.stiffness", text.str());
 }
 

@@ -36,12 +36,14 @@ inline float most_pull(const Material& material) {
 /// simulation/stiffness.h. name: of the material, for messages that come where it is not obvious, or empty.
 void check_stiffness(const SolverConfig& config, const Material& material, const std::string& name,
                      Checks& checks);
-/// The same where the stiffest particle of a body has this share of the material's modulus, whose springs are
-/// known.
-void check_elasticity(const SolverConfig& config, const Material& material, float share, Checks& checks);
-/// Whether the damping of these springs leaves enough of what a step carries.
-void check_damping(const SolverConfig& config, const Material& material, const std::string& name,
-                   Checks& checks);
+/// The same where the stiffest particle of a body has this share of the material's modulus. springs: the
+/// material with an elastic_time_step in place of a modulus.
+void check_elasticity(const SolverConfig& config, const Material& material, const Material& springs,
+                      float share, Checks& checks);
+/// Whether the damping of these springs leaves enough of what a step carries. where: "material 'jelly'" and
+/// the like, for the message, or empty. softer: what allows more, beside a shorter step.
+void check_damping(const SolverConfig& config, const Material& material, const std::string& where,
+                   const char* softer, Checks& checks);
 MALLOW_EXPORT void check(const Emitter& emitter, Checks& checks);
 void check(const Body& body, Checks& checks);
 

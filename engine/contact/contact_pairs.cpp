@@ -17,6 +17,8 @@ namespace {
 /// Pairs of a point that there is room for from the start: more than rest or flow asks for, so that a motion
 /// that goes on takes no more memory.
 constexpr std::size_t k_room = 4;
+/// The same of those near each of its points.
+constexpr std::size_t k_room_near = 8;
 /// The same of a block, whichever of its points have come near.
 std::size_t room(const NearBlocks& near, std::size_t number) {
   const RangeBlocks::Block& block = near.blocks.blocks[number];
@@ -72,6 +74,13 @@ void gather(const VectorColumn& positions, const VectorColumn& velocities, const
   });
 }
 
+/// How points move, which is all that changes from call to call of one step.
+void gather_velocities(const VectorColumn& velocities, const Threads& threads, ContactPairs& pairs) {
+  parallel_for(threads, pairs.near.row.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) pairs.velocity[p] = {velocities.get(pairs.near.row[p]), 0};
+  });
+}
+
 /// Points that are tried with others, with room for what lanes write behind them.
 struct Candidates {
   std::vector<std::uint32_t> name;
@@ -110,6 +119,27 @@ void find_candidates(const ContactPairs& pairs, std::size_t number, const Aabb& 
   }
 }
 
+/// Those of all points of a block, a few of them at a time.
+void find_all_candidates(std::size_t number, const ContactLanes& lanes, ContactPairs& pairs) {
+  const NearBlocks& near = pairs.near;
+  const std::uint32_t begin = near.first_point[number], end = near.first_point[number + 1];
+  BlockCandidates& block = pairs.candidates[number];
+  block.points.clear();
+  block.ends.clear();
+  if (begin == end) return;
+  thread_local Candidates others;
+  others.reserve(4 * k_block);
+  block.points.reserve(k_room_near * k_block);
+  block.ends.reserve(k_block / k_cluster);
+  for (std::uint32_t from = begin; from < end; from += k_cluster) {
+    const std::size_t count = std::min<std::size_t>(k_cluster, end - from);
+    find_candidates(pairs, number, box_around(pairs.positions, from, from + count), lanes, others);
+    block.points.insert(block.points.end(), others.name.begin(),
+                        others.name.begin() + static_cast<std::ptrdiff_t>(others.count));
+    block.ends.push_back(static_cast<std::uint32_t>(block.points.size()));
+  }
+}
+
 /// The pairs of the points of a block with those of later ones. A few points at a time, which lie side by
 /// side, are tried with what is near all of them.
 void find_pairs(std::size_t number, const PairStep& step, const ContactLanes& lanes, ContactPairs& pairs) {
@@ -125,10 +155,16 @@ void find_pairs(std::size_t number, const PairStep& step, const ContactLanes& la
   own.reserve(k_cluster);
   others.reserve(4 * k_block);
   const float* const velocity = near.block_motion[number].velocity.data();
+  const BlockCandidates& candidates = pairs.candidates[number];
+  std::uint32_t next = 0;
   for (std::uint32_t from = begin; from < end; from += k_cluster) {
     own.count = std::min<std::size_t>(k_cluster, end - from);
-    find_candidates(pairs, number, box_around(pairs.positions, from, from + own.count), lanes, others);
+    const std::uint32_t first_other = next;
+    next = candidates.ends[(from - begin) / k_cluster];
+    others.count = next - first_other;
     if (others.count == 0) continue;
+    others.reserve(others.count);
+    std::copy_n(candidates.points.begin() + first_other, others.count, others.name.begin());
     std::iota(own.name.begin(), own.name.begin() + k_cluster, from);
     lanes.gather(pairs.rows(), step, velocity, own.count, own.columns());
     lanes.gather(pairs.rows(), step, velocity, others.count, others.columns());
@@ -215,6 +251,8 @@ std::size_t ContactPairs::bytes() const {
                     points.capacity() * sizeof(ContactPoint) +
                     (velocity.capacity() + shared_velocity.capacity()) * sizeof(ContactVelocity);
   for (const BlockPairs& block : blocks) sum += block.bytes();
+  for (const BlockCandidates& block : candidates)
+    sum += (block.points.capacity() + block.ends.capacity()) * sizeof(std::uint32_t);
   for (const BlockSides& block : sides)
     sum += block.points.capacity() * sizeof(BlockSides::Touching) +
            block.sides.capacity() * sizeof(BlockSides::Side);
@@ -224,14 +262,19 @@ std::size_t ContactPairs::bytes() const {
 bool find_contact_pairs(const VectorColumn& positions, const VectorColumn& velocities,
                         const std::uint16_t* pin, const std::vector<TouchingBody>& bodies,
                         const BodyContactStep& step, const Execution& execution, ContactPairs& pairs) {
-  find_near_blocks(positions, velocities, bodies, step, execution, pairs.near);
+  const bool anew = find_near_blocks(positions, velocities, bodies, step, execution, pairs.near);
   if (pairs.near.row.empty()) return false;
-  gather(positions, velocities, pin, bodies, execution.threads, pairs);
+  if (anew)
+    gather(positions, velocities, pin, bodies, execution.threads, pairs);
+  else
+    gather_velocities(velocities, execution.threads, pairs);
   pairs.blocks.resize(pairs.near.blocks.blocks.size());
+  pairs.candidates.resize(pairs.blocks.size());
   pairs.sides.resize(pairs.blocks.size());
   const ContactLanes& lanes = MALLOW_SELECT(execution.level, contact_lanes);
   const PairStep pair_step{step.time_step, step.max_push, pushed_together(step)};
   parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+    if (anew) find_all_candidates(number, lanes, pairs);
     find_pairs(number, pair_step, lanes, pairs);
   });
   std::size_t count = 0;

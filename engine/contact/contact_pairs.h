@@ -39,6 +39,12 @@ struct BlockPairs {
   std::size_t bytes() const;
 };
 
+/// Points of later blocks of other bodies near each few points of one block, one's behind the other's.
+struct BlockCandidates {
+  std::vector<std::uint32_t> points;
+  std::vector<std::uint32_t> ends;  ///< of each few
+};
+
 /// The points of one block that have pairs, and for each which, one point's behind the other's: those in
 /// which it is the first, then those in which it is the second.
 struct BlockSides {
@@ -57,6 +63,7 @@ struct BlockSides {
 struct ContactPairs {
   NearBlocks near;
   // By block.
+  std::vector<BlockCandidates> candidates;
   std::vector<BlockPairs> blocks;
   std::vector<BlockSides> sides;
   // By point.

@@ -30,8 +30,8 @@ void join(Moving& all, const Moving& part) {
   all.spread = std::max(all.spread, (part.velocity - all.velocity).norm() + part.spread);
 }
 
-void find_motions(const VectorColumn& positions, const VectorColumn& velocities,
-                  const std::vector<TouchingBody>& bodies, const Threads& threads, NearBlocks& near) {
+void find_block_motions(const VectorColumn& positions, const VectorColumn& velocities,
+                        const std::vector<TouchingBody>& bodies, const Threads& threads, NearBlocks& near) {
   near.blocks.clear();
   for (const TouchingBody& body : bodies) near.blocks.add(body.end - body.begin);
   const std::vector<RangeBlocks::Block>& blocks = near.blocks.blocks;
@@ -40,14 +40,26 @@ void find_motions(const VectorColumn& positions, const VectorColumn& velocities,
     const std::size_t first = bodies[block.range].begin;
     near.block_motion[number] = motion_of(positions, velocities, first + block.begin, first + block.end);
   });
-  near.body_motion.resize(bodies.size());
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+}
+
+void find_body_motions(NearBlocks& near) {
+  near.body_motion.resize(near.blocks.ranges());
+  for (std::size_t b = 0; b < near.body_motion.size(); ++b) {
     const std::uint32_t first = near.blocks.first[b], last = near.blocks.first[b + 1];
     Moving& body = near.body_motion[b] = {.box = empty_box(), .velocity = {0, 0, 0}};
     for (std::uint32_t k = first; k < last; ++k)
       body.velocity += near.block_motion[k].velocity / static_cast<float>(last - first);
     for (std::uint32_t k = first; k < last; ++k) join(body, near.block_motion[k]);
   }
+}
+
+/// Whether no block moves otherwise than it was thought to when near ones were found.
+bool are_as_found(const NearBlocks& near) {
+  for (std::size_t k = 0; k < near.block_motion.size(); ++k) {
+    const Moving &now = near.block_motion[k], &found = near.found_motion[k];
+    if (!((now.velocity - found.velocity).norm() + now.spread <= found.spread)) return false;
+  }
+  return true;
 }
 
 /// How far apart two points may be that touch in this step. spacing: the mean of theirs. closing: how fast
@@ -146,10 +158,14 @@ LaneBox lane_box(const Aabb& box, float reach) {
   return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 
-void find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,
+bool find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,
                       const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
                       const Execution& execution, NearBlocks& near) {
-  find_motions(positions, velocities, bodies, execution.threads, near);
+  find_block_motions(positions, velocities, bodies, execution.threads, near);
+  if (step.again && are_as_found(near)) return false;
+  for (Moving& block : near.block_motion) block.spread += step.slack;
+  near.found_motion = near.block_motion;
+  find_body_motions(near);
   find_other_bodies(bodies, step, near);
   const std::size_t blocks = near.blocks.blocks.size();
   near.others.resize(blocks);
@@ -171,6 +187,7 @@ void find_near_blocks(const VectorColumn& positions, const VectorColumn& velocit
     std::copy_n(near.found.data() + bodies[block.range].begin + block.begin,
                 near.first_point[b + 1] - near.first_point[b], near.row.data() + near.first_point[b]);
   }
+  return true;
 }
 
 }  // namespace mallow

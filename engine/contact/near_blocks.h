@@ -17,6 +17,11 @@ struct BodyContactStep {
   float time_step;  ///< Δt [s]
   float reach;      ///< pairs farther apart do not touch in a step [m]
   float max_push;   ///< speed at most at which bodies that overlap are pushed apart [m/s]
+  /// Of calls with the same positions and bodies in one step the second and later ones. Where velocities have
+  /// changed by no more than `slack` since the first, who is near is not looked for again. It changes no
+  /// pair: who is near is a first guess, which velocities of now thin out.
+  bool again = false;
+  float slack = 0;  ///< 0 where there is one call in a step [m/s]
 };
 
 /// A body as contact sees it.
@@ -52,8 +57,9 @@ struct NearBlocks {
 
   // Scratch.
   std::vector<Moving> block_motion, body_motion;
-  std::vector<float> lowest, highest;                    ///< of bodies, as wide as they may reach
-  std::vector<std::uint32_t> by_place;                   ///< bodies by their lowest place
+  std::vector<Moving> found_motion;     ///< of blocks, by which all that was found, slack and all
+  std::vector<float> lowest, highest;   ///< of bodies, as wide as they may reach
+  std::vector<std::uint32_t> by_place;  ///< bodies by their lowest place
   std::vector<std::vector<std::uint32_t>> other_bodies;  ///< per body, ascending
   Column<std::uint32_t> found;                           ///< per block, from its first row on
 
@@ -68,8 +74,9 @@ inline float pushed_together(const BodyContactStep& step) {
 /// A box, so much wider.
 LaneBox lane_box(const Aabb& box, float reach);
 
-/// velocities: predicted. The same for any number of threads.
-void find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,
+/// velocities: predicted. The same for any number of threads. Returns whether it looked for them: not where
+/// all that the call before found may stay.
+bool find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,
                       const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
                       const Execution& execution, NearBlocks& near);
 

@@ -32,6 +32,12 @@ MALLOW_INLINE Ints load(const std::uint32_t* from) {
   __builtin_memcpy(&values, from, sizeof values);
   return values;
 }
+MALLOW_INLINE Ints load(const std::uint16_t* from) {
+  using Shorts = std::uint16_t __attribute__((vector_size(k_cluster * sizeof(std::uint16_t))));
+  Shorts values;
+  __builtin_memcpy(&values, from, sizeof values);
+  return __builtin_convertvector(values, Ints);
+}
 MALLOW_INLINE ClusterVec3 load(const ConstVectors& from, std::size_t first) {
   return {load(from.x + first), load(from.y + first), load(from.z + first)};
 }
@@ -201,15 +207,22 @@ MALLOW_INLINE void transpose_halves(Floats* v) {
   v[3] = __builtin_shufflevector(c, d, 2, 3, 10, 11, 6, 7, 14, 15);
 #endif
 }
+/// Eight floats from two places.
+MALLOW_INLINE Floats load_halves(const float* low, const float* high) {
+#if defined(__AVX__)
+  return reinterpret_cast<Floats>(_mm256_loadu2_m128(high, low));
+#else
+  Quad halves[2];
+  __builtin_memcpy(&halves[0], low, sizeof halves[0]);
+  __builtin_memcpy(&halves[1], high, sizeof halves[1]);
+  return __builtin_shufflevector(halves[0], halves[1], 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
+}
 /// numbers[c]: number c of four, of the rows that eight names say, `stride` floats apart.
 MALLOW_INLINE void load_named(const float* rows, std::size_t stride, const std::uint32_t* names,
                               Floats* numbers) {
-  for (std::size_t t = 0; t < 4; ++t) {
-    Quad low, high;
-    __builtin_memcpy(&low, rows + stride * names[t], sizeof low);
-    __builtin_memcpy(&high, rows + stride * names[t + 4], sizeof high);
-    numbers[t] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-  }
+  for (std::size_t t = 0; t < 4; ++t)
+    numbers[t] = load_halves(rows + stride * names[t], rows + stride * names[t + 4]);
   transpose_halves(numbers);
 }
 /// The reverse, into eight rows of four numbers that follow each other; spoils the numbers.

@@ -7,8 +7,8 @@
 // This header and core/cluster_lanes.h are what a port of the lanes is: they name the vector types and all
 // intrinsics, and have plain C++ where a machine has none (tools/check_arm builds it so). The vector types
 // are those of GCC, which Clang and clang-cl have too; a compiler without them takes classes with these
-// operators here. Two files declare one more for themselves: shape_matching/moment_lanes.cpp, of doubles,
-// and core/bounds.cpp.
+// operators here. Four files declare one more for themselves: shape_matching/moment_lanes.cpp and
+// surface/vertex_lanes.cpp, of doubles, surface/quad_lanes.cpp and core/bounds.cpp.
 //
 // Everything here is in an anonymous namespace of the level, so that no level's code can stand in for
 // another's (core/isa.h).

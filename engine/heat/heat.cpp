@@ -35,11 +35,7 @@ void sum_flows(const Sph& sph, const HeatedColumns& columns, const Execution& ex
   parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) heat.sorted[i] = columns.temperature[sph.grid.order[i]];
   });
-  const HeatInput in{.cluster_start = sph.grid.cluster_start.data(),
-                     .list_begin = sph.lists.begin.data(),
-                     .list_count = sph.lists.count.data(),
-                     .indices = sph.lists.indices.data(),
-                     .row_of = sph.grid.order.data(),
+  const HeatInput in{.lists = view(sph.grid, sph.lists),
                      .group = sph.group.empty() ? nullptr : sph.group.data(),
                      .groups = heat.groups.data(),
                      .position = raw(sph.grid.sorted),

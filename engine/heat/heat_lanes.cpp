@@ -11,9 +11,9 @@ void flows(const HeatInput& in, std::size_t begin, std::size_t end, float* flow,
   const bool grouped = in.group != nullptr;
   const float inverse_square = in.inverse_radius * in.inverse_radius;
   for (std::size_t cluster = begin; cluster < end; ++cluster) {
-    const std::size_t first = in.cluster_start[cluster], last = in.cluster_start[cluster + 1];
-    const std::uint32_t* const list = in.indices + in.list_begin[cluster];
-    const std::uint32_t n = in.list_count[cluster];
+    const std::size_t first = in.lists.first[cluster], last = in.lists.first[cluster + 1];
+    const std::uint32_t* const list = in.lists.indices + in.lists.begin[cluster];
+    const std::uint32_t n = in.lists.count[cluster];
     const ClusterVec3 x = load(in.position, first);
     const Floats own_temperature = load(in.temperature + first), own_openness = load(in.openness + first);
     const HeatGroup& one = in.groups[grouped ? in.group[first] : 0];
@@ -48,8 +48,8 @@ void flows(const HeatInput& in, std::size_t begin, std::size_t end, float* flow,
       conducts += where(is_larger(r2, Floats{}), g);
     }
     for (std::size_t i = first; i < last; ++i) {
-      flow[in.row_of[i]] = sum[i - first];
-      conductance[in.row_of[i]] = conducts[i - first];
+      flow[in.lists.row_of[i]] = sum[i - first];
+      conductance[in.lists.row_of[i]] = conducts[i - first];
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include "core/isa.h"
 #include "core/raw_columns.h"
+#include "neighbors/cluster_lists.h"
 
 namespace mallow {
 
@@ -23,12 +24,8 @@ struct HeatGroup {
 /// q_i    | flow        | W       | by row: Σ_j G_ij (T_j − T_i)
 ///        | conductance | W/K     | by row: Σ_j G_ij
 struct HeatInput {
-  const std::uint32_t* cluster_start;
-  const std::uint32_t* list_begin;  ///< per cluster
-  const std::uint32_t* list_count;
-  const std::uint32_t* indices;
-  const std::uint32_t* row_of;  ///< sorted place -> row of the particle store
-  const std::uint32_t* group;   ///< null: all in group 0
+  ClusterLists lists;
+  const std::uint32_t* group;  ///< null: all in group 0
   const HeatGroup* groups;
   ConstVectors position;
   const float* temperature;

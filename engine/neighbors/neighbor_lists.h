@@ -9,6 +9,7 @@
 #include "core/execution.h"
 #include "core/isa.h"
 #include "neighbors/cell_grid.h"
+#include "neighbors/cluster_lists.h"
 
 namespace mallow {
 
@@ -41,5 +42,14 @@ void build_neighbor_lists(const CellGrid& grid, float radius, const Execution& e
 /// above.
 void build_cluster_lists(const CellGrid& grid, float radius, const Execution& execution,
                          NeighborLists& lists);
+
+/// The lists of the clusters of a grid as lanes read them.
+inline ClusterLists view(const CellGrid& grid, const NeighborLists& lists) {
+  return {.first = grid.cluster_start.data(),
+          .begin = lists.begin.data(),
+          .count = lists.count.data(),
+          .indices = lists.indices.data(),
+          .row_of = grid.order.data()};
+}
 
 }  // namespace mallow

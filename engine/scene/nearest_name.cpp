@@ -23,6 +23,36 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// "bodies" as "body", "keys" as "key"; empty where a name is no plural.
+std::string singular(std::string_view name) {
+  const auto without = [&](std::size_t letters) {
+    return std::string(name.substr(0, name.size() - letters));
+  };
+  if (name.ends_with("ies")) return without(3) + 'y';
+  return name.ends_with('s') ? without(1) : std::string();
+}
+
+/// How far a name is from one that is known; a plural counts one.
+std::size_t distance_to(std::string_view name, const std::string& candidate) {
+  const std::size_t distance = edit_distance(name, candidate);
+  const std::string one = singular(name);
+  return one.empty() ? distance : std::min(distance, 1 + edit_distance(one, candidate));
+}
+
+/// The only one of them that has the name as a part, as youngs_modulus has modulus; null where none has, or
+/// several have.
+const std::string* only_holder(std::string_view name, std::span<const std::string> known) {
+  constexpr std::size_t k_least_letters = 4;
+  if (name.size() < k_least_letters) return nullptr;
+  const std::string* holder = nullptr;
+  for (const std::string& candidate : known) {
+    if (candidate.find(name) == candidate.npos) continue;
+    if (holder) return nullptr;
+    holder = &candidate;
+  }
+  return holder;
+}
+
 }  // namespace
 
 std::string suggestion(std::string_view name, std::span<const std::string> known) {
@@ -34,7 +64,7 @@ std::string suggestion(std::string_view name, std::span<const std::string> known
   std::size_t least = 0;
   for (const std::string& candidate : known.first(std::min(known.size(), k_most_compared))) {
     if (std::max(name.size(), candidate.size()) > k_longest_name) continue;
-    const std::size_t distance = edit_distance(name, candidate);
+    const std::size_t distance = distance_to(name, candidate);
     if (nearest && distance >= least) continue;
     nearest = &candidate;
     least = distance;
@@ -43,6 +73,8 @@ std::string suggestion(std::string_view name, std::span<const std::string> known
   // is most of the name.
   if (nearest && least <= std::max(std::min<std::size_t>(2, nearest->size() / 2), nearest->size() / 3))
     return "; did you mean '" + *nearest + "'?";
+  if (const std::string* holder = only_holder(name, known.first(std::min(known.size(), k_most_compared))))
+    return "; did you mean '" + *holder + "'?";
   constexpr std::size_t k_most_listed = 20;
   std::string text = known.size() == 1 ? "; the only one known is " : "; known are ";
   const std::size_t listed = std::min(known.size(), k_most_listed);

@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "scene/field_reader.h"
+#include "scene/nearest_name.h"
+#include "scene/scene_fields.h"
 
 namespace mallow::scene_file {
 namespace {
@@ -119,6 +121,12 @@ void apply_override(Node& root, const std::string& override_text, Problems& prob
     return problems.add(place, path, error.problems().front().message);
   }
   set_place(*value, place);
+
+  // A list that no scene has: here it is told at once, a table of that name by who reads it.
+  const std::string& section = segments->front().key;
+  const std::vector<std::string>& known = section_keys();
+  if (segments->size() > 1 && (*segments)[1].index && std::ranges::find(known, section) == known.end())
+    return problems.add(place, path, "unknown key '" + section + "'" + suggestion(section, known));
 
   Node* node = &root;
   for (const Segment& segment : *segments) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "core/precision.h"
 #include "mallow/files.h"
@@ -76,6 +77,17 @@ void collect(Problems& problems, int line, const std::string& path, const Add& a
   } catch (const IoError& error) {
     problems.add({.line = line}, path, to_string(error.problem()));
   }
+}
+
+/// Adds a body to a simulation. Where what is wrong is its material's, `refused` gets that.
+BodyId add_body(Simulation& simulation, const Body& points, MaterialId material, const Groups::Group& group,
+                std::set<std::size_t>& refused) try {
+  return simulation.add_body(points, material, group.name);
+} catch (const ConfigError& error) {
+  if (std::ranges::all_of(error.problems(),
+                          [](const Problem& problem) { return problem.field.starts_with("material."); }))
+    refused.insert(group.material);
+  throw;
 }
 
 /// The same problems, which name the file too.
@@ -160,6 +172,9 @@ Skin bind_skin(const SceneBody& body, BodyId id, const Material& material,
       std::ranges::any_of(body.paint, [](const ScenePaint& paint) { return paint.alpha.value_or(0) >= 1; });
   if (material.alpha_by_temperature.value_or(material.alpha).highest() >= 1 || paints_fluid)
     throw ConfigError("skin", "is not allowed where alpha reaches 1, as a fluid has no shape to follow");
+  if (body.merges && (material.plastic_yield || material.plastic_yield_by_temperature))
+    throw ConfigError("skin",
+                      "is not allowed on a body that merges and flows, as it may become part of another");
   Eigen::Vector3d origin;
   const Mesh mesh = read_mesh(folder / body.skin, origin);
   return {simulation, id, std::visit(PlaceSkin{folder, mesh, origin}, body.source), threads};
@@ -176,6 +191,24 @@ void paint_column(const SceneBody& body, std::optional<float> ScenePaint::*value
   }
 }
 
+/// Paint that does nothing.
+void look_at_paint(const SceneBody& body, const Material& material, Body& points) {
+  for (std::size_t k = 0; k < body.paint.size(); ++k) {
+    const ScenePaint& paint = body.paint[k];
+    const std::string name = element_path(k_paint_key, k);
+    const auto is_in = [&](const Vec3& x) { return nearest(paint, x).distance <= 0; };
+    if (std::ranges::none_of(points.positions, is_in))
+      points.notes.push_back(name + " holds none of the body's " + std::to_string(points.positions.size()) +
+                             " particles: its shape stands in the world, where the body starts; move it");
+    const auto follows = [&](const char* key) {
+      points.notes.push_back(name + '.' + key + " has no effect, as it follows the material's " + key +
+                             "_by_temperature; paint a temperature in its place");
+    };
+    if (paint.alpha && material.alpha_by_temperature) follows("alpha");
+    if (paint.plastic_yield && material.plastic_yield_by_temperature) follows("plastic_yield");
+  }
+}
+
 }  // namespace
 }  // namespace scene_file
 
@@ -188,6 +221,7 @@ void paint(const SceneBody& body, const Material& material, Body& points) {
                yields ? yields->highest() : material.plastic_yield.value_or(0), points, points.plastic_yield);
   paint_column(body, &ScenePaint::paint_temperature, material.temperature.value_or(0), points,
                points.temperature);
+  look_at_paint(body, material, points);
 }
 
 Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int threads) {
@@ -207,9 +241,11 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
   Problems problems(scene.file.string());
 
   std::map<std::size_t, MaterialId> materials;
+  // A material is wrong once, however many bodies have it.
+  std::set<std::size_t> tried, refused;
   const auto add_material = [&](std::size_t number) {
     const SceneMaterial& material = scene.materials[number];
-    if (materials.contains(number)) return;
+    if (!tried.insert(number).second) return;
     collect(problems, 0, "material." + material.name,
             [&] { materials[number] = simulation.add_material(material.material, material.name); });
   };
@@ -233,8 +269,8 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
       const auto& group = groups.list[number];
       if (ids[number])
         simulation.extend_body(*ids[number], points);
-      else
-        ids[number] = simulation.add_body(points, materials.at(group.material), group.name);
+      else if (!refused.contains(group.material))
+        ids[number] = add_body(simulation, points, materials.at(group.material), group, refused);
       if (notes)
         for (const std::string& note : points.notes) notes->push_back(path + ": " + note);
     });

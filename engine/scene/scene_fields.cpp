@@ -12,6 +12,12 @@ BoundFields joined(BoundFields first, const BoundFields& second) {
 
 }  // namespace
 
+const std::vector<std::string>& section_keys() {
+  static const std::vector<std::string> keys{"solver",  "material", "body",    "collider", "pin",
+                                             "emitter", "sink",     "surface", "run",      "render"};
+  return keys;
+}
+
 BoundFields fields(SceneMaterial& material) {
   const BoundFields look{
       {"color", &material.color, between(0, 1), "", "red, green and blue in pictures, linear",
@@ -29,7 +35,8 @@ BoundFields fields(SceneBody& body) {
       {"group", &body.group, k_any, "", "bodies of one group are one piece, with one reference shape",
        "a piece of its own"},
       {"merges", &body.merges, k_any, "",
-       "acts on others of its material that merge as on itself: two puddles become one"},
+       "acts on others of its material that merge as on itself: two puddles become one, and what flows once "
+       "it is pressed together"},
       {"velocity", &body.velocity, k_finite, "m/s", "of every particle at the start"},
       {"skin", &body.skin, k_any, "",
        "mesh that follows it and is drawn in place of its surface, OBJ, PLY, STL or OFF, placed as its own",

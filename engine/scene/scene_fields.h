@@ -12,6 +12,9 @@
 /// table. A list points into the config it was made for.
 namespace mallow::scene_file {
 
+/// Those that stand by themselves: [solver], [[body]] and so on.
+const std::vector<std::string>& section_keys();
+
 BoundFields fields(SceneMaterial& material);
 BoundFields fields(SceneBody& body);  ///< without its source
 BoundFields fields(SphereSource& source);

@@ -106,6 +106,18 @@ std::string key_lines(const std::string& path, const BoundFields& fields) {
   return text;
 }
 
+/// "# body[]: exactly one of box, sphere, ... says what shape it has".
+std::string choice_line(const std::string& path, const std::string& keys) {
+  return "# " + path + ": exactly one of " + keys + " gives its shape\n";
+}
+
+template <class Variant>
+std::string listed_keys(const std::vector<Kind<Variant>>& kinds) {
+  std::string text;
+  for (const auto& kind : kinds) text += (text.empty() ? "" : ", ") + std::string(kind.key);
+  return text;
+}
+
 }  // namespace
 }  // namespace scene_file
 
@@ -136,15 +148,17 @@ std::string describe_scene_keys() {
   SceneBody body;
   SceneCollider collider;
   ScenePin pin;
+  const std::string shapes = listed_keys(primitive_kinds()) + ", " + k_union_key;
   std::string text = key_lines("solver", fields(scene.solver)) + key_lines("material[]", fields(material)) +
-                     key_lines("body[]", fields(body));
+                     choice_line("body[]", listed_keys(source_kinds())) + key_lines("body[]", fields(body));
   for (const auto& kind : source_kinds()) {
     BodySource source = kind.value;
     text += key_lines(std::string("body[].") + kind.key, fields(source));
   }
   ScenePaint paint;
-  text += key_lines(std::string("body[].") + k_paint_key + "[]", fields(paint));
-  text += key_lines("collider[]", fields(collider));
+  const std::string paint_path = std::string("body[].") + k_paint_key + "[]";
+  text += choice_line(paint_path, shapes) + key_lines(paint_path, fields(paint));
+  text += choice_line("collider[]", shapes) + key_lines("collider[]", fields(collider));
   for (const std::string prefix : {"collider[].", "collider[].union[]."})
     for (const auto& kind : primitive_kinds()) {
       SceneShape shape = kind.value;

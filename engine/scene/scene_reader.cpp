@@ -36,9 +36,7 @@ class SceneReader {
   }
 
   Scene read() {
-    const std::vector<std::string> sections{"solver",  "material", "body",    "collider", "pin",
-                                            "emitter", "sink",     "surface", "run",      "render"};
-    read_fields(root_, "", {}, sections, problems_);
+    read_fields(root_, "", {}, section_keys(), problems_);
     read_section("solver", fields(scene_.solver));
     check_update_times();
     read_list("material", 0, &SceneReader::read_material);

@@ -5,6 +5,7 @@
 
 #include "mallow/materials.h"
 #include "mallow/scene.h"
+#include "scene/scene_fields.h"
 #include "simulation/settings.h"
 
 namespace mallow {
@@ -38,6 +39,71 @@ std::string in_pascals(const Scene& scene) {
   return {};
 }
 
+/// Gravity so many times that of the earth, or so many times less, is in other units than metres and seconds.
+constexpr float k_other_units = 5, k_earth = 9.81f;  // [m/s²]
+constexpr double k_rounding = 1e-6;                  // of frames by steps
+/// Steps of a frame beyond which nobody waits for a film.
+constexpr double k_most_steps = 1000;
+
+/// Whether a material of a scene is the one of its name that scenes know.
+bool is_preset(const SceneMaterial& material, const MaterialPreset& preset) {
+  SceneMaterial own = material;
+  SceneMaterial known{.name = preset.name, .material = preset.material};
+  const scene_file::BoundFields fields = scene_file::fields(own.material),
+                                known_fields = scene_file::fields(known.material);
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    if (scene_file::value_text(fields[i]) != scene_file::value_text(known_fields[i])) return false;
+  return true;
+}
+
+/// What a preset says of stiffness and density where a scene's own material of that name says nothing.
+std::string left_out_of(const Material& own, const Material& preset) {
+  std::string text;
+  if (preset.youngs_modulus && !own.youngs_modulus && !own.elastic_time_step) text = "a youngs_modulus";
+  if (preset.rest_density && !own.rest_density && !own.particle_mass)
+    text += (text.empty() ? "a" : " and a") + std::string(" rest_density");
+  return text;
+}
+
+/// Materials that are known by name: in metres under the gravity of other units, or hidden by the scene's
+/// own.
+void look_at_presets(const Scene& scene, std::vector<std::string>& all) {
+  const float gravity = scene.solver.gravity.norm();
+  const bool other_units = gravity > k_other_units * k_earth || gravity < k_earth / k_other_units;
+  const bool left_out = scene.solver.gravity == SolverConfig{}.gravity;
+  for (const SceneMaterial& material : scene.materials) {
+    const MaterialPreset* preset = find_preset(material.name);
+    if (!preset) continue;
+    const bool known = is_preset(material, *preset);
+    std::ostringstream text;
+    text << "material '" << material.name << "': ";
+    if (known && other_units && gravity > 0 && !left_out)
+      text << "its numbers are in metres, kilograms and seconds, and a gravity of " << gravity
+           << " is not, as that of the earth is 9.81 m/s2; give all lengths in metres";
+    else if (const std::string missing = left_out_of(material.material, preset->material);
+             !known && !missing.empty() && is_in_metres(scene.solver.gravity))
+      text << "the scene's own [[material]] is taken, not the one of that name that `mallow materials` lists "
+              "and that has "
+           << missing << "; give " << (missing.find(" and ") == missing.npos ? "it" : "them")
+           << ", or leave the [[material]] out to take that one, or give it another name";
+    else
+      continue;
+    all.push_back(text.str());
+  }
+}
+
+/// Frames that take more steps than anyone waits for.
+void look_at_steps(double frame, double frames, const SimulationInfo& info, std::vector<std::string>& all) {
+  const double step = std::min(static_cast<double>(info.longest_step), info.unlimited_step);
+  if (!(frame > k_most_steps * step)) return;
+  const double steps = std::ceil(frame / step - k_rounding);
+  std::ostringstream text;
+  text << "run: a frame of " << frame << " s takes " << steps << " steps of " << step << " s or more, "
+       << frames * steps << " in all; give a shorter frame_time, or what lets steps be longer: `mallow info` "
+       << "says where theirs comes from";
+  all.push_back(text.str());
+}
+
 /// What flows by less than this share of what it will, hardly flows.
 constexpr double k_least_flow = 0.01;
 
@@ -62,6 +128,7 @@ std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info
   if (const std::string what = in_pascals(scene); !what.empty())
     all.push_back("solver: gravity is left out, and so 0.3 m/s2 as in the paper, but " + what +
                   "; gravity = [0.0, 0.0, -9.81] is that of the earth");
+  look_at_presets(scene, all);
   const double frames = scene.run.frames, frame = frame_time(scene, info);
   const double seconds = frames * frame;
   if (scene.run.frames == 0) return all;
@@ -71,16 +138,18 @@ std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info
   for (const BodyInfo& body : info.bodies) spacing = std::min(spacing, static_cast<double>(body.spacing));
   const double way = 0.5 * gravity * seconds * seconds + fastest(scene) * seconds;
   const double film = frames / scene.render.frames_per_second;
+  const bool in_metres = is_in_metres(scene.solver.gravity);
+  const bool in_milliseconds = in_metres && scene.run.frame_time && seconds > k_fastest_film * film;
+  if (!in_milliseconds) look_at_steps(frame, frames, info, all);
   std::ostringstream text;
   text << "run: " << scene.run.frames << " frames of " << frame << " s cover " << seconds << " s";
   if (way > 0 && way < spacing)
     text << ", in which nothing falls or flies farther than " << way << " m, less than the spacing of "
          << spacing << " m; give more frames, or a longer frame_time";
-  else if (is_in_metres(scene.solver.gravity) &&
-           seconds < (scene.run.frame_time ? k_slowest_film : k_slowest_by_default) * film)
+  else if (in_metres && seconds < (scene.run.frame_time ? k_slowest_film : k_slowest_by_default) * film)
     text << ", and the film of them takes " << film << " s, " << std::round(film / seconds)
          << " times slower; frame_time = " << 1.0 / scene.render.frames_per_second << " shows real time";
-  else if (is_in_metres(scene.solver.gravity) && scene.run.frame_time && seconds > k_fastest_film * film)
+  else if (in_milliseconds)
     text << ", and the film of them takes " << film << " s, " << std::round(seconds / film)
          << " times faster; frame_time is in seconds, and " << 1.0 / scene.render.frames_per_second
          << " shows real time";

@@ -33,6 +33,12 @@ void find_parts(const ShapeMatching& shape, Parts& parts) {
   }
 }
 
+void append_parts(const Parts& behind, Parts& parts) {
+  const auto n = static_cast<std::uint32_t>(parts.of.size());
+  for (const std::uint32_t root : behind.of) parts.of.push_back(root == Parts::k_none ? root : n + root);
+  parts.count += behind.count;
+}
+
 void sort_parts(std::span<const std::uint32_t> order, Parts& parts) {
   parts.number.resize(parts.of.size());
   for (std::size_t k = 0; k < order.size(); ++k) parts.number[k] = parts.of[order[k]];

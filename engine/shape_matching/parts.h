@@ -24,6 +24,8 @@ struct Parts {
 
 /// Those of a shape whose regions are built.
 void find_parts(const ShapeMatching& shape, Parts& parts);
+/// Those of particles that come behind.
+void append_parts(const Parts& behind, Parts& parts);
 /// Follows particles that were sorted: k becomes what order[k] was.
 void sort_parts(std::span<const std::uint32_t> order, Parts& parts);
 /// Whether particles of one part of `a` are in two of `b`: `a` was torn where it is older, `b` is merged

@@ -3,10 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/bounds.h"
 #include "core/execution.h"
+#include "core/parallel.h"
 #include "neighbors/neighbor_lists.h"
 #include "shape_matching/plastic_lanes.h"
 #include "shape_matching/shape_matching.h"
@@ -20,6 +22,23 @@ constexpr double k_least_strain = 0.8, k_most_strain = 1.25;
 /// stay as small.
 constexpr double k_least_size = 0.3, k_most_size = 1.25;
 
+/// Whether all eigenvalues of a symmetric matrix are above 0.
+bool is_definite(const Eigen::Matrix3d& m) {
+  return m(0, 0) > 0 && m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0) > 0 && m.determinant() > 0;
+}
+
+double bounded_size(double determinant) {
+  return std::clamp(std::cbrt(determinant), k_least_size, k_most_size);
+}
+
+/// Whether none of a strain's eigenvalues is beyond what survives, which most are not: then nobody asks what
+/// they are.
+bool survives_whole(const Eigen::Matrix3d& strain) {
+  if (!is_definite(strain)) return false;
+  const Eigen::Matrix3d size = bounded_size(strain.determinant()) * Eigen::Matrix3d::Identity();
+  return is_definite(strain - k_least_strain * size) && is_definite(k_most_strain * size - strain);
+}
+
 /// The matrix in front of a sums row.
 Eigen::Matrix3d front_matrix(const ShapeMatching& shape, std::size_t region) {
   const float* const row = shape.sums.data() + region * k_row;
@@ -31,35 +50,68 @@ Eigen::Matrix3d rotation_of(const ShapeMatching& shape, std::size_t region) {
   return Eigen::Quaterniond(q(3), q(0), q(1), q(2)).toRotationMatrix();
 }
 
-/// Particles whose regions have flowed.
-struct Flowed {
-  VectorColumn position, rest;
-};
-
-Flowed flowed_particles(const VectorColumn& positions, std::size_t begin, float least,
-                        const ShapeMatching& shape) {
-  std::vector<std::size_t> which;
-  for (std::size_t i = 0; i < shape.reference.size(); ++i)
-    if (shape.plastic.flow[shape.first_region(i)] > least) which.push_back(i);
-  Flowed flowed{VectorColumn(which.size()), VectorColumn(which.size())};
-  for (std::size_t k = 0; k < which.size(); ++k) {
-    flowed.position.set(k, positions.get(begin + which[k]));
-    flowed.rest.set(k, shape.reference.get(which[k]));
+/// Particles that have flowed by more than `least`, by where they are and where they rest.
+void gather_flowed(const VectorColumn& positions, std::size_t begin, float least, const ShapeMatching& shape,
+                   FlowScratch& scratch) {
+  list_flowed(least, shape, scratch.which);
+  const std::size_t count = scratch.which.size();
+  scratch.here.resize_unset(count);
+  scratch.rest.resize_unset(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    scratch.here.set(k, positions.get(begin + scratch.which[k]));
+    scratch.rest.set(k, shape.reference.get(scratch.which[k]));
   }
-  return flowed;
+}
+
+/// Whether holds(k) for any k below n.
+template <class Holds>
+bool any_below(std::size_t n, const Threads& threads, const Holds& holds) {
+  std::atomic<bool> any = false;
+  parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end && !any.load(std::memory_order_relaxed); ++k)
+      if (holds(k)) any.store(true, std::memory_order_relaxed);
+  });
+  return any;
 }
 
 /// Whether two are nearer than `near` in one place and farther apart than `far` in the other.
 bool any_part_ways(const VectorColumn& here, float near, const VectorColumn& there, float far,
-                   const Execution& execution) {
-  CellGrid grid;
-  NeighborLists lists;
-  build_cell_grid(here, 0, here.size(), near, execution, grid);
-  build_neighbor_lists(grid, near, execution, lists);
-  for (std::size_t s = 0; s < here.size(); ++s)
-    for (const std::uint32_t t : lists.of(s))
-      if ((there.get(grid.order[s]) - there.get(grid.order[t])).squaredNorm() > far * far) return true;
-  return false;
+                   const Execution& execution, FlowScratch& scratch) {
+  const CellGrid& grid = scratch.grid;
+  build_cell_grid(here, 0, here.size(), near, execution, scratch.grid);
+  build_neighbor_lists(grid, near, execution, scratch.lists);
+  return any_below(here.size(), execution.threads, [&](std::size_t s) {
+    const Vec3 own = there.get(grid.order[s]);
+    return std::ranges::any_of(scratch.lists.of(s), [&](std::uint32_t t) {
+      return (own - there.get(grid.order[t])).squaredNorm() > far * far;
+    });
+  });
+}
+
+/// Whether two that are in one's region, and have flowed, are farther apart than `far`.
+bool any_torn(const VectorColumn& positions, std::size_t begin, float far, const Execution& execution,
+              const ShapeMatching& shape, FlowScratch& scratch) {
+  if (shape.region_stride != 1) {  // regions are not those of all particles: who is near is searched for
+    gather_flowed(positions, begin, 0, shape, scratch);
+    return any_part_ways(scratch.rest, shape.region_radius, scratch.here, far, execution, scratch);
+  }
+  const TableLists& lists = shape.regions;
+  const auto rows = static_cast<std::uint32_t>(lists.rows);
+  const float* const flow = shape.plastic.flow.data();
+  return any_below(rows, execution.threads, [&](std::size_t j) {
+    if (!(flow[j] > 0)) return false;
+    const Vec3 own = positions.get(begin + j);
+    const std::uint32_t* const entries = lists.entries.data() + lists.begin[j];
+    float farthest = 0;
+    for (std::uint32_t k = 0; k < lists.count[j]; ++k) {
+      const std::size_t first = entries[k] % rows, last = first + lists.lengths.length[entries[k] / rows];
+      for (std::size_t i = std::max(first, j + 1); i < last; ++i) {  // a pair is in the lists of both
+        const float square = (own - positions.get(begin + i)).squaredNorm();
+        farthest = std::max(farthest, flow[i] > 0 ? square : 0.0f);
+      }
+    }
+    return farthest > far * far;
+  });
 }
 
 }  // namespace
@@ -111,32 +163,62 @@ bool is_thin(const Eigen::Matrix3d& moment) {
   return !(moment.determinant() > static_cast<double>(k_thin) * extent * extent * extent);
 }
 
-Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
-                                 const Eigen::Matrix3d& moment) {
-  if (is_thin(moment)) return Eigen::Matrix3f::Identity();
+ReframedRegion reframed_region(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
+                               const Eigen::Matrix3d& moment) {
+  if (is_thin(moment)) return {};
   const Eigen::Matrix3d f = rotation.transpose() * m * moment.inverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (f + f.transpose()));
+  const Eigen::Matrix3d e = 0.5 * (f + f.transpose());
+  const auto strain_of = [&](double size) { return (e / size - Eigen::Matrix3d::Identity()).norm(); };
+  if (survives_whole(e)) {
+    const Eigen::Matrix3d stretch = rotation * e.inverse() * rotation.transpose();
+    return {stretch.cast<float>(), strain_of(bounded_size(e.determinant()))};
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(e);
   const Eigen::Vector3d& found = solver.eigenvalues();
-  const double size = found[0] > 0 ? std::clamp(std::cbrt(found.prod()), k_least_size, k_most_size) : 1;
+  const double size = found[0] > 0 ? bounded_size(found.prod()) : 1;
   const Eigen::Vector3d strain = size * (found / size).cwiseMax(k_least_strain).cwiseMin(k_most_strain);
   const Eigen::Matrix3d axes = rotation * solver.eigenvectors();
   const Eigen::Matrix3d stretch = axes * strain.cwiseInverse().asDiagonal() * axes.transpose();
-  return stretch.allFinite() ? Eigen::Matrix3f(stretch.cast<float>()) : Eigen::Matrix3f::Identity();
+  if (!stretch.allFinite()) return {};
+  return {stretch.cast<float>(), strain_of(size)};
+}
+
+void list_flowed(float least, const ShapeMatching& shape, Column<std::uint32_t>& which) {
+  const std::size_t n = shape.reference.size();
+  which.resize_unset(n);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (shape.plastic.flow[shape.first_region(i)] > least) which[count++] = static_cast<std::uint32_t>(i);
+  which.resize(count);
 }
 
 bool reframe_is_due(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
-                    const Execution& execution, const ShapeMatching& shape) {
+                    const Execution& execution, const ShapeMatching& shape, FlowScratch& scratch) {
   const std::span<const float> flow = shape.plastic.flow.span();
   const float most = flow.empty() ? 0.0f : *std::ranges::max_element(flow);
   if (most > k_far_flow) return true;
   if (most == 0 || !(shape.spacing > 0)) return false;
   const float radius = shape.region_radius;
-  const Flowed flowed = flowed_particles(positions, begin, 0, shape);
-  if (any_part_ways(flowed.rest, radius, flowed.position, (1 + limits.tear_strain) * radius, execution))
-    return true;
+  if (any_torn(positions, begin, (1 + limits.tear_strain) * radius, execution, shape, scratch)) return true;
   if (most <= limits.merge_flow) return false;
-  const Flowed pressed = flowed_particles(positions, begin, limits.merge_flow, shape);
-  return any_part_ways(pressed.position, shape.spacing, pressed.rest, radius, execution);
+  gather_flowed(positions, begin, limits.merge_flow, shape, scratch);
+  return any_part_ways(scratch.here, shape.spacing, scratch.rest, radius, execution, scratch);
+}
+
+bool has_flowed_too_far(const ShapeMatching& shape) {
+  const std::span<const float> flow = shape.plastic.flow.span();
+  const auto far = std::ranges::count_if(flow, [](float k) { return k > k_farthest_flow; });
+  return 2 * static_cast<std::size_t>(far) > flow.size();
+}
+
+bool is_strained_by_a_blow(const std::vector<ReframedRegion>& regions, float yield,
+                           const ShapeMatching& shape) {
+  const Column<float>& yields = shape.plastic.yield;
+  std::size_t strained = 0;
+  for (std::size_t j = 0; j < regions.size(); ++j)
+    strained += regions[j].strain > std::max(static_cast<double>(k_much_strain),
+                                             2.0 * static_cast<double>(yields.empty() ? yield : yields[j]));
+  return 2 * strained > regions.size();
 }
 
 void solve_plastic_regions(const MatchedBodies::Body& body, std::size_t begin, std::size_t end,
@@ -164,7 +246,7 @@ void solve_plastic_regions(const MatchedBodies::Body& body, std::size_t begin, s
   if (body.reframed)
     for (std::size_t j = begin; j < end; ++j)
       (*body.reframed)[j] =
-          reframed_stretch(front_matrix(shape, j), rotation_of(shape, j), stretched_moment(shape, j));
+          reframed_region(front_matrix(shape, j), rotation_of(shape, j), stretched_moment(shape, j));
   lanes.finish(body.input, rule, begin, end, undecided, rotation, sums, stretch, flow);
 }
 

@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "core/column.h"
 #include "core/execution.h"
+#include "neighbors/neighbor_lists.h"
 
 /// Yield and creep where the strain is: every region has a plastic stretch of its own. [model 2, section 5;
 /// Mueller 2005, kept local] What flows in a step is in plastic_lanes.h; this is what is seldom done.
@@ -22,6 +24,12 @@ struct FlowRule {
 
 /// κ of a region from which the body gets a new frame: S would take it too far from its reference shape.
 inline constexpr float k_far_flow = 0.5f;
+/// κ of half of the regions from which it gets one at once: pastes that hit a floor get there in a fraction
+/// of the time between checks, and with S so far from I hardly resist any more.
+inline constexpr float k_farthest_flow = 1.2f;
+/// |Ê − I| beyond which a region is strained by a blow, or twice its yield where that is more. A new frame
+/// clips what is beyond, and its list is a ball while it is strained, no longer when it is let go.
+inline constexpr float k_much_strain = 0.25f;
 
 /// A row a region; empty where nothing flows.
 struct PlasticColumns {
@@ -45,20 +53,45 @@ void reset_stretches(ShapeMatching& shape);
 Eigen::Matrix3d stretched_moment(const ShapeMatching& shape, std::size_t region);
 bool is_thin(const Eigen::Matrix3d& moment);
 
-/// S of a region whose frame becomes where its particles are: R E⁻¹ Rᵀ, so that the elastic strain E that it
-/// has stays, as far as its eigenvalues are between 0.8 and 1.25. I where the region is thin. m: M of
-/// plastic_lanes.h, moment: S B Sᵀ.
-Eigen::Matrix3f reframed_stretch(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
-                                 const Eigen::Matrix3d& moment);
+/// A region whose frame becomes where its particles are.
+struct ReframedRegion {
+  /// S: R E⁻¹ Rᵀ, so that the elastic strain E that it has stays, as far as its eigenvalues are between 0.8
+  /// and 1.25. I where the region is thin.
+  Eigen::Matrix3f stretch = Eigen::Matrix3f::Identity();
+  double strain = 0;  ///< |Ê − I|, 0 where it is thin
+};
+/// m: M of plastic_lanes.h, moment: S B Sᵀ.
+ReframedRegion reframed_region(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
+                               const Eigen::Matrix3d& moment);
 /// What gives a body a new frame, see Material.
 struct FrameLimits {
   float merge_flow = 0, tear_strain = 0;
 };
+/// What a look at what has flowed needs; all bodies take turns with it.
+struct FlowScratch {
+  Column<std::uint32_t> which;  ///< particles that have
+  VectorColumn here, rest;      ///< where they are, and where they rest [m]
+  CellGrid grid;
+  NeighborLists lists;
+
+  std::size_t bytes() const {
+    return which.bytes() + here.bytes() + rest.bytes() + grid.bytes() + lists.bytes();
+  }
+};
+/// Particles of a body, ascending, in regions that have flowed by more than `least`.
+void list_flowed(float least, const ShapeMatching& shape, Column<std::uint32_t>& which);
 /// Whether the positions of a body, from row `begin` on, should become its reference shape: a region has
 /// flowed by more than k_far_flow; or two that are in one's region, and have flowed, are farther apart than
 /// 1 + tear_strain of its radius, so that they tear; or two that are not are nearer than a spacing, and both
 /// have flowed by more than merge_flow, so that they merge.
 bool reframe_is_due(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
-                    const Execution& execution, const ShapeMatching& shape);
+                    const Execution& execution, const ShapeMatching& shape, FlowScratch& scratch);
+/// Whether half of the regions have flowed by more than k_farthest_flow, so that no check is waited for.
+bool has_flowed_too_far(const ShapeMatching& shape);
+/// Whether half of the regions are strained beyond k_much_strain and twice their yield: a blow that has them
+/// is over in less than the time between checks, and a new frame in it would take the rebound from one
+/// spacing and not from another.
+bool is_strained_by_a_blow(const std::vector<ReframedRegion>& regions, float yield,
+                           const ShapeMatching& shape);
 
 }  // namespace mallow

@@ -32,9 +32,12 @@ Symmetric times_less_identity(const Lanes& factor, const Symmetric& s) {
   return {factor * s.xx - 1.0f, factor * s.yy - 1.0f, factor * s.zz - 1.0f,
           factor * s.yz,        factor * s.xz,        factor * s.xy};
 }
-Lanes norm(const Symmetric& s) {
+Lanes squared_norm(const Symmetric& s) {
   const Lanes off = s.yz * s.yz + s.xz * s.xz + s.xy * s.xy;
-  return square_root(s.xx * s.xx + s.yy * s.yy + s.zz * s.zz + 2.0f * off);
+  return s.xx * s.xx + s.yy * s.yy + s.zz * s.zz + 2.0f * off;
+}
+Lanes norm(const Symmetric& s) {
+  return square_root(squared_norm(s));
 }
 
 /// x^(−⅓) of lanes above 0: a guess from the exponent, off by 4% at most, and three steps of Newton's method.
@@ -45,36 +48,75 @@ Lanes inverse_cube_root(const Lanes& x) {
   return y;
 }
 
+// What follows is inlined: a call takes its nine numbers through memory.
+
 /// c = a b, all row by row.
-void multiply(const Lanes* a, const Lanes* b, Lanes* c) {
+MALLOW_INLINE void multiply(const Lanes* a, const Lanes* b, Lanes* c) {
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k)
       c[3 * i + k] = a[3 * i] * b[k] + a[3 * i + 1] * b[3 + k] + a[3 * i + 2] * b[6 + k];
 }
+/// c = a b
+MALLOW_INLINE void multiply(const Lanes* a, const Symmetric& b, Lanes* c) {
+  const Lanes whole[9] = {b.xx, b.xy, b.xz, b.xy, b.yy, b.yz, b.xz, b.yz, b.zz};
+  multiply(a, whole, c);
+}
 /// c = s b
-void multiply(const Symmetric& s, const Lanes* b, Lanes* c) {
+MALLOW_INLINE void multiply(const Symmetric& s, const Lanes* b, Lanes* c) {
   const Lanes whole[9] = {s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz};
   multiply(whole, b, c);
 }
 /// c = a bᵀ
-void multiply_transposed(const Lanes* a, const Lanes* b, Lanes* c) {
+MALLOW_INLINE void multiply_transposed(const Lanes* a, const Lanes* b, Lanes* c) {
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k)
       c[3 * i + k] = a[3 * i] * b[3 * k] + a[3 * i + 1] * b[3 * k + 1] + a[3 * i + 2] * b[3 * k + 2];
 }
 
-Lanes row_times(const Lanes* a, const Lanes* b) {
+MALLOW_INLINE Lanes row_times(const Lanes* a, const Lanes* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/// S of k_width regions, row by row. Where all of them are I nothing is multiplied by it. A product with I
+/// is the other factor but for the sign of its zeros, which is taken from both: how many regions are judged
+/// together is the instruction level's, and a region's bits must not depend on that.
+struct Stretch {
+  Lanes s[9];
+  bool any;  ///< one of them is not I
+};
+MALLOW_INLINE Stretch load_stretch(const float* const* columns, std::size_t j) {
+  Stretch stretch;
+  LaneMask other = {};
+  for (int k = 0; k < 9; ++k) {
+    stretch.s[k] = load(columns[k] + j);
+    other |= stretch.s[k] != (k % 4 == 0 ? 1.0f : 0.0f);
+  }
+  stretch.any = any(other);
+  return stretch;
+}
+/// to = a Sᵀ
+MALLOW_INLINE void times_transposed(const Lanes* a, const Stretch& stretch, Lanes* to) {
+  Lanes product[9];
+  if (stretch.any) multiply_transposed(a, stretch.s, product);
+  for (int k = 0; k < 9; ++k) to[k] = (stretch.any ? product[k] : a[k]) + 0.0f;
+}
+/// to = a S
+MALLOW_INLINE void times(const Lanes* a, const Stretch& stretch, Lanes* to) {
+  Lanes product[9];
+  if (stretch.any) multiply(a, stretch.s, product);
+  for (int k = 0; k < 9; ++k) to[k] = (stretch.any ? product[k] : a[k]) + 0.0f;
+}
 /// P = S B Sᵀ
-Symmetric stretched_moment(const Lanes* s, const Symmetric& moment) {
-  const Lanes b[9] = {moment.xx, moment.xy, moment.xz, moment.xy, moment.yy,
-                      moment.yz, moment.xz, moment.yz, moment.zz};
-  Lanes t[9];
-  multiply(s, b, t);
-  return {row_times(t, s),         row_times(t + 3, s + 3), row_times(t + 6, s + 6),
-          row_times(t + 3, s + 6), row_times(t, s + 6),     row_times(t, s + 3)};
+MALLOW_INLINE Symmetric stretched_moment(const Stretch& stretch, const Symmetric& moment) {
+  const Lanes* const s = stretch.s;
+  Symmetric p = moment;
+  if (stretch.any) {
+    Lanes t[9];
+    multiply(s, moment, t);
+    p = {row_times(t, s),         row_times(t + 3, s + 3), row_times(t + 6, s + 6),
+         row_times(t + 3, s + 6), row_times(t, s + 6),     row_times(t, s + 3)};
+  }
+  return {p.xx, p.yy, p.zz, p.yz + 0.0f, p.xz + 0.0f, p.xy + 0.0f};
 }
 
 Symmetric load_moment(const ShapeInput& in, std::size_t j) {
@@ -89,20 +131,37 @@ Lanes cube(const Lanes& value) {
   return value * value * value;
 }
 
+/// k_width regions.
+struct Region {
+  LaneVec3 center;
+  Lanes rotation[4];
+  Stretch stretch;
+  Symmetric moment, stretched;  ///< B, P
+};
+MALLOW_INLINE Region load_region(const ShapeInput& in, std::size_t j, const float* const* rotation,
+                                 const float* const* stretch) {
+  Region region;
+  region.center = get(WholeRows{j}, in.center);
+  for (int k = 0; k < 4; ++k) region.rotation[k] = load(rotation[k] + j);
+  region.stretch = load_stretch(stretch, j);
+  region.moment = load_moment(in, j);
+  region.stretched = stretched_moment(region.stretch, region.moment);
+  return region;
+}
+
 /// S and κ after this step. m: M, r: R, all row by row.
-void flow_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, const Lanes* m, const Lanes* r,
-                const Lanes* s, float* const* stretch, float* flow) {
-  const Symmetric b = load_moment(in, j), p = stretched_moment(s, b), adjoint = cofactors(p);
+MALLOW_INLINE void flow_lanes(const FlowInput& rule, std::size_t j, const Lanes* m, const Lanes* r,
+                              const Region& region, float* const* stretch, float* flow) {
+  // A strain whose square is this much of the yield's may be beyond it: no root is taken of any below.
+  constexpr float k_near = 0.999f;
+  const Symmetric &b = region.moment, &p = region.stretched, adjoint = cofactors(p);
   const Lanes volume = determinant(p, adjoint);
-  const LaneMask thick = (volume > k_thin * cube(mean_extent(p))) &
-                         (determinant(b, cofactors(b)) > k_single_layer * cube(mean_extent(b)));
+  const LaneMask thick = volume > k_thin * cube(mean_extent(p));
   const Lanes inverse = thick ? 1.0f / volume : Lanes{};
   Lanes n[9], f[9];  // Rᵀ M, and that times the cofactors of P
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) n[3 * i + k] = r[i] * m[k] + r[3 + i] * m[3 + k] + r[6 + i] * m[6 + k];
-  const Lanes whole[9] = {adjoint.xx, adjoint.xy, adjoint.xz, adjoint.xy, adjoint.yy,
-                          adjoint.yz, adjoint.xz, adjoint.yz, adjoint.zz};
-  multiply(n, whole, f);
+  multiply(n, adjoint, f);
   const Lanes half = 0.5f * inverse;
   const Symmetric e = {inverse * f[0],       inverse * f[4],       inverse * f[8],
                        half * (f[5] + f[7]), half * (f[2] + f[6]), half * (f[1] + f[3])};
@@ -110,15 +169,20 @@ void flow_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, cons
   const Lanes det = determinant(e, minors);
   const LaneMask upright = thick & (e.xx > 0.0f) & (minors.zz > 0.0f) & (det > 0.0f);
   const Symmetric strain = times_less_identity(inverse_cube_root(upright ? det : all_lanes(1.0f)), e);
-  const Lanes size = norm(strain);
+  const Lanes squared = squared_norm(strain);
   const Lanes yield = rule.yields ? load(rule.yields + j) : all_lanes(rule.yield);
+  const LaneMask near = upright & (squared > k_near * yield * yield);
+  if (!any(near)) return;
+  const LaneMask layers = determinant(b, cofactors(b)) > k_single_layer * cube(mean_extent(b));
+  const Lanes size = square_root(squared);
   // Not where it is infinite, whatever is wrong there.
-  const LaneMask flows = upright & (size > yield) & (size < 1e30f);
+  const LaneMask flows = near & layers & (size > yield) & (size < 1e30f);
   if (!any(flows)) return;
   const Lanes y = smaller((1.0f - yield / size) * rule.share, k_most_flow / size);
   const Symmetric g = plus_identity(y, strain);
   const Lanes scale = inverse_cube_root(flows ? determinant(g, cofactors(g)) : all_lanes(1.0f));
   const Symmetric change = times_less_identity(scale, g);
+  const Lanes* const s = region.stretch.s;
   Lanes added[9];
   multiply(change, s, added);
   for (int k = 0; k < 9; ++k) store(flows ? s[k] + added[k] : s[k], stretch[k] + j);
@@ -126,27 +190,14 @@ void flow_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, cons
   store(flows ? before + norm(change) : before, flow + j);
 }
 
-/// What a region is read as, and S that it flows by.
-struct Stretched {
-  LaneVec3 center;
-  Lanes rotation[4], stretch[9];
-};
-Stretched load_stretched(const ShapeInput& in, std::size_t j, const float* const* rotation,
-                         const float* const* stretch) {
-  Stretched region;
-  region.center = get(WholeRows{j}, in.center);
-  for (int k = 0; k < 4; ++k) region.rotation[k] = load(rotation[k] + j);
-  for (int k = 0; k < 9; ++k) region.stretch[k] = load(stretch[k] + j);
-  return region;
-}
-
 /// sums: M and the last three sums.
-void finish_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, const Stretched& region,
-                  const Lanes* sums, float* rows, float* const* stretch, float* flow) {
+MALLOW_INLINE void finish_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j,
+                                const Region& region, const Lanes* sums, float* rows, float* const* stretch,
+                                float* flow) {
   Lanes r[9], turned[k_row];
   const LaneVec3& center = region.center;
   rotation_matrices(region.rotation, r);
-  multiply(r, region.stretch, turned);
+  times(r, region.stretch, turned);
   // Plus 0, or what is not a number where the weight is infinite and the quotient would hide it.
   const Lanes weight = load(in.region_weight + j), inverse = 1.0f / weight + (weight - weight);
   for (int i = 0; i < 3; ++i) {
@@ -156,21 +207,21 @@ void finish_lanes(const ShapeInput& in, const FlowInput& rule, std::size_t j, co
     turned[9 + i] = sums[9 + i] * inverse - (row[0] * center.x + row[1] * center.y + row[2] * center.z);
   }
   weigh_and_store(in, j, ~LaneMask{}, turned, rows);
-  if (rule.share > 0) flow_lanes(in, rule, j, sums, r, region.stretch, stretch, flow);
+  if (rule.share > 0) flow_lanes(rule, j, sums, r, region, stretch, flow);
 }
 
 /// As solve_lanes() of rotation_lanes.cpp. Where all are decided, they are finished as they lie in registers.
 LaneBytes solve_lanes(const ShapeInput& in, const FlowInput* rule, std::size_t j, int iterations, float* rows,
                       float* const* rotation, float* const* stretch, float* flow) {
-  Lanes sums[12], a[12], m[12], moment[6];
+  Lanes sums[12], a[9], m[12];
   load_transposed(rows, k_row, 12, sums);
-  Stretched region = load_stretched(in, j, rotation, stretch);
-  for (int k = 0; k < 6; ++k) moment[k] = load(in.moment[k] + j);
+  Region region = load_region(in, j, rotation, stretch);
+  const Symmetric& b = region.moment;
+  const Lanes moment[6] = {b.xx, b.yy, b.zz, b.yz, b.xz, b.xy};
   region_matrices(in.frame_rotation, sums, region.center, moment, a);
-  multiply_transposed(a, region.stretch, m);
-  const Symmetric stretched = stretched_moment(region.stretch, load_moment(in, j));
+  times_transposed(a, region.stretch, m);
   Lanes turned[4] = {region.rotation[0], region.rotation[1], region.rotation[2], region.rotation[3]};
-  const LaneMask good = newton(m, trace(stretched), iterations, turned);
+  const LaneMask good = newton(m, trace(region.stretched), iterations, turned);
   for (int k = 0; k < 4; ++k) {
     region.rotation[k] = good ? turned[k] : region.rotation[k];
     store(region.rotation[k], rotation[k] + j);
@@ -214,7 +265,7 @@ void finish(const ShapeInput& in, const FlowInput& rule, std::size_t begin, std:
     if (undecided[j] == 0) return;  // nor is any beside it
     Lanes left[12];
     load_transposed(rows, k_row, 12, left);
-    finish_lanes(in, rule, j, load_stretched(in, j, rotation, stretch), left, rows, stretch, flow);
+    finish_lanes(in, rule, j, load_region(in, j, rotation, stretch), left, rows, stretch, flow);
   });
 }
 

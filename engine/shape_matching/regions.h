@@ -10,6 +10,7 @@
 #include "core/isa.h"
 #include "core/threads.h"
 #include "particles/pillar_order.h"
+#include "shape_matching/plastic.h"
 #include "shape_matching/run_lists.h"
 
 namespace mallow {
@@ -25,8 +26,11 @@ struct RegionScratch {
   std::vector<std::uint32_t> block_begin;
   std::vector<std::array<double, 3>> partial_sums;
   std::vector<std::size_t> partial_count;
+  FlowScratch flow;
 
-  std::size_t bytes() const { return pillars.bytes() + near.bytes() + owners.bytes() + first_region.bytes(); }
+  std::size_t bytes() const {
+    return pillars.bytes() + near.bytes() + owners.bytes() + first_region.bytes() + flow.bytes();
+  }
 };
 
 /// x̄ ← x of the rows [begin, end) of a store. Rotations start from none; regions are due to be built.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "core/bounds.h"
 #include "neighbors/neighbor_lists.h"
@@ -178,9 +179,9 @@ CarriedRegions carry_regions(const ShapeMatching& shape) {
   return carried;
 }
 
-CarriedRegions reframe_regions(const VectorColumn& positions, std::size_t begin, int iterations,
-                               const Execution& execution, ShapeMatching& shape) {
-  std::vector<Eigen::Matrix3f> reframed(shape.region_weight.size());
+ReframedShape reframe_regions(const VectorColumn& positions, std::size_t begin, float yield, int iterations,
+                              const Execution& execution, ShapeMatching& shape) {
+  std::vector<ReframedRegion> reframed(shape.region_weight.size());
   MatchedBodies matched;
   matched.add(shape, begin);
   for (auto* bodies : {&matched.small, &matched.large})
@@ -189,9 +190,17 @@ CarriedRegions reframe_regions(const VectorColumn& positions, std::size_t begin,
   CarriedRegions carried = carry_regions(shape);
   std::ranges::fill(carried.rotations, Eigen::Vector4f(0, 0, 0, 1));
   for (std::size_t i = 0; i < carried.stretches.size(); ++i)
-    carried.stretches[i] = {.stretch = reframed[shape.first_region(i)]};
+    carried.stretches[i] = {.stretch = reframed[shape.first_region(i)].stretch};
   forget_lists(carried);
-  return carried;
+  return {std::move(carried), is_strained_by_a_blow(reframed, yield, shape)};
+}
+
+void append_carried(const CarriedRegions& behind, CarriedRegions& carried) {
+  const auto append = [](const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); };
+  append(behind.rotations, carried.rotations);
+  append(behind.stretches, carried.stretches);
+  carried.former.resize(carried.rotations.size(), FormerLists::k_none);
+  forget_lists(carried);
 }
 
 void forget_lists(CarriedRegions& carried) {

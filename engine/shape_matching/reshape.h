@@ -22,9 +22,16 @@ struct CarriedRegions {
 /// Those of a shape that is built.
 CarriedRegions carry_regions(const ShapeMatching& shape);
 /// Those of a shape whose reference shape is to be where its particles are now: they keep the elastic strain
-/// that they have, and nothing else. The pull is that of now.
-CarriedRegions reframe_regions(const VectorColumn& positions, std::size_t begin, int iterations,
-                               const Execution& execution, ShapeMatching& shape);
+/// that they have, and nothing else.
+struct ReframedShape {
+  CarriedRegions carried;
+  bool is_strained = false;  ///< by a blow, see is_strained_by_a_blow()
+};
+/// The pull is that of now. yield: of those that have none of their own.
+ReframedShape reframe_regions(const VectorColumn& positions, std::size_t begin, float yield, int iterations,
+                              const Execution& execution, ShapeMatching& shape);
+/// Those of a body whose particles come behind: none of their lists is known. Both are of shapes that flow.
+void append_carried(const CarriedRegions& behind, CarriedRegions& carried);
 /// No list is as it was.
 void forget_lists(CarriedRegions& carried);
 /// Row k becomes what row order[k] was.

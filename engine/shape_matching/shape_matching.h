@@ -91,8 +91,8 @@ class MatchedBodies {
     std::size_t begin;
     FlowRule rule;
     ShapeInput input = {};  ///< since the last sum_regions()
-    /// Per region what reframed_stretch() makes of it, if asked for.
-    std::vector<Eigen::Matrix3f>* reframed = nullptr;
+    /// Per region what reframed_region() makes of it, if asked for.
+    std::vector<ReframedRegion>* reframed = nullptr;
   };
   float time_step = 0;  ///< in which regions flow; 0: nothing does [s]
   std::vector<Body> small, large;

@@ -265,7 +265,8 @@ EmitterId Simulation::add_emitter(const Emitter& settings, MaterialId material, 
   }
   const float radius = region_radius(s.config, s.material(material).settings, settings.spacing);
   const std::size_t count = held_layers(settings, radius) + k_batch;
-  const Body points = next_layers(emitter, count);
+  Body points = next_layers(emitter, count);
+  points.merges = settings.merges;
   if (name.empty()) name = "strand " + std::to_string(s.emitter_count);
   emitter.body = add_body(points, material, std::move(name));
   const Rows rows = this->rows(emitter.body);

@@ -11,7 +11,7 @@ namespace {
 
 /// What contact would make of v', which stays: what is pressed against a floor is pressed together only where
 /// the floor is known of. Without, bodies at rest stayed a quarter too dense.
-const VectorColumn& find_contacted(Simulation::State& state, float time_step) {
+const VectorColumn& find_contacted(Simulation::State& state, float time_step, bool again) {
   const VectorColumn& predicted = state.store.next_velocity;
   const bool collides = !state.placed_colliders.empty();
   if (!collides && !state.bodies_touch()) return predicted;
@@ -21,7 +21,7 @@ const VectorColumn& find_contacted(Simulation::State& state, float time_step) {
     for (std::size_t a = 0; a < 3; ++a)
       std::copy(predicted.axis(a) + begin, predicted.axis(a) + end, contacted.axis(a) + begin);
   });
-  if (state.bodies_touch()) touch_bodies(state, time_step, false, contacted);
+  if (state.bodies_touch()) touch_bodies(state, time_step, {.again = again}, contacted);
   if (collides) preview_contact(state.execution, state.store, state.moving, contacted);
   return contacted;
 }
@@ -68,7 +68,7 @@ void correct_volume(Simulation::State& state, float time_step, StepReport& repor
   const int most = state.volume_iterations();
   begin_volume(step, state.sph, state.execution, state.volume);
   for (int& taken = report.volume_iterations;; ++taken) {
-    const VectorColumn& contacted = find_contacted(state, time_step);
+    const VectorColumn& contacted = find_contacted(state, time_step, taken > 0);
     const Compression found =
         find_compression(step, contacted, taken == 0, state.sph, state.execution, state.volume);
     report.mean_compression = found.mean;

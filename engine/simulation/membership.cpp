@@ -131,6 +131,13 @@ void rebuild_shape(Simulation::State& s, BodyState& body, CarriedRegions& carrie
   s.held = false;
 }
 
+void forget_body(Simulation::State& s, BodyState& body) {
+  s.body_slots.give_back(static_cast<std::uint64_t>(body.id));
+  s.bodies.erase(s.bodies.begin() + (&body - s.bodies.data()));
+  for (std::size_t b = 0; b < s.bodies.size(); ++b)
+    s.body_slots.index[slot_of(s.bodies[b].id)] = static_cast<std::uint32_t>(b);
+}
+
 void Simulation::State::rows_changed() {
   rows_moved();
   sph.grid.order.resize(0);
@@ -157,7 +164,7 @@ BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name)
   body.shape.region_radius = region_radius(s.config, material.settings, body.spacing);
   body.shape.region_stride = material.settings.region_stride;
   body.shape.flows = flows(material.settings);
-  check_modulus(s.config, material.settings, body.spacing, body.name, checks);
+  check_modulus(s.config, material.settings, body, checks);
   checks.finish();
   derive_density(s.config, body);
   check_elasticity(s, body, points);
@@ -213,7 +220,7 @@ std::vector<ParticleId> extend(Simulation::State& s, BodyState& body, const Body
   if (remembers) {
     // As they are now, not as they were when the last step began.
     MatchedBodies matched;
-    weigh_regions(s.store, body);
+    weigh_regions(s.execution.threads, s.store, body);
     matched.add(body.shape, body.begin);
     match_shapes(s.store.position, s.config.rotation_iterations, s.execution, matched);
     carried = carry_regions(body.shape);
@@ -241,10 +248,7 @@ void erase_body(Simulation::State& s, BodyState& body) {
   const std::size_t old_end = body.end;
   body.end = body.begin;
   shift_rows(s, body, old_end);
-  s.body_slots.give_back(static_cast<std::uint64_t>(body.id));
-  s.bodies.erase(s.bodies.begin() + (&body - s.bodies.data()));
-  for (std::size_t b = 0; b < s.bodies.size(); ++b)
-    s.body_slots.index[slot_of(s.bodies[b].id)] = static_cast<std::uint32_t>(b);
+  forget_body(s, body);
   s.rows_changed();
   wake_beside(s, box);
 }

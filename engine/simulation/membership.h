@@ -14,6 +14,11 @@ std::vector<ParticleId> extend(Simulation::State& state, BodyState& body, const 
 /// The reference shape of a body has changed: its rows are sorted for it, and its regions built of what their
 /// particles carried along.
 void rebuild_shape(Simulation::State& state, BodyState& body, CarriedRegions& carried);
+/// Where a body is becomes its reference shape, and its regions are built of what their particles carried
+/// along there, see reframe_regions(). The parts before are sorted likewise.
+void take_frame(Simulation::State& state, BodyState& body, CarriedRegions& carried);
+/// A body that has no rows any more is taken out of the list of bodies.
+void forget_body(Simulation::State& state, BodyState& body);
 /// As Simulation::remove_particles(); ids: different, and there.
 void erase_particles(Simulation::State& state, std::span<const ParticleId> ids);
 /// As Simulation::unpin().

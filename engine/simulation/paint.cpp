@@ -36,7 +36,8 @@ float least_alpha(const Simulation::State& s, const BodyState& body, std::size_t
 /// Whether steps carry this share of a body's modulus; nothing where they are not known yet.
 void check_springs(const Simulation::State& s, const BodyState& body, float share, Checks& checks) {
   if (!s.config.time_step) return;
-  check_elasticity(s.config, with_springs(s.config, body.material->settings, body.spacing), share, checks);
+  const Material& settings = body.material->settings;
+  check_elasticity(s.config, settings, with_springs(s.config, settings, body.spacing), share, checks);
 }
 
 void check_elasticity(const Simulation::State& s, const BodyState& body, Checks& checks) {
@@ -135,6 +136,42 @@ void paint_rows(Simulation::State& s, BodyState& body, std::size_t begin, const 
   }
 }
 
+namespace {
+
+/// What the particles of a painted body span.
+BlendRange blend_of(Simulation::State& s, const BodyState& body) {
+  const float *const alpha = s.store.alpha.data() + body.begin, *const stiffness =
+                                                                    s.store.stiffness.data() + body.begin;
+  const auto both = [](const BlendRange& a, const BlendRange& b) {
+    return BlendRange{.least_alpha = std::min(a.least_alpha, b.least_alpha),
+                      .most_alpha = std::max(a.most_alpha, b.most_alpha),
+                      .most_elasticity = std::max(a.most_elasticity, b.most_elasticity)};
+  };
+  const BlendRange none{.least_alpha = 1, .most_alpha = 0, .most_elasticity = 0};
+  const auto of_block = [&](std::size_t begin, std::size_t end) {
+    BlendRange blend = none;
+    for (std::size_t i = begin; i < end; ++i)
+      blend = both(blend, {.least_alpha = alpha[i],
+                           .most_alpha = alpha[i],
+                           .most_elasticity = (1.0f - alpha[i]) * stiffness[i]});
+    return blend;
+  };
+  return parallel_reduce(s.execution.threads, body.size(), s.partial_blends, none, of_block, both);
+}
+
+}  // namespace
+
+void paint_alike(Simulation::State& s, BodyState& body, BodyState& other) {
+  if (body.paints_yield != other.paints_yield) {
+    const BodyState& plain = body.paints_yield ? other : body;
+    std::fill(s.store.plastic_yield.begin() + plain.begin, s.store.plastic_yield.begin() + plain.end,
+              yield_of(plain.material->settings));
+  }
+  body.paints_alpha = body.paints_alpha || other.paints_alpha;
+  body.paints_stiffness = body.paints_stiffness || other.paints_stiffness;
+  body.paints_yield = body.paints_yield || other.paints_yield;
+}
+
 void blend_bodies(Simulation::State& s) {
   if (!s.blend_changed) return;
   s.blend_changed = false;
@@ -157,15 +194,9 @@ void blend_bodies(Simulation::State& s) {
       material.most_elasticity = std::max(material.most_elasticity, 1.0f - material.alpha);
       continue;
     }
-    BlendRange blend{.least_alpha = 1, .most_alpha = 0, .most_elasticity = 0};
-    for (std::size_t row = body.begin; row < body.end; ++row) {
-      blend.least_alpha = std::min(blend.least_alpha, alpha[row]);
-      blend.most_alpha = std::max(blend.most_alpha, alpha[row]);
-      blend.most_elasticity = std::max(blend.most_elasticity, (1.0f - alpha[row]) * s.store.stiffness[row]);
-    }
-    body.blend = blend;
-    material.most_alpha = std::max(material.most_alpha, blend.most_alpha);
-    material.most_elasticity = std::max(material.most_elasticity, blend.most_elasticity);
+    body.blend = blend_of(s, body);
+    material.most_alpha = std::max(material.most_alpha, body.blend.most_alpha);
+    material.most_elasticity = std::max(material.most_elasticity, body.blend.most_elasticity);
   }
 }
 
@@ -198,29 +229,34 @@ void check_elasticities(const Simulation::State& s) {
 
 namespace {
 
-void limit_regions(const ParticleStore& store, BodyState& body) {
+/// Writes value(row of its owner) for each region of a body, or nothing where the column is empty.
+template <class Value>
+void fill_regions(const Threads& threads, const BodyState& body, Column<float>& column, const Value& value) {
+  parallel_for(threads, column.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) column[j] = value(body.begin + body.shape.owner(j));
+  });
+}
+
+void limit_regions(const Threads& threads, const ParticleStore& store, BodyState& body) {
   Column<float>& yield = body.shape.plastic.yield;
   yield.resize(body.paints_yield ? body.shape.region_weight.size() : 0);
-  for (std::size_t j = 0; j < yield.size(); ++j)
-    yield[j] = store.plastic_yield[body.begin + body.shape.owner(j)];
+  fill_regions(threads, body, yield, [&](std::size_t row) { return store.plastic_yield[row]; });
 }
 
 }  // namespace
 
-void weigh_regions(const ParticleStore& store, BodyState& body) {
+void weigh_regions(const Threads& threads, const ParticleStore& store, BodyState& body) {
   ShapeMatching& shape = body.shape;
   shape.elasticity.resize(body.is_painted() ? shape.region_weight.size() : 0);
-  for (std::size_t j = 0; j < shape.elasticity.size(); ++j) {
-    const std::size_t row = body.begin + shape.owner(j);
-    shape.elasticity[j] = (1.0f - store.alpha[row]) * store.stiffness[row];
-  }
+  fill_regions(threads, body, shape.elasticity,
+               [&](std::size_t row) { return (1.0f - store.alpha[row]) * store.stiffness[row]; });
 }
 
 void weigh_regions(Simulation::State& s) {
   for (BodyState* body : s.awake) {
-    if (body->matches_shape() && body->shape.flows) limit_regions(s.store, *body);
+    if (body->matches_shape() && body->shape.flows) limit_regions(s.execution.threads, s.store, *body);
     if (body->matches_shape() && (body->is_painted() || !body->shape.elasticity.empty()))
-      weigh_regions(s.store, *body);
+      weigh_regions(s.execution.threads, s.store, *body);
   }
 }
 

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include "core/parallel.h"
 #include "shape_matching/reshape.h"
 #include "simulation/damage.h"
+#include "simulation/membership.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 
@@ -16,6 +18,10 @@ namespace {
 /// Steps between sorts of the rows of fluids. A sort takes a third of a step; a million particles whose rows
 /// are in no order take half as long again for every step.
 constexpr std::int64_t k_sort_interval = 60;
+
+/// Way of a particle in one step, in spacings, that iterations of the volume constraint may add before those
+/// that may touch are looked for again: several times what gravity adds, and few more pairs to try.
+constexpr float k_contact_slack = 0.05f;
 
 }  // namespace
 
@@ -55,7 +61,7 @@ void take_reference(Simulation::State& state, BodyState& body) {
 /// as stiff as its step gained energy at each update that met it swinging back.
 void kick_by_pull(Simulation::State& state, BodyState& body, float share) {
   MatchedBodies matched;
-  weigh_regions(state.store, body);
+  weigh_regions(state.execution.threads, state.store, body);
   matched.add(body.shape, body.begin);
   match_shapes(state.store.position, state.config.rotation_iterations, state.execution, matched);
   const float kick = share * static_cast<float>(state.last_time_step) * state.stiffness(body);
@@ -69,32 +75,39 @@ void kick_by_pull(Simulation::State& state, BodyState& body, float share) {
   });
 }
 
-namespace {
-
-bool flows(const BodyState& body) {
-  return body.shape.flows && body.matches_shape() && body.shape.built;
+void take_frame(Simulation::State& state, BodyState& body, CarriedRegions& carried) {
+  take_reference(state, body);
+  const std::span<const std::uint32_t> order = state.region_scratch.pillars.order.span();
+  sort_parts(order, state.parts_before);
+  sort_carried(order, carried);
+  build_carried(carried, state.execution, state.region_scratch, body.shape);
 }
+
+namespace {
 
 FlowRule flow_rule(const Material& material) {
   return {.yield = material.plastic_yield.value_or(0.0f),
           .creep = material.plastic_creep.value_or(std::numeric_limits<float>::infinity())};
 }
 
-bool frame_is_due(const Simulation::State& state, const BodyState& body) {
+bool frame_is_due(Simulation::State& state, const BodyState& body) {
   const Material& material = body.material->settings;
   return reframe_is_due(state.store.position, body.begin, {material.merge_flow, material.tear_strain},
-                        state.execution, body.shape);
+                        state.execution, body.shape, state.region_scratch.flow);
 }
 
-/// Where a body is becomes its reference shape, whose regions keep the elastic strain that they have.
-void reframe(Simulation::State& state, BodyState& body) {
-  CarriedRegions carried = reframe_regions(state.store.position, body.begin, state.config.rotation_iterations,
-                                           state.execution, body.shape);
-  take_reference(state, body);
-  const std::span<const std::uint32_t> order = state.region_scratch.pillars.order.span();
-  sort_parts(order, state.parts_before);
-  sort_carried(order, carried);
-  build_carried(carried, state.execution, state.region_scratch, body.shape);
+/// What the regions of a body take along into a new frame, where it gets one now: at a check where one is due
+/// and no blow strains it, or where it has flowed too far to wait.
+std::optional<CarriedRegions> new_frame(Simulation::State& state, BodyState& body, bool check) {
+  if (!body.flows()) return {};
+  const bool far = has_flowed_too_far(body.shape);
+  if (!far && !(check && frame_is_due(state, body))) return {};
+  check_damage(state);
+  ReframedShape found =
+      reframe_regions(state.store.position, body.begin, flow_rule(body.material->settings).yield,
+                      state.config.rotation_iterations, state.execution, body.shape);
+  if (!far && found.is_strained) return {};
+  return std::move(found.carried);
 }
 
 /// What became of the parts of a body, whose regions are built anew.
@@ -124,15 +137,16 @@ int update_references(Simulation::State& state) {
     const double threshold =
         static_cast<double>(body.material->update_threshold * (1.0f - body.most_alpha()));
     const bool yields = check && body.follows_threshold() && body.judged_external > threshold;
-    const bool reframes = check && !yields && flows(body) && frame_is_due(state, body);
+    std::optional<CarriedRegions> frame = yields ? std::nullopt : new_frame(state, body, check);
+    const bool reframes = frame.has_value();
     const bool had_regions = body.matches_shape() && body.shape.built, was_apart = body.apart;
     const auto due = [&] { return body.matches_shape() && !body.shape.built; };
     // A reference shape outlives the step: nothing that is not finite may get into it.
-    if (yields || reframes || due()) check_damage(state);
+    if (yields || due()) check_damage(state);
     if (yields || reframes) {
       if (had_regions) find_parts(body.shape, state.parts_before);
       if (reframes) {
-        reframe(state, body);
+        take_frame(state, body, *frame);
       } else if (!had_regions || !update_part(state, body)) {
         if (had_regions) kick_by_pull(state, body, 0.5f);
         take_reference(state, body);
@@ -413,7 +427,8 @@ void wake_pushed(Simulation::State& state, float time_step) {
 
 }  // namespace
 
-void touch_bodies(Simulation::State& state, float time_step, bool keeps_sums, VectorColumn& velocities) {
+void touch_bodies(Simulation::State& state, float time_step, const ContactCall& call,
+                  VectorColumn& velocities) {
   state.touching.clear();
   for (const BodyState& body : state.bodies)
     state.touching.push_back({.begin = body.begin,
@@ -426,16 +441,20 @@ void touch_bodies(Simulation::State& state, float time_step, bool keeps_sums, Ve
                               .sleeps = body.island != 0,
                               .shape = body.matches_shape() ? &body.shape : nullptr});
   const ParticleStore& store = state.store;
-  state.contact_pairs.keeps_sums = keeps_sums;
+  state.contact_pairs.keeps_sums = call.keeps_sums;
+  const float spacing = std::ranges::min(state.touching, {}, &TouchingBody::spacing).spacing;
   resolve_body_contacts(store.position, store.pin.empty() ? nullptr : store.pin.data(), state.touching,
                         {.time_step = time_step,
                          .reach = 2 * state.support_radius(),
-                         .max_push = state.support_radius() / (10.0f * state.base_step())},
+                         .max_push = state.support_radius() / (10.0f * state.base_step()),
+                         .again = call.again,
+                         .slack = state.keeps_volume() ? k_contact_slack * spacing / time_step : 0.0f},
                         state.execution, velocities, state.contact_pairs);
 }
 
 void resolve_touching(Simulation::State& state, float time_step) {
-  touch_bodies(state, time_step, state.reports_contacts(), state.store.next_velocity);
+  touch_bodies(state, time_step, {.again = state.keeps_volume(), .keeps_sums = state.reports_contacts()},
+               state.store.next_velocity);
   wake_pushed(state, time_step);
 }
 

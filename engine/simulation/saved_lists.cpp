@@ -253,15 +253,29 @@ void pass_events(Archive& archive, State& state) {
     archive(contact.key.other);
     archive(contact.apart);
   });
-  pass_list(archive, state.next_events, 9, [&](auto& event) {
+  // A step that failed leaves those of bodies that it joined.
+  pass_list(archive, state.next_events, 18, [&](auto& event) {
     auto kind = static_cast<std::uint8_t>(event.kind);
     auto body = static_cast<std::uint64_t>(event.body);
+    std::optional<std::uint64_t> other;
+    if (event.other) other = static_cast<std::uint64_t>(*event.other);
     archive(kind);
     archive(body);
+    archive(event.parts);
+    archive(other);
     if constexpr (!Archive::k_packs) {
-      if (kind > static_cast<std::uint8_t>(BodyEvent::Kind::woke)) archive.fail("calls leave no such event");
-      event = {static_cast<BodyEvent::Kind>(kind), BodyId{body}};
+      if (kind > static_cast<std::uint8_t>(BodyEvent::Kind::merged))
+        archive.fail("calls leave no such event");
+      event.kind = static_cast<BodyEvent::Kind>(kind);
+      event.body = BodyId{body};
+      if (other) event.other = BodyId{*other};
     }
+  });
+  pass_list(archive, state.ended, 16, [&](auto& ended) {
+    auto into = static_cast<std::uint64_t>(ended.part_of);
+    archive(ended.id);
+    archive(into);
+    if constexpr (!Archive::k_packs) ended.part_of = BodyId{into};
   });
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "colliders/pose.h"
 #include "config/validation.h"
@@ -83,9 +85,12 @@ float largest_norm(const VectorColumn& vectors) {
 
 namespace {
 
+/// Of bodies of one material and spacing the first speaks for all.
 void check_moduli(const Simulation::State& state, const SolverConfig& config, Checks& checks) {
+  std::set<std::pair<const MaterialState*, float>> checked;
   for (const BodyState& body : state.bodies)
-    check_modulus(config, body.material->settings, body.spacing, body.name, checks);
+    if (checked.emplace(body.material, body.spacing).second)
+      check_modulus(config, body.material->settings, body, checks);
 }
 
 /// Spacing and speeds -> scale, support_radius, time_step and its source.

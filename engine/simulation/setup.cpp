@@ -113,6 +113,9 @@ void refuse_id(const char* kind, std::uint64_t id, const Slots& slots) {
 const BodyState& Simulation::State::body(BodyId id) const {
   const auto number = static_cast<std::uint64_t>(id);
   if (const std::optional<std::size_t> index = body_slots.find(number)) return bodies[*index];
+  if (const auto gone = std::ranges::find(ended, number, &EndedBody::id); gone != ended.end())
+    throw ConfigError("body", "body " + std::to_string(number) + " was merged into body " +
+                                  std::to_string(static_cast<std::uint64_t>(gone->part_of)));
   refuse_id("body", number, body_slots);
 }
 

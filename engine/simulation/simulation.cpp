@@ -76,9 +76,12 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
 StepReport Simulation::step_towards(double end) {
   prepare();
   state_->require_ahead(end);
-  flow(*state_);
+  const int joined = join_bodies(*state_);  // κ -> bodies that are one   [model 2, section 5]
+  flow(*state_);                            // time -> rows of strands
   prepare();
-  return take_step(*state_, end);
+  StepReport report = take_step(*state_, end);
+  report.updated_references += joined;
+  return report;
 }
 
 StepReport Simulation::step() {

@@ -104,6 +104,8 @@ struct BodyState {
     return keeps_reference() && (!shape.flows || material->settings.update_threshold.has_value() || melts());
   }
   bool moves() const { return enabled && island == 0; }
+  /// Its regions have a plastic stretch, and may have flowed.
+  bool flows() const { return shape.flows && matches_shape() && shape.built; }
 };
 
 /// Particles that answer to nothing but this.
@@ -169,6 +171,26 @@ struct Islands {
   std::vector<bool> rests;
 };
 
+/// Bodies that are pressed into each other. Scratch of join_bodies().
+struct Pressed {
+  struct Part {
+    std::uint32_t body;      ///< its index
+    std::size_t begin, end;  ///< of rows: its particles that have flowed enough to become one with others
+    Aabb box;                ///< around them [m]
+  };
+  std::vector<std::uint32_t> bodies;  ///< that may become one with others, by their index
+  std::vector<Part> parts;
+  std::vector<std::uint32_t> rows;
+  std::vector<std::uint32_t> owner;  ///< per point of the search: the index of its body
+  DisjointSets sets;                 ///< of bodies by their index
+};
+
+/// A body that has become part of another.
+struct EndedBody {
+  std::uint64_t id;
+  BodyId part_of;  ///< of the one that is there, or was the last
+};
+
 /// All that a simulation is.
 struct Simulation::State {
   SolverConfig config;
@@ -195,6 +217,7 @@ struct Simulation::State {
   std::uint64_t emitter_count = 0, sink_count = 0;  ///< that there have been
   std::vector<BodyEvent> events;                    ///< of the last step, and of calls before it
   std::vector<BodyEvent> next_events;               ///< of calls since then
+  std::vector<EndedBody> ended;                     ///< as they became one with others
   Contacts contacts;
   ForceCallback force;
   Sph sph;
@@ -216,7 +239,8 @@ struct Simulation::State {
   // Scratch.
   RegionScratch region_scratch;
   Parts parts_before, parts_after;  ///< of a body whose reference shape is updated
-  MatchedBodies matched;            ///< those whose shape is matched in the step under way
+  Pressed pressed;
+  MatchedBodies matched;  ///< those whose shape is matched in the step under way
   FastestInput fastest;
   MovingBodies moving;
   Column<std::uint32_t> fluid_order;
@@ -226,6 +250,7 @@ struct Simulation::State {
   Islands islands;
   RangeBlocks led_blocks;
   VectorColumn led_position;  ///< see lead_positions(); empty without damping
+  std::vector<BlendRange> partial_blends;
   std::vector<TouchingBody> touching;
   ContactPairs contact_pairs;
 
@@ -377,8 +402,14 @@ ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& re
 void move_bodies(Simulation::State& state, float time_step, const MotionPhases& phases);
 /// densities, lists, predicted velocities -> those that keep volumes. [model 2, section 2]
 void correct_volume(Simulation::State& state, float time_step, StepReport& report);
-/// velocities, predicted -> what contact between bodies makes of them. keeps_sums: somebody asks what for.
-void touch_bodies(Simulation::State& state, float time_step, bool keeps_sums, VectorColumn& velocities);
+/// How contact between bodies is called for.
+struct ContactCall {
+  bool again = false;       ///< not for the first time in this step
+  bool keeps_sums = false;  ///< somebody asks what it gives
+};
+/// velocities, predicted -> what contact between bodies makes of them.
+void touch_bodies(Simulation::State& state, float time_step, const ContactCall& call,
+                  VectorColumn& velocities);
 /// positions, predicted velocities -> those of bodies that touch. [model 2, section 4 C]
 void resolve_touching(Simulation::State& state, float time_step);
 /// impulses of the step -> events of contacts that begin, hit and end.
@@ -386,6 +417,10 @@ void tell_contacts(Simulation::State& state, float time_step);
 /// next positions and velocities become the present ones; time, step and colliders move on.
 void finish_step(Simulation::State& state, const ChosenStep& step);
 
+/// κ of regions, at a check -> bodies that are pressed into each other, which are one from now on: the first
+/// of them in the order of rows. Returns how many reference shapes that took anew. [model 2, section 5]
+/// Throws StepError.
+int join_bodies(Simulation::State& state);
 /// time -> layers that leave their emitters, or are put behind them; particles that sinks take.
 void flow(Simulation::State& state);
 /// keyframes, speeds -> what emitters and the pins of what they hold do in a step that ends at `end` [s].
@@ -428,11 +463,14 @@ using PhaseHook = std::function<void(Phase)>;
 StepReport take_step(Simulation::State& state, double end, const PhaseHook& after_phase = {});
 
 /// One body's, for whoever matches its shape outside of a step.
-void weigh_regions(const ParticleStore& store, BodyState& body);
+void weigh_regions(const Threads& threads, const ParticleStore& store, BodyState& body);
 /// alpha of materials, what changed -> alpha of rows that follow them; what bodies and materials span.
 void blend_bodies(Simulation::State& state);
 /// Rows [begin, end) of a body, its last ones, get what points say of them.
 void paint_rows(Simulation::State& state, BodyState& body, std::size_t begin, const Body& points);
+/// A body is about to become one with another of its material: what either paints it paints, and particles of
+/// the other one have what they follow now.
+void paint_alike(Simulation::State& state, BodyState& body, BodyState& other);
 /// Throws ConfigError where points make a body too stiff.
 void check_elasticity(const Simulation::State& state, const BodyState& body, const Body& points);
 /// Throws ConfigError where a body is stiffer than its steps carry.

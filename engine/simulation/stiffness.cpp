@@ -8,6 +8,7 @@
 
 #include "mallow/defaults.h"
 #include "simulation/settings.h"
+#include "simulation/state.h"
 
 namespace mallow {
 namespace {
@@ -91,11 +92,18 @@ double modulus_time_step(const SolverConfig& config, const Material& material, f
                       k_default_pull);
 }
 
-void check_modulus(const SolverConfig& config, const Material& material, float spacing,
-                   const std::string& name, Checks& checks) {
+void check_modulus(const SolverConfig& config, const Material& material, const BodyState& body,
+                   Checks& checks) {
   if (!config.time_step || !is_elastic(material)) return;
-  const double most = most_modulus(config, material, spacing);
-  if (static_cast<double>(*material.youngs_modulus) > most * (1 + k_rounding)) {
+  const float spacing = body.spacing;
+  const std::string where = "body '" + body.name + "' of material '" + body.material->name + "'";
+  const auto is_too_stiff = [&](const Material& one) {
+    return static_cast<double>(*one.youngs_modulus) > most_modulus(config, one, spacing) * (1 + k_rounding);
+  };
+  Material undamped = material;
+  undamped.damping_time = 0;
+  if (is_too_stiff(undamped)) {
+    const double most = most_modulus(config, material, spacing);
     const double factor = static_cast<double>(config.time_step_factor);
     const double rate = pull_rate(config, material, spacing);
     const double step = std::min(
@@ -103,14 +111,15 @@ void check_modulus(const SolverConfig& config, const Material& material, float s
         step_of_pull(rate, 0, static_cast<double>(most_pull(material))));
     std::ostringstream text;
     text.precision(3);
-    text << *material.youngs_modulus << " is not allowed in body '" << name << "', whose spacing is "
-         << spacing << " m: at most " << most << " Pa in steps of "
-         << factor * static_cast<double>(*config.time_step)
+    text << *material.youngs_modulus << " is not allowed in " << where << ", whose spacing is " << spacing
+         << " m: at most " << most << " Pa in steps of " << factor * static_cast<double>(*config.time_step)
          << " s, as a stiffer body would gain energy; lower it, or solver.time_step to "
          << 0.99 * step / factor << " s";
     return checks.problem("material.youngs_modulus", text.str());
   }
-  check_damping(config, with_springs(config, material, spacing), {}, checks);
+  // What is too stiff by its damping alone is damped too much.
+  check_damping(config, with_springs(config, material, spacing), where, "a lower material.youngs_modulus",
+                checks);
 }
 
 }  // namespace mallow

@@ -14,6 +14,8 @@
 /// ρ m2   | stiffness_scale()        | kg/m
 namespace mallow {
 
+struct BodyState;
+
 /// ρ m2 of a body of this material: Y = ρ m2/(Δt0 Δt_SM). ρ is mass by h³, as that is what a body weighs, and
 /// not rest_density, which is what SPH takes a full lattice for. A region_stride changes nothing: there are
 /// fewer regions, each with as many points as before, and the pull is their mean.
@@ -36,9 +38,9 @@ double most_modulus(const SolverConfig& config, const Material& material, float 
 /// it is by default without Y: that leaves room for pressure, and for the longer steps of Quality::realtime.
 double modulus_time_step(const SolverConfig& config, const Material& material, float spacing);
 
-/// Whether steps are short enough for Y, and for its damping; nothing where Δt0 is not known yet. name: of
-/// the body, for the message.
-void check_modulus(const SolverConfig& config, const Material& material, float spacing,
-                   const std::string& name, Checks& checks);
+/// Whether steps are short enough for Y, and for its damping; nothing where Δt0 is not known yet. body: that
+/// the message names, with its material.
+void check_modulus(const SolverConfig& config, const Material& material, const BodyState& body,
+                   Checks& checks);
 
 }  // namespace mallow

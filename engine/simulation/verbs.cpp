@@ -96,9 +96,7 @@ void Simulation::set_material(MaterialId id, const Material& settings) {
   check(settings, checks);
   checks.finish();
   check_stiffness(s.config, settings, {}, checks);
-  for_bodies_of(s, material, [&](const BodyState& body) {
-    check_modulus(s.config, settings, body.spacing, body.name, checks);
-  });
+  for_bodies_of(s, material, [&](const BodyState& body) { check_modulus(s.config, settings, body, checks); });
   checks.finish();
   material.settings = settings;
   for_bodies_of(s, material, [&](BodyState& body) {
@@ -123,9 +121,7 @@ void Simulation::set_alpha(MaterialId id, const AlphaSchedule& alpha) {
   Material changed = material.settings;
   changed.alpha = alpha;
   check_stiffness(s.config, changed, {}, checks);
-  for_bodies_of(s, material, [&](const BodyState& body) {
-    check_modulus(s.config, changed, body.spacing, body.name, checks);
-  });
+  for_bodies_of(s, material, [&](const BodyState& body) { check_modulus(s.config, changed, body, checks); });
   checks.finish();
   material.settings.alpha = alpha;
   for_bodies_of(s, material, [&](BodyState& body) { follow_alpha(s, body); });

@@ -3,6 +3,7 @@
 #include <iterator>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "colliders/shapes.h"
 #include "core/bounds.h"
@@ -23,6 +24,8 @@ constexpr double k_short_steps = 0.5;
 constexpr double k_many_neighbors = 4000;
 /// Support radius in spacings beyond which what flows no longer keeps its volume.
 constexpr float k_wide_radius = 3.6f;
+/// The same beyond which it is more than is usual.
+constexpr float k_usual_radius = 3.05f;
 /// Strain by the own weight from which on a body is hardly meant to stand.
 constexpr float k_own_weight = 0.5f;
 /// Damping times as long as so many steps that follow from them.
@@ -34,6 +37,16 @@ constexpr float k_least_share = 0.3f;
 /// So many particles of other bodies within a spacing are inside of these: a lattice has four there on the
 /// mean, and one that touches has one.
 constexpr std::ptrdiff_t k_inside = 3;
+/// Of the particles of a region, the stride that leaves fewest regions.
+constexpr double k_best_stride = 0.2;
+/// Mean compression that nobody means to leave.
+constexpr float k_loose_tolerance = 0.05f;
+
+std::string number_text(float value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
 
 /// Nobody means a share of the spacing that is as small as this.
 constexpr float k_rounding_depth = 0.01f;
@@ -51,11 +64,10 @@ class Warnings {
       look_at_weight(body);
       look_at_damping(body);
       look_at_neighbors(body);
+      look_at_stride(body);
       look_at_volume(body);
     }
-    if (state_.config.volume_tolerance > 0 && state_.volume_iterations() == 0)
-      list_.push_back(
-          "solver.volume_tolerance ends volume iterations, of which there are none: give volume_iterations");
+    look_at_tolerance();
     if (state_.step == 0 && state_.bodies.size() > 1) look_at_overlaps();
     if (state_.step == 0)
       for (const BodyState& body : state_.bodies) look_at_colliders(body);
@@ -140,10 +152,39 @@ class Warnings {
     else if (body.material->settings.viscosity)
       add(body, "viscosity ", body.viscosity, " is too low to calm the pressure that keeps the volume, and",
           shortens(limits.by_pressure), "leave it out, raise it, or give a lower pressure_coefficient");
-    else
-      add(body, "support_radius ", state_.support_radius(), ", ", state_.support_radius() / body.spacing,
-          " spacings,", shortens(limits.by_pressure),
-          "2 to 3 spacings are usual, or give a lower pressure_coefficient");
+    else {
+      const auto [why, what_to_do] = why_pressure_shortens(body);
+      add(body, why, shortens(limits.by_pressure), what_to_do);
+    }
+  }
+
+  bool is_damped_long(const BodyState& body) const {
+    return state_.time_step_source == TimeStepSource::modulus &&
+           body.material->settings.damping_time > k_long_damping * state_.base_step();
+  }
+
+  /// Where pressure and viscosity are left out: what makes steps so short, or neighbours so many, that
+  /// viscosity does not calm the pressure that follows. First what it is, then what to do.
+  std::pair<std::string, std::string> why_pressure_shortens(const BodyState& body) const {
+    const std::string pressure = "pressure as stiff as they carry",
+                      lower = "give a lower pressure_coefficient";
+    const float radius = state_.support_radius() / body.spacing;
+    const std::optional<float> usual = default_time_step(state_.scale);
+    const bool is_usual = radius >= k_least_radius && radius <= k_usual_radius;
+    if (!is_usual || !usual || state_.base_step() >= *usual)
+      return {"support_radius " + number_text(state_.support_radius()) + ", " + number_text(radius) +
+                  " spacings,",
+              "2 to 3 spacings are usual, or " + lower};
+    if (state_.time_step_source == TimeStepSource::given)
+      return {"solver.time_step " + number_text(state_.base_step()) + " s is shorter than the " +
+                  number_text(*usual) + " s that suit spacing and gravity: such steps are so short that " +
+                  pressure,
+              "leave it out, or " + lower + ", or a higher viscosity"};
+    if (is_damped_long(body))
+      return {"damping_time " + number_text(body.material->settings.damping_time) +
+                  " s asks for steps so short that " + pressure,
+              "lower it"};
+    return {"youngs_modulus asks for steps so short that " + pressure, lower + ", or a higher viscosity"};
   }
 
   /// What is as stiff as a step can carry leaves no room for another spring.
@@ -173,10 +214,22 @@ class Warnings {
         "left out");
   }
 
+  void look_at_tolerance() {
+    const float tolerance = state_.config.volume_tolerance;
+    if (tolerance > 0 && state_.volume_iterations() == 0)
+      list_.push_back(
+          "solver.volume_tolerance ends volume iterations, of which there are none: give volume_iterations");
+    else if (tolerance > k_loose_tolerance)
+      list_.push_back("solver.volume_tolerance " + number_text(tolerance) +
+                      " ends volume iterations where matter is compressed by " +
+                      number_text(100 * tolerance) +
+                      "% in the mean, as it hardly ever is: none are taken; 0.001 to 0.05 are usual, and 0 "
+                      "takes all");
+  }
+
   void look_at_damping(const BodyState& body) {
     const float time = body.material->settings.damping_time;
-    if (state_.time_step_source != TimeStepSource::modulus || !(time > k_long_damping * state_.base_step()))
-      return;
+    if (!is_damped_long(body)) return;
     add(body, "damping_time ", time, " s shortens every step to ", state_.base_step(),
         " s, as a step carries no stronger damper; lower it");
   }
@@ -200,6 +253,18 @@ class Warnings {
             "alike spacings");
     }
     if (body.keeps_reference()) look("the radius of its regions,", body.shape.region_radius, body.size());
+  }
+
+  /// Particles that are in no region own one, so that there are more again beyond a stride of about a fifth
+  /// of the particles of a region: of a cube of 20³ 4000 at a stride of 2, 1111 at 8, 3182 at 32.
+  void look_at_stride(const BodyState& body) {
+    const int stride = body.material->settings.region_stride;
+    const double each = full_neighbors(body.shape.region_radius, body.spacing);
+    if (!body.shape.built || !(stride > std::max(1.0, each))) return;
+    add(body, "region_stride ", stride, " is more than the ", std::round(each),
+        " particles of a region: those that would be in none own one too, so that there are ",
+        body.shape.region_weight.size(), " for ", body.size(), " particles; about ",
+        std::max(1.0, std::round(k_best_stride * each)), " leaves fewest");
   }
 
   /// Particles that start within another body, which drives them out.

@@ -9,11 +9,7 @@ namespace {
 
 SphInput input(const Sph& sph) {
   return {
-      .cluster_start = sph.grid.cluster_start.data(),
-      .list_begin = sph.lists.begin.data(),
-      .list_count = sph.lists.count.data(),
-      .indices = sph.lists.indices.data(),
-      .row_of = sph.grid.order.data(),
+      .lists = view(sph.grid, sph.lists),
       .group = sph.group.empty() ? nullptr : sph.group.data(),
       .groups = sph.groups.data(),
       .apart = sph.apart,

@@ -17,9 +17,9 @@ MALLOW_INLINE Floats not_negative(const Floats& value) {
 
 /// Of each particle of a cluster; lanes without one have that of the first.
 Ints groups_of(const SphInput& in, std::size_t cluster) {
-  const std::size_t first = in.cluster_start[cluster];
+  const std::size_t first = in.lists.first[cluster];
   Ints own = Ints{} + static_cast<int>(in.group[first]);
-  for (std::size_t i = first; i < in.cluster_start[cluster + 1]; ++i)
+  for (std::size_t i = first; i < in.lists.first[cluster + 1]; ++i)
     own[i - first] = static_cast<int>(in.group[i]);
   return own;
 }
@@ -28,9 +28,9 @@ Ints groups_of(const SphInput& in, std::size_t cluster) {
 /// of the cluster, which may be the list itself; their number is written to `count`.
 template <bool grouped, bool apart, bool listed>
 Floats sum_density(const SphInput& in, std::size_t cluster, std::uint32_t* near, std::uint32_t& count) {
-  const std::uint32_t* const list = in.indices + in.list_begin[cluster];
-  const std::uint32_t n = in.list_count[cluster];
-  const ClusterVec3 x = load(in.position, in.cluster_start[cluster]);
+  const std::uint32_t* const list = in.lists.indices + in.lists.begin[cluster];
+  const std::uint32_t n = in.lists.count[cluster];
+  const ClusterVec3 x = load(in.position, in.lists.first[cluster]);
   const float inverse_square = in.inverse_radius * in.inverse_radius;
   Floats sum = {};
   std::uint32_t found = 0;
@@ -62,18 +62,18 @@ void density(const SphInput& in, std::size_t begin, std::size_t end, const NearL
                                         : sum_density<true, false, false>);
   for (std::size_t cluster = begin; cluster < end; ++cluster) {
     std::uint32_t unused = 0;
-    const Floats sums = sum(in, cluster, listed ? near.indices + in.list_begin[cluster] : nullptr,
+    const Floats sums = sum(in, cluster, listed ? near.indices + in.lists.begin[cluster] : nullptr,
                             listed ? near.count[cluster] : unused);
-    const std::size_t first = in.cluster_start[cluster];
-    for (std::size_t i = first; i < in.cluster_start[cluster + 1]; ++i) {
+    const std::size_t first = in.lists.first[cluster];
+    for (std::size_t i = first; i < in.lists.first[cluster + 1]; ++i) {
       const SphGroup& own = in.groups[grouped ? in.group[i] : 0];
       const float density = grouped ? sums[i - first] : sums[i - first] * own.rest_volume;
       rho[i] = own.rest_density * (in.density_factor * density);
-      if (in.wall_share) rho[i] += own.rest_density * in.wall_share[in.row_of[i]];
+      if (in.wall_share) rho[i] += own.rest_density * in.wall_share[in.lists.row_of[i]];
       const float p = own.pressure_coefficient * (rho[i] - own.rest_density);
       pressure[i] = p < 0 ? p * own.cohesion : p;
       volume[i] = own.mass / rho[i];
-      rho_by_row[in.row_of[i]] = rho[i];
+      rho_by_row[in.lists.row_of[i]] = rho[i];
     }
   }
 }
@@ -152,9 +152,9 @@ struct Printed {
 template <class Formula, bool viscous, bool grouped, bool blended>
 void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, const float* volumes,
                ClusterVec3& same, ClusterVec3& cross) {
-  const std::size_t first = in.cluster_start[cluster];
-  const std::uint32_t* const list = in.indices + in.list_begin[cluster];
-  const std::uint32_t n = in.list_count[cluster];
+  const std::size_t first = in.lists.first[cluster];
+  const std::uint32_t* const list = in.lists.indices + in.lists.begin[cluster];
+  const std::uint32_t n = in.lists.count[cluster];
   if (n == 0) return;  // not even themselves: their positions are no numbers
   const ClusterVec3 x = load(in.position, first);
   const Floats own_pressure = load(pressures + first);
@@ -165,7 +165,7 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
   Floats touching_pressure = {}, half_alpha = {};
   if (blended) half_alpha = 0.5f * load(in.alpha + first);
   if (grouped) {
-    for (std::size_t i = first; i < in.cluster_start[cluster + 1]; ++i) {
+    for (std::size_t i = first; i < in.lists.first[cluster + 1]; ++i) {
       const SphGroup& group = in.groups[in.group[i]];
       own[i - first] = static_cast<int>(in.group[i]);
       own_viscosity[i - first] = group.viscosity;
@@ -216,9 +216,9 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
 void write_by_row(const SphInput& in, std::size_t cluster, const Floats& scale, const ClusterVec3& sum,
                   const Vectors& to) {
   const ClusterVec3 a = scale * sum;
-  const std::size_t first = in.cluster_start[cluster];
-  for (std::size_t i = first; i < in.cluster_start[cluster + 1]; ++i) {
-    const std::uint32_t row = in.row_of[i];
+  const std::size_t first = in.lists.first[cluster];
+  for (std::size_t i = first; i < in.lists.first[cluster + 1]; ++i) {
+    const std::uint32_t row = in.lists.row_of[i];
     to.x[row] = a.x[i - first];
     to.y[row] = a.y[i - first];
     to.z[row] = a.z[i - first];
@@ -231,7 +231,7 @@ void sum_clusters(const SphInput& in, std::size_t begin, std::size_t end, const 
   for (std::size_t cluster = begin; cluster < end; ++cluster) {
     ClusterVec3 own = {}, other = {};
     sum_pairs<Formula, viscous, grouped, blended>(in, cluster, pressure, volume, own, other);
-    const Floats density = load(rho + in.cluster_start[cluster]);
+    const Floats density = load(rho + in.lists.first[cluster]);
     // Plus 0, or what is not a number where the density is infinite and the quotient would hide it.
     const Floats scale = Formula::factor(in) / density + (density - density);
     write_by_row(in, cluster, scale, own, same);

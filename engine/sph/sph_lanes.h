@@ -2,6 +2,7 @@
 
 #include "core/isa.h"
 #include "core/raw_columns.h"
+#include "neighbors/cluster_lists.h"
 
 namespace mallow {
 
@@ -28,12 +29,8 @@ struct SphGroup {
 /// V_j    | volume, m_j/ρ_j | m³    |
 /// α_i    | alpha         | 1       | where particles of a body differ in it; model 2, section 7
 struct SphInput {
-  const std::uint32_t* cluster_start;  ///< first particle of each cluster
-  const std::uint32_t* list_begin;     ///< per cluster
-  const std::uint32_t* list_count;
-  const std::uint32_t* indices;
-  const std::uint32_t* row_of;  ///< sorted place -> row of the particle store
-  const std::uint32_t* group;   ///< null: all in group 0
+  ClusterLists lists;
+  const std::uint32_t* group;  ///< null: all in group 0
   const SphGroup* groups;
   bool apart;               ///< pairs of two groups add nothing: contact between bodies is not by pressure
   const float* wall_share;  ///< of the volume around a particle, by row; null: no wall is near any

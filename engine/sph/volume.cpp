@@ -17,11 +17,7 @@ constexpr double k_least_response = 0.5;
 VolumeInput input(const Sph& sph, const Volume& volume, float time_step) {
   const bool walls = volume.wall_gradient.size() > 0;
   return {
-      .cluster_start = sph.grid.cluster_start.data(),
-      .list_begin = sph.lists.begin.data(),
-      .list_count = sph.lists.count.data(),
-      .indices = sph.lists.indices.data(),
-      .row_of = sph.grid.order.data(),
+      .lists = view(sph.grid, sph.lists),
       .group = sph.group.empty() ? nullptr : sph.group.data(),
       .groups = volume.groups.data(),
       .apart = sph.apart,
@@ -119,8 +115,10 @@ void begin_volume(const VolumeStep& step, const Sph& sph, const Execution& execu
   volume.response.resize(n);
   volume.multiplier.resize(n);
   volume.mobile.resize(step.pin ? n : 0);
-  for (std::size_t i = 0; i < volume.mobile.size(); ++i)
-    volume.mobile[i] = step.pin[sph.grid.order[i]] != 0 ? 0.0f : 1.0f;
+  parallel_for(execution.threads, volume.mobile.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      volume.mobile[i] = step.pin[sph.grid.order[i]] != 0 ? 0.0f : 1.0f;
+  });
   begin_walls(sph, execution, volume);
   volume.wall_loads.assign(sph.walls.any ? sph.walls.partial_loads.size() : 0, {});
 }

@@ -30,10 +30,10 @@ struct ClusterPairs {
 
   ClusterPairs(const VolumeInput& input, std::size_t cluster)
       : in(input),
-        first(in.cluster_start[cluster]),
-        count(in.cluster_start[cluster + 1] - first),
-        list(in.indices + in.list_begin[cluster]),
-        list_count(in.list_count[cluster]),
+        first(in.lists.first[cluster]),
+        count(in.lists.first[cluster + 1] - first),
+        list(in.lists.indices + in.lists.begin[cluster]),
+        list_count(in.lists.count[cluster]),
         x(load(in.position, first)) {
     if (!Kind::grouped) return;
     own = Ints{} + static_cast<int>(in.group[first]);  // lanes without a particle too
@@ -113,7 +113,7 @@ void find_multipliers(const VolumeInput& in, std::size_t cluster, float* respons
   const ClusterPairs<Kind> pairs(in, cluster);
   const Sums sums = sum_rates<Kind, responds>(in, pairs);
   for (std::size_t l = 0; l < pairs.count; ++l) {
-    const std::size_t i = pairs.first + l, row = in.row_of[i];
+    const std::size_t i = pairs.first + l, row = in.lists.row_of[i];
     const VolumeGroup& own = pairs.group(i);
     if (responds) response[i] = response_of<Kind>(in, own, sums, l, row);
     float rate = Kind::grouped ? sums.rate[l] : own.slope * sums.rate[l];
@@ -123,7 +123,6 @@ void find_multipliers(const VolumeInput& in, std::size_t cluster, float* respons
     multiplier[i] = own.relaxation * s / (in.time_step * response[i]);
     total.sum += static_cast<double>(s);
     total.largest = s > total.largest ? s : total.largest;
-    total.particles += s > 0;
   }
 }
 
@@ -162,7 +161,7 @@ void push_cluster(const VolumeInput& in, std::size_t cluster, const float* multi
       sum += (t2 * (own + multiplier[j])) * d;
   });
   for (std::size_t l = 0; l < pairs.count; ++l) {
-    const std::size_t i = pairs.first + l, row = in.row_of[i];
+    const std::size_t i = pairs.first + l, row = in.lists.row_of[i];
     const VolumeGroup& group = pairs.group(i);
     const float scale = -(Kind::grouped ? 1.0f : group.slope) * group.inverse_mass * pairs.mobility(i);
     const float change[3] = {scale * sum.x[l], scale * sum.y[l], scale * sum.z[l]};

@@ -2,6 +2,7 @@
 
 #include "core/isa.h"
 #include "core/raw_columns.h"
+#include "neighbors/cluster_lists.h"
 
 namespace mallow {
 
@@ -25,12 +26,8 @@ struct VolumeGroup {
 /// λ_i    | multiplier    | m² kg/s    |
 /// S, ∇S, dS/dt | wall_share, wall_gradient, wall_rate | 1, 1/m, 1/s | what walls hold of its kernel, by row
 struct VolumeInput {
-  const std::uint32_t* cluster_start;  ///< first particle of each cluster
-  const std::uint32_t* list_begin;     ///< per cluster
-  const std::uint32_t* list_count;
-  const std::uint32_t* indices;
-  const std::uint32_t* row_of;  ///< sorted place -> row of the particle store
-  const std::uint32_t* group;   ///< null: all in group 0
+  ClusterLists lists;
+  const std::uint32_t* group;  ///< null: all in group 0
   const VolumeGroup* groups;
   bool apart;           ///< pairs of two groups add nothing
   const float* mobile;  ///< 0 where it is pinned, else 1; null: none is pinned
@@ -46,9 +43,8 @@ struct VolumeInput {
 
 /// Of some particles.
 struct CompressionSum {
-  double sum;               ///< Σ s_i
-  float largest;            ///< max s_i
-  std::uint32_t particles;  ///< those that are compressed
+  double sum;     ///< Σ s_i
+  float largest;  ///< max s_i
 };
 
 /// [begin, end): clusters. With ψ of particle j's own group and ∇W of poly6 [Bender & Koschier 2015; model 2,

@@ -1,22 +1,36 @@
 #include "surface/cut_cells.h"
 
-#include <bit>
+#include <algorithm>
 
 #include "core/parallel.h"
 
 namespace mallow {
 namespace {
 
-/// By the nine voxels of a row, a bit each: voxels z and z + 1 in byte z.
-constexpr std::array<std::uint64_t, 512> k_pairs = [] {
-  std::array<std::uint64_t, 512> pairs{};
-  for (std::size_t row = 0; row < pairs.size(); ++row) {
-    std::array<std::uint8_t, k_block_side> bytes{};
-    for (std::size_t z = 0; z < bytes.size(); ++z) bytes[z] = static_cast<std::uint8_t>(row >> z & 3);
-    pairs[row] = std::bit_cast<std::uint64_t>(bytes);
-  }
-  return pairs;
-}();
+constexpr BlockBits all_bits(std::uint64_t word) {
+  BlockBits bits{};
+  for (std::uint64_t& slice : bits.at) slice = word;
+  return bits;
+}
+constexpr BlockBits k_outside = all_bits(0), k_inside = all_bits(UINT64_MAX);
+
+/// Neighbour slots of a block and those below it, at an offset of (dx, dy, dz) − 1, and of those above it, at
+/// one of (dx, dy, dz), both by 4 dx + 2 dy + dz.
+constexpr std::array<std::size_t, 8> k_slots_below = {0, 1, 3, 4, 9, 10, 12, 13},
+                                     k_slots_above = {13, 14, 16, 17, 22, 23, 25, 26};
+
+const CellLanes& best_cell_lanes() {
+  static const InstructionLevel level = best_instruction_level();
+  return MALLOW_SELECT(level, cell_lanes);
+}
+
+/// The corners of a cell that are inside, a bit each.
+unsigned corners_of(const CornerBits& corners, int x, int y, int z) {
+  unsigned inside = 0;
+  for (int c = 0; c < 8; ++c)
+    inside |= static_cast<unsigned>(corners.at[c & 3][x + (c >> 2)] >> (y * k_block_side + z) & 1) << c;
+  return inside;
+}
 
 }  // namespace
 
@@ -26,14 +40,12 @@ void CutCells::choose_blocks(const SurfaceField& field) {
   blocks_.clear();
   place_.assign(n, k_no_block);
   for (std::uint32_t b = 0; b < n; ++b) {
-    bool cut = false;
-    for (int x = 0; x <= 1; ++x)
-      for (int y = 0; y <= 1; ++y)
-        for (int z = 0; z <= 1; ++z) {
-          const std::uint32_t above = field.neighbors(b)[neighbor_slot(x, y, z)];
-          cut = cut || (above != k_no_block && field.kind(above) == BlockKind::surface);
-        }
-    if (!cut) continue;
+    if (field.kind(b) != BlockKind::surface) continue;
+    for (const std::size_t slot : k_slots_below)
+      if (const std::uint32_t other = field.neighbors(b)[slot]; other != k_no_block) place_[other] = 0;
+  }
+  for (std::uint32_t b = 0; b < n; ++b) {
+    if (place_[b] == k_no_block) continue;
     place_[b] = static_cast<std::uint32_t>(blocks_.size());
     blocks_.push_back(b);
   }
@@ -41,86 +53,82 @@ void CutCells::choose_blocks(const SurfaceField& field) {
 
 void CutCells::find_signs(const SurfaceField& field, std::size_t at) {
   const std::uint32_t block = blocks_[at];
-  for (std::size_t k = 0; k < neighbors_[at].size(); ++k) {
-    const std::uint32_t other = field.neighbors(block)[k];
-    neighbors_[at][k] = other == k_no_block ? k_no_block : place_[other];
-  }
-  if (field.kind(block) != BlockKind::surface) {
-    signs_[at].fill(field.kind(block) == BlockKind::inside ? 255 : 0);
-    return;
-  }
-  const float* const distances = field.distances(block);
-  for (std::size_t row = 0; row < signs_[at].size(); ++row) {
-    unsigned bits = 0;
-    for (std::size_t z = 0; z < k_block_side; ++z)
-      bits |= (distances[row * k_block_side + z] < 0 ? 1u : 0u) << z;
-    signs_[at][row] = static_cast<std::uint8_t>(bits);
-  }
+  if (field.kind(block) == BlockKind::surface)
+    best_cell_lanes().find_signs(field.distances(block), inside_[at]);
+  else
+    inside_[at] = field.kind(block) == BlockKind::inside ? k_inside : k_outside;
 }
 
-/// Which corners of a block's cells are inside.
-void CutCells::find_corners(const SurfaceField& field, std::size_t at) {
-  constexpr unsigned k_all = (1u << (k_block_side + 1)) - 1;
-  // Nine voxels of nine by nine rows, a bit each.
-  unsigned rows[k_block_side + 1][k_block_side + 1];
-  for (int x = 0; x <= k_block_side; ++x) {
-    for (int y = 0; y <= k_block_side; ++y) {
-      const int row = x % k_block_side * k_block_side + y % k_block_side;
-      const auto bits = [&](int bz) -> unsigned {
-        const std::size_t slot = neighbor_slot(x / k_block_side, y / k_block_side, bz);
-        if (const std::uint32_t other = neighbors_[at][slot]; other != k_no_block)
-          return signs_[other][static_cast<std::size_t>(row)];
-        const std::uint32_t block = field.neighbors(blocks_[at])[slot];
-        return block != k_no_block && field.kind(block) == BlockKind::inside ? 255 : 0;
-      };
-      rows[x][y] = bits(0) | (bits(1) & 1) << k_block_side;
-    }
-  }
-  for (int x = 0; x < k_block_side; ++x) {
-    for (int y = 0; y < k_block_side; ++y) {
-      std::uint8_t* const to = cells_[at].inside.data() + cell_at(x, y, 0);
-      const unsigned a = rows[x][y], b = rows[x][y + 1], c = rows[x + 1][y], d = rows[x + 1][y + 1];
-      if (a == b && a == c && a == d && (a == 0 || a == k_all)) {
-        std::memset(to, a == 0 ? 0 : 255, k_block_side);
-        continue;
-      }
-      // Corners 0 and 1 are voxels z and z + 1 of row (x, y), and so on.
-      const std::uint64_t corners = k_pairs[a] | k_pairs[b] << 2 | k_pairs[c] << 4 | k_pairs[d] << 6;
-      std::memcpy(to, &corners, sizeof corners);
-    }
-  }
+/// Of the voxels of any block of the field, or of none.
+const BlockBits& CutCells::signs(const SurfaceField& field, std::uint32_t block) const {
+  if (block == k_no_block) return k_outside;
+  if (const std::uint32_t at = place_[block]; at != k_no_block) return inside_[at];
+  return field.kind(block) == BlockKind::inside ? k_inside : k_outside;
 }
 
-/// Decides which patches of ambiguous cells are joined, and counts vertices and quads.
-void CutCells::count(std::size_t at) {
+void CutCells::find_bits(const SurfaceField& field, std::size_t at, CornerBits& corners,
+                         CellBits& bits) const {
+  const BlockBits* inside[8];
+  for (std::size_t k = 0; k < 8; ++k)
+    inside[k] = &signs(field, field.neighbors(blocks_[at])[k_slots_above[k]]);
+  best_cell_lanes().find_cells(inside, corners, bits);
+}
+
+/// Corners inside of the cell beside one at a face.
+unsigned CutCells::corners_beside(const SurfaceField& field, std::size_t at, const CornerBits& corners, int x,
+                                  int y, int z, int face) const {
+  const int axis = face / 2, step = face % 2 ? 1 : -1;
+  Eigen::Vector3i cell(x, y, z), block(0, 0, 0);
+  cell[axis] += step;
+  if (cell[axis] >= 0 && cell[axis] < k_block_side) return corners_of(corners, cell.x(), cell.y(), cell.z());
+  block[axis] = step;
+  cell[axis] &= k_block_side - 1;
+  CornerBits there;
+  CellBits unused;
+  const std::uint32_t other = field.neighbors(blocks_[at])[neighbor_slot(block.x(), block.y(), block.z())];
+  find_bits(field, place_[other], there, unused);
+  return corners_of(there, cell.x(), cell.y(), cell.z());
+}
+
+/// Decides which patches of ambiguous cells are joined, lists the cells that have more than one, and counts
+/// the vertices of these.
+void CutCells::find_patched(const SurfaceField& field, std::size_t at, const CornerBits& corners) {
   BlockCells& cells = cells_[at];
-  cells.vertices = cells.quads = 0;
-  for_each_cut(at, [&](std::size_t cell, int x, int y, int z) {
-    const unsigned inside = cells.inside[cell];
-    unsigned patches = inside;
-    if (const int face = k_cell_patches[inside].twice; face >= 0) {
-      const int axis = face / 2, step = face % 2 ? 1 : -1;
-      Eigen::Vector3i other(x, y, z), block(0, 0, 0);
-      other[axis] += step;
-      if (other[axis] < 0 || other[axis] == k_block_side) block[axis] = step;
-      other[axis] = (other[axis] + k_block_side) % k_block_side;
-      const auto there = cell_at(other.x(), other.y(), other.z());
-      if (k_cell_patches[cells_[neighbors_[at][neighbor_slot(block.x(), block.y(), block.z())]].inside[there]]
-              .twice == (face ^ 1))
-        patches += 256;
+  for (int x = 0; x < k_block_side; ++x) {
+    for (std::uint64_t left = cells.bits.unclear.at[x]; left != 0; left &= left - 1) {
+      const int bit = std::countr_zero(left), y = bit / k_block_side, z = bit % k_block_side;
+      unsigned patches = corners_of(corners, x, y, z);
+      if (const int face = k_cell_patches[patches].twice; face >= 0) {
+        const unsigned other = corners_beside(field, at, corners, x, y, z, face);
+        if (k_cell_patches[other].twice == (face ^ 1)) patches += 256;
+      }
+      const int count = k_cell_patches[patches].count;
+      if (count == 1) continue;
+      cells.patched.push_back(
+          {static_cast<std::uint16_t>(cell_at(x, y, z)), static_cast<std::uint16_t>(patches)});
+      cells.vertices += static_cast<std::uint32_t>(count - 1);
     }
-    cells.patches[cell] = static_cast<std::uint16_t>(patches);
-    cells.vertex[cell] = static_cast<std::uint16_t>(cells.vertices);
-    cells.vertices += static_cast<std::uint32_t>(k_cell_patches[patches].count);
-    for (int axis = 0; axis < 3; ++axis) cells.quads += cuts_edge(inside, axis);
-  });
+  }
+}
+
+void CutCells::find_cells(const SurfaceField& field, std::size_t at) {
+  CornerBits corners;
+  BlockCells& cells = cells_[at];
+  find_bits(field, at, corners, cells.bits);
+  cells.patched.clear();
+  cells.vertices = cells.bits.cells;
+  if (cells.vertices == 0) return;
+  for (std::size_t k = 0; k < 8; ++k) {
+    const std::uint32_t other = field.neighbors(blocks_[at])[k_slots_below[k]];
+    cells.around[k] = other == k_no_block ? k_no_block : place_[other];
+  }
+  find_patched(field, at, corners);
 }
 
 void CutCells::find(const SurfaceField& field, const Threads& threads) {
   choose_blocks(field);
+  inside_.resize(blocks_.size());
   cells_.resize(blocks_.size());
-  signs_.resize(blocks_.size());
-  neighbors_.resize(blocks_.size());
   const auto each = [&](const auto& work) {
     parallel_for(
         threads, blocks_.size(),
@@ -130,21 +138,89 @@ void CutCells::find(const SurfaceField& field, const Threads& threads) {
         k_blocks_at_once);
   };
   each([&](std::size_t at) { find_signs(field, at); });
-  each([&](std::size_t at) { find_corners(field, at); });
-  each([&](std::size_t at) { count(at); });
+  each([&](std::size_t at) { find_cells(field, at); });
   vertices_ = quads_ = 0;
+  std::size_t numbered = 0;
   for (BlockCells& cells : cells_) {
     cells.first_vertex = vertices_;
     cells.first_quad = quads_;
     vertices_ += cells.vertices;
-    quads_ += cells.quads;
+    quads_ += cells.bits.quads;
+    numbered += cells.vertices > 0 ? 1 : 0;
   }
+  numbers_.resize(numbered);
+  auto numbers = numbers_.begin();
+  for (BlockCells& cells : cells_) cells.vertex = cells.vertices > 0 ? (numbers++)->data() : nullptr;
+}
+
+void CutCells::find_corners(const SurfaceField& field, std::size_t at,
+                            std::array<std::uint8_t, k_block_voxels>& inside) const {
+  CornerBits corners;
+  CellBits unused;
+  find_bits(field, at, corners, unused);
+  for (int x = 0; x < k_block_side; ++x)
+    for (int y = 0; y < k_block_side; ++y)
+      for (int z = 0; z < k_block_side; ++z)
+        inside[cell_at(x, y, z)] = static_cast<std::uint8_t>(corners_of(corners, x, y, z));
+}
+
+void CutCells::list_vertices(std::size_t at, CellList& list) {
+  BlockCells& cells = cells_[at];
+  std::size_t n = best_cell_lanes().list_cells(cells.bits.cut, list.cells.data(), cells.vertex);
+  list.vertices = {cells.vertices, list.cells.data(), nullptr};
+  if (!cells.patched.empty()) {
+    // From the last cell on, as cells move up to make room for those that are there several times.
+    std::size_t to = cells.vertices;
+    auto next = cells.patched.rbegin();
+    while (n > 0) {
+      const std::uint16_t cell = list.cells[--n];
+      const bool patched = next != cells.patched.rend() && next->cell == cell;
+      const CellPatches& patches = k_cell_patches[patched ? next->patches : 0];
+      for (int p = patched ? patches.count - 1 : 0; p >= 0; --p) {
+        list.cells[--to] = cell;
+        list.edges[to] = patched ? patches.edges[static_cast<std::size_t>(p)] : k_all_edges;
+      }
+      cells.vertex[cell] = static_cast<std::uint16_t>(to);
+      if (patched) ++next;
+    }
+    list.vertices.edges = list.edges.data();
+    std::fill_n(list.edges.begin() + cells.vertices, k_list_room, k_all_edges);
+  }
+  std::fill_n(list.cells.begin() + cells.vertices, k_list_room, list.cells[0]);
+}
+
+QuadBlock CutCells::quad_block(std::size_t at) const {
+  const BlockCells& cells = cells_[at];
+  QuadBlock block{};
+  for (std::size_t k = 0; k < 8; ++k) {
+    if (cells.around[k] == k_no_block) continue;
+    const BlockCells& of = cells_[cells.around[k]];
+    block.around[k] = {of.vertex, of.first_vertex, of.patched.data(), of.patched.size()};
+  }
+  block.inside = &inside_[at];
+  block.range = cells.bits.range;
+  block.edges = cells.bits.edges;
+  block.patch_of_edge = k_patch_of_edge.at[0];
+  return block;
+}
+
+/// The vertex of the patch that an edge of a cell belongs to.
+std::uint32_t CutCells::vertex_at_edge(std::uint32_t at, std::size_t cell, int edge) const {
+  const BlockCells& cells = cells_[at];
+  const std::uint32_t first = cells.first_vertex + cells.vertex[cell];
+  const auto patched =
+      std::lower_bound(cells.patched.begin(), cells.patched.end(), cell,
+                       [](const PatchedCell& of, std::size_t number) { return of.cell < number; });
+  if (patched == cells.patched.end() || patched->cell != cell) return first;
+  return first + k_patch_of_edge.at[patched->patches][edge];
 }
 
 std::size_t CutCells::bytes() const {
-  return cells_.capacity() * sizeof(BlockCells) + signs_.capacity() * sizeof(SignRows) +
-         neighbors_.capacity() * sizeof neighbors_[0] +
-         (blocks_.capacity() + place_.capacity()) * sizeof(std::uint32_t);
+  std::size_t bytes = cells_.capacity() * sizeof(BlockCells) + inside_.capacity() * sizeof(BlockBits) +
+                      numbers_.capacity() * sizeof numbers_[0] +
+                      (blocks_.capacity() + place_.capacity()) * sizeof(std::uint32_t);
+  for (const BlockCells& cells : cells_) bytes += cells.patched.capacity() * sizeof(PatchedCell);
+  return bytes;
 }
 
 }  // namespace mallow

@@ -54,7 +54,6 @@ constexpr CellPatches find_patches(unsigned inside, int joined) {
     if (patch[e] < 0) continue;
     std::int8_t& n = number[static_cast<std::size_t>(patch[e])];
     if (n < 0) n = patches.count++;
-    patches.of_edge[e] = static_cast<std::uint8_t>(n);
     patches.edges[static_cast<std::size_t>(n)] |= static_cast<std::uint16_t>(1u << e);
   }
   for (int face = 0; face < 6; ++face) {
@@ -74,8 +73,19 @@ constexpr std::array<CellPatches, 512> find_all_patches() {
   return all;
 }
 
+constexpr PatchOfEdge find_patch_of_edge() {
+  const std::array<CellPatches, 512> all = find_all_patches();
+  PatchOfEdge patch{};
+  for (std::size_t cell = 0; cell < all.size(); ++cell)
+    for (std::uint8_t p = 0; p < all[cell].count; ++p)
+      for (std::size_t e = 0; e < k_cell_edges; ++e)
+        if ((all[cell].edges[p] >> e & 1) != 0) patch.at[cell][e] = p;
+  return patch;
+}
+
 }  // namespace
 
 const std::array<CellPatches, 512> k_cell_patches = find_all_patches();
+const PatchOfEdge k_patch_of_edge = find_patch_of_edge();
 
 }  // namespace mallow

@@ -1,112 +1,35 @@
 #include "surface/dual_mesher.h"
 
-#include <algorithm>
-#include <bit>
-#include <cstring>
+#include <array>
+#include <iterator>
 
 #include "core/parallel.h"
 
 namespace mallow {
 namespace {
 
-/// A block's distances with one more below and two above along each axis, z fastest.
-class Padded {
- public:
-  static constexpr int k_row = k_block_side + 3, k_plane = k_row * k_row;
-  float at[k_row * k_plane];
-
-  float* voxel(int x, int y, int z) { return at + (x + 1) * k_plane + (y + 1) * k_row + z + 1; }
-
-  Padded(const SurfaceField& field, std::uint32_t block) {
-    // Voxels that come from the neighbour below, the block itself and the one above, and where they go.
-    struct Range {
-      int from, count, to;
-    };
-    constexpr Range k_ranges[3] = {{k_block_side - 1, 1, -1}, {0, k_block_side, 0}, {0, 2, k_block_side}};
-    for (int bx = 0; bx < 3; ++bx) {
-      for (int by = 0; by < 3; ++by) {
-        const float* blocks[3];
-        for (int bz = 0; bz < 3; ++bz)
-          blocks[bz] = distances_of(field, field.neighbors(block)[neighbor_slot(bx - 1, by - 1, bz - 1)]);
-        const Range &rx = k_ranges[bx], &ry = k_ranges[by];
-        for (int x = 0; x < rx.count; ++x) {
-          for (int y = 0; y < ry.count; ++y) {
-            const std::size_t row = cell_at(rx.from + x, ry.from + y, 0);
-            float* const to = voxel(rx.to + x, ry.to + y, 0);
-            to[-1] = blocks[0][row + k_block_side - 1];
-            std::memcpy(to, blocks[1] + row, k_block_side * sizeof(float));
-            to[k_block_side] = blocks[2][row];
-            to[k_block_side + 1] = blocks[2][row + 1];
-          }
-        }
-      }
-    }
-  }
-
- private:
-  static const float* distances_of(const SurfaceField& field, std::uint32_t block) {
-    if (block != k_no_block && field.kind(block) == BlockKind::surface) return field.distances(block);
-    static const std::vector<float> outside(k_block_voxels, SurfaceField::k_background),
-        inside(k_block_voxels, -SurfaceField::k_background);
-    return (block != k_no_block && field.kind(block) == BlockKind::inside ? inside : outside).data();
-  }
-};
-
-/// The direction in which distances grow at a place in the cell above a voxel: differences of the voxels
-/// around each corner, interpolated.
-Vec3 normal_at(const float* voxel, const Eigen::Vector3f& in_cell) {
-  const float wx[2] = {1 - in_cell.x(), in_cell.x()}, wy[2] = {1 - in_cell.y(), in_cell.y()},
-              wz[2] = {1 - in_cell.z(), in_cell.z()};
-  float gx = 0, gy = 0, gz = 0;
-  for (int x = 0; x < 2; ++x) {
-    for (int y = 0; y < 2; ++y) {
-      for (int z = 0; z < 2; ++z) {
-        const float* const c = voxel + x * Padded::k_plane + y * Padded::k_row + z;
-        const float w = wx[x] * wy[y] * wz[z];
-        gx += w * (c[Padded::k_plane] - c[-Padded::k_plane]);
-        gy += w * (c[Padded::k_row] - c[-Padded::k_row]);
-        gz += w * (c[1] - c[-1]);
-      }
-    }
-  }
-  const Vec3 g(gx, gy, gz);
-  return g.squaredNorm() > 0 ? Vec3(g.normalized()) : Vec3(Vec3::UnitZ());
+const VertexLanes& best_vertex_lanes() {
+  static const InstructionLevel level = best_instruction_level();
+  return MALLOW_SELECT(level, vertex_lanes);
 }
 
-/// An edge of a cell: its corners as steps in Padded, and how far along x, y and z the lower one is.
-struct CellEdge {
-  int low, high;
-  float x, y, z;
-};
-constexpr std::array<CellEdge, k_cell_edges> cell_edges() {
-  std::array<CellEdge, k_cell_edges> edges{};
-  const auto step = [](int corner) {
-    return (corner >> 2) * Padded::k_plane + (corner >> 1 & 1) * Padded::k_row + (corner & 1);
-  };
-  for (std::size_t e = 0; e < k_cell_edges; ++e) {
-    const EdgeCorners c = edge_corners(static_cast<int>(e));
-    edges[e] = {step(c.low), step(c.high), static_cast<float>(c.low >> 2), static_cast<float>(c.low >> 1 & 1),
-                static_cast<float>(c.low & 1)};
-  }
-  return edges;
+const QuadLanes& best_quad_lanes() {
+  static const InstructionLevel level = best_instruction_level();
+  return MALLOW_SELECT(level, quad_lanes);
 }
-constexpr std::array<CellEdge, k_cell_edges> k_edges = cell_edges();
 
-/// The mean of where the surface cuts a patch's edges, from the cell's lowest corner on. Never at a corner,
-/// as cells that share it would put their vertices in one place.
-Eigen::Vector3f middle_of_cuts(unsigned edges, const float* voxel) {
-  float sum[3] = {0, 0, 0};
-  const auto count = static_cast<float>(std::popcount(edges));
-  for (; edges != 0; edges &= edges - 1) {
-    const int e = std::countr_zero(edges);
-    const CellEdge& edge = k_edges[static_cast<std::size_t>(e)];
-    const float low = voxel[edge.low], high = voxel[edge.high];
-    sum[0] += edge.x;
-    sum[1] += edge.y;
-    sum[2] += edge.z;
-    sum[e / 4] += std::clamp(low / (low - high), 0.01f, 0.99f);
-  }
-  return Eigen::Vector3f(sum[0], sum[1], sum[2]) / count;
+constexpr std::array<float, k_block_voxels> all_voxels(float distance) {
+  std::array<float, k_block_voxels> distances{};
+  for (float& d : distances) d = distance;
+  return distances;
+}
+constexpr std::array<float, k_block_voxels> k_all_outside = all_voxels(SurfaceField::k_background),
+                                            k_all_inside = all_voxels(-SurfaceField::k_background);
+
+const float* distances_of(const SurfaceField& field, std::uint32_t block) {
+  if (block == k_no_block) return k_all_outside.data();
+  if (field.kind(block) == BlockKind::surface) return field.distances(block);
+  return (field.kind(block) == BlockKind::inside ? k_all_inside : k_all_outside).data();
 }
 
 template <class Work>
@@ -124,36 +47,32 @@ void for_each_block(const CutCells& cells, const Threads& threads, const Work& w
 void DualMesher::place_vertices(const SurfaceField& field, std::size_t at, Mesh& mesh) {
   const BlockCells& cells = cells_.cells(at);
   if (cells.vertices == 0) return;
+  thread_local CellList list;
+  cells_.list_vertices(at, list);
   const std::uint32_t block = cells_.blocks()[at];
-  Padded padded(field, block);
-  const Eigen::Vector3d corner = k_block_side * field.blocks().blocks()[block].cast<double>();
-  std::size_t next = cells.first_vertex;
-  cells_.for_each_cut(at, [&](std::size_t cell, int x, int y, int z) {
-    const float* const voxel = padded.voxel(x, y, z);
-    const CellPatches& patches = k_cell_patches[cells.patches[cell]];
-    for (int patch = 0; patch < patches.count; ++patch, ++next) {
-      const Eigen::Vector3f in_cell = middle_of_cuts(patches.edges[static_cast<std::size_t>(patch)], voxel);
-      local_[next] = in_cell + Eigen::Vector3i(x, y, z).cast<float>();
-      mesh.vertices[first_vertex_ + next] = field.frame().point(corner + local_[next].cast<double>());
-      mesh.normals[first_vertex_ + next] = normal_at(voxel, in_cell);
-    }
-  });
+  VertexBlock from;
+  const auto& neighbors = field.neighbors(block);
+  for (std::size_t k = 0; k < neighbors.size(); ++k) from.distances[k] = distances_of(field, neighbors[k]);
+  from.range = cells.bits.range;
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    from.first[a] = k_block_side * field.blocks().blocks()[block][a];
+    from.origin[a] = field.frame().origin[a];
+  }
+  from.voxel_size = field.frame().voxel_size;
+  const std::size_t first = first_vertex_ + std::size_t{cells.first_vertex};
+  best_vertex_lanes().place_vertices(
+      from, list.vertices,
+      {local_[cells.first_vertex].data(), mesh.vertices[first].data(), mesh.normals[first].data()});
 }
 
 void DualMesher::write_triangles(std::size_t at, Mesh& mesh) const {
-  auto* to =
-      mesh.triangles.data() + first_triangle_ + 2 * static_cast<std::size_t>(cells_.cells(at).first_quad);
-  cells_.for_each_quad(at, [&](const std::array<QuadCorner, 4>& quad) {
-    const auto place = [&](std::size_t k) -> Eigen::Vector3f {
-      return local_[quad[k].vertex] + (k_block_side * quad[k].block).cast<float>();
-    };
-    // Along the shorter diagonal; ties, as on flat faces, are not left to rounding.
-    const std::size_t first =
-        (place(1) - place(3)).squaredNorm() < 0.99f * (place(0) - place(2)).squaredNorm() ? 1 : 0;
-    const auto vertex = [&](std::size_t k) { return first_vertex_ + quad[(first + k) % 4].vertex; };
-    *to++ = {vertex(0), vertex(1), vertex(2)};
-    *to++ = {vertex(0), vertex(2), vertex(3)};
-  });
+  const BlockCells& cells = cells_.cells(at);
+  if (cells.bits.quads == 0) return;
+  QuadBlock block = cells_.quad_block(at);
+  block.local = local_.data()->data();
+  block.first_in_mesh = first_vertex_;
+  const std::size_t first = first_triangle_ + 2 * std::size_t{cells.first_quad};
+  best_quad_lanes().write_quads(block, mesh.triangles[first].data());
 }
 
 /// Closes the gaps that merged vertices leave, and writes the triangles between what is left.
@@ -197,7 +116,7 @@ void DualMesher::append(const SurfaceField& field, float adaptivity, const Threa
   mesh.vertices.resize(counts.vertices);
   mesh.normals.resize(counts.vertices);
   mesh.triangles.resize(counts.triangles);
-  local_.resize(cells_.vertices());
+  local_.resize(cells_.vertices() + std::size_t{1});  // four floats of the last one are read
   block_vertices_.clear();
   for (std::size_t at = 0; at < cells_.blocks().size(); ++at) {
     const BlockCells& cells = cells_.cells(at);
@@ -209,7 +128,7 @@ void DualMesher::append(const SurfaceField& field, float adaptivity, const Threa
     for_each_block(cells_, threads, [&](std::size_t at) { write_triangles(at, mesh); });
     return;
   }
-  merger_.merge(cells_, adaptivity, threads, local_, std::span(mesh.normals).subspan(first_vertex_));
+  merger_.merge(field, cells_, adaptivity, threads, local_, std::span(mesh.normals).subspan(first_vertex_));
   finish_merged(field, counts, mesh);
   mesh.vertices.resize(counts.vertices);
   mesh.normals.resize(counts.vertices);

@@ -34,14 +34,21 @@ void for_each_cell(int side, int x, int y, int z, const Visit& visit) {
 
 class CubeFinder {
  public:
-  CubeFinder(const BlockCells& cells, std::span<const Eigen::Vector3f> places, std::span<const Vec3> normals,
-             float tolerance, std::array<std::uint8_t, k_block_voxels>& sides)
-      : cells_(cells), places_(places), normals_(normals), tolerance_(tolerance), sides_(sides) {}
+  /// inside: corners of the cells, a bit each.
+  CubeFinder(const BlockCells& cells, const std::array<std::uint8_t, k_block_voxels>& inside,
+             std::span<const Eigen::Vector3f> places, std::span<const Vec3> normals, float tolerance,
+             std::array<std::uint8_t, k_block_voxels>& sides)
+      : cells_(cells),
+        inside_(inside),
+        places_(places),
+        normals_(normals),
+        tolerance_(tolerance),
+        sides_(sides) {}
 
   /// What the cube at (x, y, z) holds.
   Content find(int side, int x, int y, int z) {
     if (side == 1) {
-      const unsigned corners = cells_.inside[cell_at(x, y, z)];
+      const unsigned corners = inside_[cell_at(x, y, z)];
       if (corners == 0 || corners == 255) return Content::nothing;
       return is_single(corners) ? Content::patch : Content::more;
     }
@@ -56,7 +63,7 @@ class CubeFinder {
     if (empty) return Content::nothing;
     if (!mergeable || !is_disk(side, x, y, z) || !is_even(side, x, y, z)) return Content::more;
     for_each_cell(side, x, y, z, [&](std::size_t cell) {
-      if (is_cut(cells_.inside[cell])) sides_[cell] = static_cast<std::uint8_t>(side);
+      if (cells_.is_cut(cell)) sides_[cell] = static_cast<std::uint8_t>(side);
     });
     return Content::patch;
   }
@@ -66,7 +73,7 @@ class CubeFinder {
   bool is_inside(int x, int y, int z) const {
     const int cx = std::min(x, k_block_side - 1), cy = std::min(y, k_block_side - 1),
               cz = std::min(z, k_block_side - 1);
-    return cells_.inside[cell_at(cx, cy, cz)] >> ((x - cx) * 4 + (y - cy) * 2 + (z - cz)) & 1;
+    return inside_[cell_at(cx, cy, cz)] >> ((x - cx) * 4 + (y - cy) * 2 + (z - cz)) & 1;
   }
 
   /// Whether the corners alone tell what the surface in a cube looks like: the middle of each edge, each face
@@ -104,7 +111,7 @@ class CubeFinder {
     Eigen::Vector3f mean(0, 0, 0);
     Vec3 normal(0, 0, 0);
     for_each_cell(side, x, y, z, [&](std::size_t cell) {
-      if (!is_cut(cells_.inside[cell])) return;
+      if (!cells_.is_cut(cell)) return;
       const std::uint16_t v = cells_.vertex[cell];
       group_.push_back(v);
       mean += places_[v];
@@ -120,6 +127,7 @@ class CubeFinder {
   }
 
   const BlockCells& cells_;
+  const std::array<std::uint8_t, k_block_voxels>& inside_;
   std::span<const Eigen::Vector3f> places_;
   std::span<const Vec3> normals_;
   float tolerance_;
@@ -147,7 +155,7 @@ void VertexMerger::merge_block(const CutCells& cells, std::size_t at, std::span<
     float count = 0;
     const auto each_vertex = [&](const auto& visit) {
       for_each_cell(side, x / side * side, y / side * side, z / side * side, [&](std::size_t cell) {
-        if (is_cut(block.inside[cell])) visit(block.first_vertex + block.vertex[cell]);
+        if (block.is_cut(cell)) visit(block.first_vertex + block.vertex[cell]);
       });
     };
     each_vertex([&](std::uint32_t v) {
@@ -224,13 +232,14 @@ void VertexMerger::halve(const CutCells& cells, const std::vector<CellOfBlock>& 
     for_each_cell(side, corner(cell / (k_block_side * k_block_side)),
                   corner(cell / k_block_side % k_block_side), corner(cell % k_block_side),
                   [&, at = at, side = side](std::size_t c) {
-                    if (is_cut(block.inside[c])) sides_[at][c] = side / 2;
+                    if (block.is_cut(c)) sides_[at][c] = side / 2;
                   });
   }
 }
 
-void VertexMerger::merge(const CutCells& cells, float tolerance, const Threads& threads,
-                         std::span<const Eigen::Vector3f> places, std::span<const Vec3> normals) {
+void VertexMerger::merge(const SurfaceField& field, const CutCells& cells, float tolerance,
+                         const Threads& threads, std::span<const Eigen::Vector3f> places,
+                         std::span<const Vec3> normals) {
   const std::size_t blocks = cells.blocks().size();
   sides_.resize(blocks);
   folds_.resize(blocks);
@@ -248,7 +257,10 @@ void VertexMerger::merge(const CutCells& cells, float tolerance, const Threads& 
   each([&](std::size_t at) {
     const BlockCells& block = cells.cells(at);
     sides_[at].fill(1);
-    CubeFinder(block, places.subspan(block.first_vertex, block.vertices),
+    if (block.vertices == 0) return;
+    std::array<std::uint8_t, k_block_voxels> inside;
+    cells.find_corners(field, at, inside);
+    CubeFinder(block, inside, places.subspan(block.first_vertex, block.vertices),
                normals.subspan(block.first_vertex, block.vertices), tolerance, sides_[at])
         .find(k_block_side, 0, 0, 0);
   });

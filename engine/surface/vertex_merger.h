@@ -24,7 +24,7 @@ struct DividedQuad {
 class VertexMerger {
  public:
   /// tolerance: [voxels]. places, normals: of the vertices of the cells, in voxels from their block's first.
-  void merge(const CutCells& cells, float tolerance, const Threads& threads,
+  void merge(const SurfaceField& field, const CutCells& cells, float tolerance, const Threads& threads,
              std::span<const Eigen::Vector3f> places, std::span<const Vec3> normals);
 
   /// The vertex that stands for a vertex's cube, the first of them.

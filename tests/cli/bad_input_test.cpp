@@ -30,6 +30,15 @@ TEST_F(cli_bad_input, command_line_that_makes_no_sense) {
   expect_refused(run_mallow({"sample", at("m.off"), "--count", "9", "--out", at("p.xyz")}), {".csv", ".ply"});
 }
 
+TEST_F(cli_bad_input, is_easily_avoided_where_help_shows_how_values_are_set) {
+  for (const char* command : {"run", "info", "render", "surface"}) {
+    const Outcome help = run_mallow({command, "--help"});
+    EXPECT_NE(help.out.find("--set KEY=VALUE "), help.out.npos) << help.out;
+    EXPECT_EQ(help.out.find("--set TEXT"), help.out.npos) << help.out;
+  }
+  EXPECT_NE(run_mallow({"run", "--help"}).out.find("--set body[0].material=honey"), std::string::npos);
+}
+
 TEST_F(cli_bad_input, help_and_version_are_no_errors) {
   EXPECT_EQ(run_mallow({"--help"}).exit_code, 0);
   EXPECT_EQ(run_mallow({"run", "--help"}).exit_code, 0);

@@ -35,7 +35,7 @@ class cli_checkpoint : public CliTest {
     const nlohmann::json report = read_json(folder_ / folder / "report.json"),
                          expected = read_json(folder_ / uninterrupted / "report.json");
     for (const char* key : {"complete", "error", "scene", "overrides", "frames", "steps", "simulated_time",
-                            "time_step", "reference_updates", "state_hash"})
+                            "time_step", "reference_updates", "events", "compression", "state_hash"})
       EXPECT_EQ(report.at(key), expected.at(key)) << key;
     EXPECT_EQ(read_text(folder_ / folder / "scene.toml"), read_text(folder_ / uninterrupted / "scene.toml"));
     for (const auto& entry : fs::recursive_directory_iterator(folder_ / folder))

@@ -27,7 +27,7 @@ TEST_F(cli_run, state_is_what_the_library_computes_to_the_last_bit) {
   std::istringstream lines(read_text(at("state.csv")));
   std::string line;
   std::getline(lines, line);
-  EXPECT_EQ(line, "id,x,y,z,vx,vy,vz");
+  EXPECT_EQ(line, "id,x,y,z,vx,vy,vz,body");
   for (std::size_t id = 0; id < 125; ++id) {
     ASSERT_TRUE(std::getline(lines, line));
     std::istringstream cells(line);
@@ -40,6 +40,8 @@ TEST_F(cli_run, state_is_what_the_library_computes_to_the_last_bit) {
         EXPECT_EQ(std::strtof(cell.c_str(), nullptr), value);
       }
     }
+    std::getline(cells, cell, ',');
+    EXPECT_EQ(cell, "0") << "its body";
   }
   EXPECT_FALSE(std::getline(lines, line));
 }
@@ -81,6 +83,78 @@ TEST_F(cli_run, report_says_what_ran) {
   run_steps(report.at("steps").get<std::int64_t>(), 0.45, simulation);
   EXPECT_EQ(std::strtoull(report.at("state_hash").get<std::string>().c_str(), nullptr, 16),
             simulation.state_hash());
+}
+
+TEST_F(cli_run, report_and_results_count_what_tore_and_merged) {
+  // Dough on a plate that turns: it is thrown off in pieces.
+  const std::string scene = write("dough.toml",
+                                  "[solver]\n"
+                                  "gravity = [0, 0, -9.81]\n"
+                                  "[[material]]\n"
+                                  "name = \"paste\"\n"
+                                  "alpha = 0.2\n"
+                                  "plastic_yield = 0.02\n"
+                                  "rest_density = 1000\n"
+                                  "youngs_modulus = 2000\n"
+                                  "[[body]]\n"
+                                  "material = \"paste\"\n"
+                                  "box = { count = [10, 10, 6], spacing = 0.01, corner = [0.1, -0.05, 0] }\n"
+                                  "[[collider]]\n"
+                                  "box = { min = [-0.4, -0.4, -0.1], max = [0.4, 0.4, 0] }\n"
+                                  "angular_velocity = [0, 0, 12]\n"
+                                  "friction = 0.8\n"
+                                  "[[collider]]\n"
+                                  "plane = { offset = -0.3 }\n"
+                                  "[run]\n"
+                                  "frames = 20\n"
+                                  "frame_time = 0.033\n")
+                                .string();
+  const Outcome outcome = run_mallow({"run", scene, "--out", at("out"), "--no-surface", "--no-images"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json report = read_json(at("out/report.json"));
+  Simulation simulation = build(read_scene(scene), 1);
+  std::int64_t torn = 0, merged = 0, yielded = 0;
+  double largest = 0;
+  for (int frame = 1; frame <= 20; ++frame)
+    while (simulation.time() < frame * 0.033) {
+      largest = std::max(largest, simulation.step_towards(frame * 0.033).largest_compression);
+      for (const BodyEvent& event : simulation.events()) {
+        torn += event.kind == BodyEvent::Kind::torn;
+        merged += event.kind == BodyEvent::Kind::merged;
+        yielded += event.kind == BodyEvent::Kind::yielded;
+      }
+    }
+  EXPECT_GT(torn, 0);
+  EXPECT_EQ(report.at("events").at("torn"), torn);
+  EXPECT_EQ(report.at("events").at("merged"), merged);
+  EXPECT_EQ(report.at("events").at("yielded"), yielded);
+  EXPECT_GT(largest, 0);
+  EXPECT_EQ(report.at("compression").at("largest"), largest);
+  EXPECT_NE(outcome.out.find("torn " + std::to_string(torn) + '\n'), std::string::npos) << outcome.out;
+  EXPECT_NE(read_text(at("out/summary.html")).find("tore " + std::to_string(torn) + " times"),
+            std::string::npos);
+}
+
+TEST_F(cli_run, warns_at_its_end_of_a_paste_that_was_crushed) {
+  const auto scene = [&](const std::string& material) {
+    return write(
+               "paste.toml",
+               "[solver]\ngravity = [0, 0, -9.81]\n[[material]]\nname = \"paste\"\nalpha = 0.2\n"
+               "plastic_yield = 0.02\nrest_density = 1000\nyoungs_modulus = 5000\n" +
+                   material +
+                   "[[body]]\nmaterial = \"paste\"\nbox = { count = [10, 10, 6], spacing = 0.005, corner = "
+                   "[0.06, -0.025, 0] }\n[[collider]]\nbox = { min = [-0.4, -0.4, -0.1], max = [0.4, 0.4, 0] "
+                   "}\nangular_velocity = [0, 0, 12]\nfriction = 0.8\n[[collider]]\ncylinder = { start = [0, "
+                   "0, -0.2], end = [0, 0, 0.3], radius = 0.19, inside = true }\n[run]\nframes = "
+                   "20\nframe_time = 0.033\n")
+        .string();
+  };
+  const std::string crushed = "it was crushed, as all strain beyond plastic_yield flows at once";
+  const Outcome at_once = run_mallow({"run", scene(""), "--report", at("report.json")});
+  EXPECT_NE(at_once.err.find(crushed), std::string::npos) << at_once.err;
+  EXPECT_NE(read_text(at("report.json")).find(crushed), std::string::npos);
+  const Outcome creeps = run_mallow({"run", scene("plastic_creep = 20\n")});
+  EXPECT_EQ(creeps.err.find("crushed"), std::string::npos) << creeps.err;
 }
 
 TEST_F(cli_run, steps_are_kept_to_exactly) {

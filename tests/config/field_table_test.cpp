@@ -161,7 +161,7 @@ TEST(field_table, states_of_version_9_hold_these_settings_in_this_order) {
             "velocity angular_velocity surface_velocity restitution friction temperature heat_transfer "
             "measure_load");
   EXPECT_EQ(names_in_states<Emitter>(),
-            "radius width height spacing velocity speed start stop jitter most_particles");
+            "radius width height spacing velocity speed start stop jitter most_particles merges");
   EXPECT_EQ(names_in_states<Sphere>(), "center radius inside");
   EXPECT_EQ(names_in_states<Box>(), "min max inside");
   EXPECT_EQ(names_in_states<Capsule>(), "start end radius inside");

@@ -65,13 +65,13 @@ TEST(particle_file, state_csv_is_what_printf_would_write) {
   const TemporaryFolder folder;
   const ParticleFrame frame = three_particles();
   write_state_csv(folder / "a.csv", frame);
-  std::string expected = "id,x,y,z,vx,vy,vz\n";
+  std::string expected = "id,x,y,z,vx,vy,vz,body\n";
   for (std::size_t i = 0; i < frame.positions.size(); ++i) {
     std::array<char, 200> row{};
     const Vec3& x = frame.positions[i];
     const Vec3& v = frame.velocities[i];
-    std::snprintf(row.data(), row.size(), "%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", i, double{x[0]},
-                  double{x[1]}, double{x[2]}, double{v[0]}, double{v[1]}, double{v[2]});
+    std::snprintf(row.data(), row.size(), "%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%u\n", i, double{x[0]},
+                  double{x[1]}, double{x[2]}, double{v[0]}, double{v[1]}, double{v[2]}, frame.bodies[i]);
     expected += row.data();
   }
   EXPECT_EQ(content_of(folder / "a.csv"), expected);

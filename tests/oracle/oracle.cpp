@@ -350,15 +350,18 @@ bool Oracle::check_is_due() const {
 
 std::vector<std::size_t> Oracle::update_references() {
   std::vector<std::size_t> updated;
-  if (!check_is_due()) return updated;
+  const bool check = check_is_due();
   for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const bool far = has_flowed_too_far(g);
+    if (!check) {
+      if (far && reframe(g, false)) updated.push_back(g);
+      continue;
+    }
     const double threshold = groups_[g].update_threshold * (1 - groups_[g].most_alpha);
     const Material& material = groups_[g].material;
     const bool follows = !material.plastic_yield || material.update_threshold || melts(groups_[g]);
     if (is_always_fluid(groups_[g]) || !follows || judged_acceleration(g) <= threshold) {
-      if (!reframe_is_due(g)) continue;
-      reframe(g);
-      updated.push_back(g);
+      if ((far || reframe_is_due(g)) && reframe(g, !far)) updated.push_back(g);
       continue;
     }
     kick_by_pull(g, 0.5);
@@ -366,7 +369,7 @@ std::vector<std::size_t> Oracle::update_references() {
     kick_by_pull(g, -0.5);
     updated.push_back(g);
   }
-  last_check_ = time_;
+  if (check) last_check_ = time_;
   return updated;
 }
 
@@ -635,23 +638,42 @@ bool Oracle::reframe_is_due(std::size_t group) const {
   return false;
 }
 
-// Elastic strain stays; all else is as after an update.
-void Oracle::reframe(std::size_t group) {
+/// Half of it has.
+bool Oracle::has_flowed_too_far(std::size_t group) const {
+  const Group& g = groups_[group];
+  if (!g.material.plastic_yield || g.alpha == 1) return false;
+  int all = 0, far = 0;
+  for (const Particle& i : particles_) {
+    if (i.group != group) continue;
+    ++all;
+    far += i.flow > 1.2;
+  }
+  return 2 * far > all;
+}
+
+// Elastic strain stays; all else is as after an update. None where it waits for a blow to end.
+bool Oracle::reframe(std::size_t group, bool waits) {
   match_shapes();
+  const double much = std::max(0.25, 2.0 * *groups_[group].material.plastic_yield);
+  int all = 0, strained = 0;
   std::vector<Matrix> stretches;
   for (const Particle& j : particles_) {
     stretches.push_back(Matrix::Identity());
+    all += j.group == group;
     if (j.group != group || is_thin(j)) continue;
     const Eigen::SelfAdjointEigenSolver<Matrix> solver(elastic_strain(j));
     const Vec found = solver.eigenvalues();
     const double size = found.minCoeff() > 0 ? std::clamp(std::cbrt(found.prod()), 0.3, 1.25) : 1;
+    strained += (found / size - Vec::Ones()).norm() > much;
     const Vec clipped = size * (found / size).cwiseMax(0.8).cwiseMin(1.25);
     const Matrix axes = j.rotation * solver.eigenvectors();
     stretches.back() = axes * clipped.cwiseInverse().asDiagonal() * axes.transpose();
   }
+  if (waits && 2 * strained > all) return false;
   rebuild_regions(group);
   for (std::size_t i = 0; i < particles_.size(); ++i)
     if (particles_[i].group == group) particles_[i].stretch = stretches[i];
+  return true;
 }
 
 // Section 4 A of the second chapter, one obstacle: its parts one after the other.

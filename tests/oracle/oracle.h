@@ -127,7 +127,8 @@ class Oracle {
   void rebuild_regions(std::size_t group);
   void flow(double dt);
   bool reframe_is_due(std::size_t group) const;
-  void reframe(std::size_t group);
+  bool has_flowed_too_far(std::size_t group) const;
+  bool reframe(std::size_t group, bool waits);
   void list_regions(std::size_t group);
   void rest_anew(std::size_t group, double mean);
   void kick_by_pull(std::size_t group, double share);

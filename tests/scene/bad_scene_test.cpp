@@ -36,14 +36,20 @@ const Case k_cases[] = {
      "scene.toml:3:1: solver: unknown key 'foo'; known are time_step, time_step_factor, support_radius, "
      "gravity, "
      "update_period, update_interval, formulation, acoustic_limit, contact, contact_offset, "
-      "wall_pressure, volume_iterations, volume_tolerance, sleep_speed, sleep_time, air_temperature, "
-      "rotation_iterations, "
+     "wall_pressure, volume_iterations, volume_tolerance, sleep_speed, sleep_time, air_temperature, "
+     "rotation_iterations, "
      "neighbor_slack, instruction_level and memory_limit"},
     {{.solver = "support_radius = 2.0\nupdate_interval = 10\nupdate_period = 1"},
      "scene.toml:3:19: solver.update_interval: is not allowed beside update_period: give one of the two"},
     {{.solver = "support_radius = 2.0\ntime_step_factor = 5"},
      "scene.toml:3:20: solver.time_step_factor: 5 is not allowed: a number in [0.01, 4]"},
     {{.rest = "[colider]"}, "scene.toml:8:2: unknown key 'colider'; did you mean 'collider'?"},
+    {{.rest = "[[bodies]]\nmaterial = \"jelly\""},
+     "scene.toml:8:3: unknown key 'bodies'; did you mean 'body'?"},
+    {{.rest = "[[colliders]]\nplane = {}"},
+     "scene.toml:8:3: unknown key 'colliders'; did you mean 'collider'?"},
+    {{.material = "name = \"jelly\"\nmodulus = 1e4"},
+     "scene.toml:5:1: material[0]: unknown key 'modulus'; did you mean 'youngs_modulus'?"},
     {{.source = "bax = { count = [2, 2, 2], spacing = 1.0 }\nbox = { count = [2, 2, 2], spacing = 1.0 }"},
      "scene.toml:7:1: body[0]: unknown key 'bax'; did you mean 'box'?"},
     {{.source = "box = { count = [2, 2, 2], spacing = 1.0, cornr = [0, 0, 0] }"},
@@ -157,7 +163,9 @@ const Case k_cases[] = {
     {{.rest = "[[body]]\nmaterial = \"jely\"\nbox = { count = [2, 2, 2], spacing = 1.0 }"},
      "scene.toml:9:12: body[1].material: unknown material 'jely'; did you mean 'jelly'?"},
     {{.rest = "[[body]]\nmaterial = \"cream\"\nbox = { count = [2, 2, 2], spacing = 1.0 }"},
-     "scene.toml:9:12: body[1].material: unknown material 'cream'; known are jelly, rubber, gelatin, "
+     "scene.toml:9:12: body[1].material: unknown material 'cream'; did you mean 'shaving_cream'?"},
+    {{.rest = "[[body]]\nmaterial = \"sand\"\nbox = { count = [2, 2, 2], spacing = 1.0 }"},
+     "scene.toml:9:12: body[1].material: unknown material 'sand'; known are jelly, rubber, gelatin, "
      "plasticine, clay, dough, butter, chocolate, toothpaste, shaving_cream, mayonnaise, "
      "ketchup, honey and water"},
     {{.rest = "[[material]]\nname = \"cream\""},

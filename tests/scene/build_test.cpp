@@ -195,6 +195,61 @@ TEST_F(build_scene, of_a_scene_made_in_code_names_what_is_wrong) {
   EXPECT_EQ(build_error(scene), "body[0].material: unknown material 'jelly'");
 }
 
+/// Two cubes in metres, of one material and in steps of a millisecond.
+std::string two_cubes(const std::string& material, const std::string& more = "") {
+  const std::string body =
+      "[[body]]\nmaterial = \"paste\"\n" + more + "box = { count = [4, 4, 4], spacing = 0.01";
+  return "[solver]\ngravity = [0, 0, -9.81]\ntime_step = 0.001\n[[material]]\nname = \"paste\"\n"
+         "rest_density = 1000\nalpha = 0.3\n" +
+         material + '\n' + body + " }\n" + body + ", corner = [1, 0, 0] }\n";
+}
+
+TEST_F(build_scene, names_a_material_that_is_damped_too_much_and_says_so_once) {
+  for (const char* springs : {"youngs_modulus = 2000", "elastic_time_step = 0.001"}) {
+    const std::string text = build_error(read(two_cubes(springs + std::string("\ndamping_time = 100"))));
+    EXPECT_NE(text.find("damping_time: 100 is not allowed"), text.npos) << text;
+    EXPECT_EQ(text.find("damping_time: 100"), text.rfind("damping_time: 100")) << text;
+    EXPECT_NE(text.find("paste"), text.npos) << text;
+  }
+  const std::string stiff = build_error(read(two_cubes("youngs_modulus = 1e9")));
+  EXPECT_EQ(stiff.find("youngs_modulus: 1e+09 is not allowed in body 'body[0]' of material 'paste'"),
+            stiff.rfind("youngs_modulus: 1e+09"))
+      << stiff;
+}
+
+TEST_F(build_scene, says_which_step_carries_a_stiffness_that_is_painted) {
+  const auto number_after = [](const std::string& text, const std::string& words) {
+    const std::size_t at = text.find(words);
+    return at == text.npos ? 0.0f : std::stof(text.substr(at + words.size()));
+  };
+  const std::string paint = "paint = [{ sphere = { radius = 9 }, stiffness = 1e4 }]\n";
+  const auto refused = [&](const std::string& material, const std::string& change) {
+    Scene scene = read(two_cubes(material, paint), {change});
+    return build_error(scene);
+  };
+  for (const char* material :
+       {"youngs_modulus = 2000", "youngs_modulus = 2000\ndamping_time = 1e-6", "elastic_time_step = 0.02"}) {
+    const float step =
+        number_after(refused(material, "solver.time_step=0.001"), "solver.time_step (now 0.001) to ");
+    ASSERT_GT(step, 0) << refused(material, "solver.time_step=0.001");
+    EXPECT_EQ(refused(material, "solver.time_step=" + std::to_string(step * 1e6f) + "e-6"), "no error");
+    EXPECT_NE(refused(material, "solver.time_step=" + std::to_string(1.03e6f * step) + "e-6"), "no error");
+  }
+  const std::string left_out = refused("", "solver.time_step=0.001");
+  EXPECT_EQ(left_out.find("solver.time_step"), left_out.npos) << "no step would do: " << left_out;
+  const float elastic = number_after(left_out, "material.elastic_time_step to ");
+  ASSERT_GT(elastic, 0) << left_out;
+  EXPECT_EQ(refused("elastic_time_step = " + std::to_string(elastic), "solver.time_step=0.001"), "no error");
+}
+
+TEST_F(build_scene, names_what_a_temperature_is_missing_for) {
+  const std::string text = build_error(read(two_cubes("alpha_by_temperature = [[300, 0.1], [310, 1]]")));
+  EXPECT_NE(text.find("material.temperature: is missing: alpha_by_temperature needs the temperature of the "
+                      "particles at the start"),
+            text.npos)
+      << text;
+}
+
 TEST_F(build_scene, runs_and_comes_to_the_same_state_from_the_printed_scene) {
   const std::vector<std::string> small{"body[0].box.count=[5,5,5]",
                                        "material[0].alpha=[[0.0,0.2],[1.5,0.8]]"};
@@ -273,6 +328,9 @@ TEST_F(skin_of_scene, names_the_body_whose_skin_cannot_be) {
   const std::string body = "skin = \"box.obj\"\nbox = { count = [9, 9, 9], spacing = 0.2 }";
   const std::string fluid = error_of(scene(body, "[[0, 0], [1, 1]]"));
   EXPECT_NE(fluid.find("is not allowed where alpha reaches 1"), std::string::npos) << fluid;
+  EXPECT_EQ(error_of(scene("merges = true\n" + body)), "no error");
+  const std::string part = error_of(scene("merges = true\n" + body, "0.1\nplastic_yield = 0.1"));
+  EXPECT_NE(part.find("is not allowed on a body that merges and flows"), std::string::npos) << part;
   const std::vector<std::string> missing = problems(
       "[solver]\nsupport_radius = 0.42\n[[material]]\nname = \"a\"\n[[body]]\nmaterial = \"a\"\n"
       "skin = \"none.obj\"\nbox = { count = [9, 9, 9], spacing = 0.2 }\n");

@@ -149,6 +149,7 @@ start = 1
 stop = 7
 jitter = 0.1
 most_particles = 5000
+merges = true
 [[emitter]]
 material = "jelly \"red\""
 width = 2
@@ -324,7 +325,8 @@ TEST_F(every_key, reaches_its_member) {
 std::set<std::string> described_keys() {
   std::set<std::string> keys;
   std::istringstream lines(describe_scene_keys());
-  for (std::string line; std::getline(lines, line);) keys.insert(line.substr(0, line.find(' ')));
+  for (std::string line; std::getline(lines, line);)
+    if (!line.starts_with('#')) keys.insert(line.substr(0, line.find(' ')));
   return keys;
 }
 
@@ -375,6 +377,7 @@ TEST_F(every_key, is_described_once_and_printed) {
   const std::string printed =
       print_scene(SceneFixture::read(k_every_key)) + print_scene(SceneFixture::read(other));
   for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('#')) continue;
     const std::string key = line.substr(0, line.find(' '));
     EXPECT_TRUE(keys.insert(key).second) << key << " is described twice";
     EXPECT_NE(printed.find(key.substr(key.rfind('.') + 1) + " = "), std::string::npos) << key;
@@ -382,6 +385,20 @@ TEST_F(every_key, is_described_once_and_printed) {
   for (const char* deep :
        {"solver.time_step", "body[].implicit.jitter", "collider[].union[].box.inside", "pin[].box.max"})
     EXPECT_TRUE(keys.contains(deep)) << deep;
+}
+
+TEST_F(every_key, stands_below_the_shapes_that_it_may_be_of) {
+  const std::string described = describe_scene_keys();
+  const auto has = [&](const std::string& line) { return described.find(line) != described.npos; };
+  EXPECT_TRUE(has("\n# body[]: exactly one of box, sphere, mesh, points, implicit gives its shape\n"));
+  const std::string shapes = "plane, sphere, box, capsule, cylinder, cone, hull, mesh, union";
+  EXPECT_TRUE(has("\n# collider[]: exactly one of " + shapes + " gives its shape\n"));
+  EXPECT_TRUE(has("\n# body[].paint[]: exactly one of " + shapes + " gives its shape\n"));
+}
+
+TEST_F(every_key, says_what_holds_where_nothing_flows) {
+  const std::string described = describe_scene_keys();
+  EXPECT_NE(described.find("left out: no strain flows; update_threshold alone reshapes it"), described.npos);
 }
 
 TEST_F(every_key, survives_printing) {
@@ -448,6 +465,7 @@ TEST_F(scene, names_the_override_that_is_wrong) {
       {"material.jam.alpha=0", "material.jam.alpha: does not exist: none of these has the name 'jam'"},
       {"solver.time_step.x=1", "solver.time_step.x: does not exist: this is not a table"},
       {"solver[0]=1", "solver[0]: does not exist: this is not a list"},
+      {"bodies[0].merges=true", "bodies[0].merges: unknown key 'bodies'; did you mean 'body'?"},
       {"solver.time_step", "is not of the form section.key=value or list[0].key=value"},
       {"solver..time_step=1", "is not of the form section.key=value or list[0].key=value"},
       {"body[x].group=1", "is not of the form section.key=value or list[0].key=value"},

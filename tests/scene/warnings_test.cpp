@@ -12,8 +12,8 @@ using scene_warnings = SceneFixture;
 std::string falling(const std::string& spacing, const std::string& radius, const std::string& gravity,
                     const std::string& run) {
   return "[solver]\nsupport_radius = " + radius + "\ngravity = [0, 0, " + gravity +
-         "]\n[[material]]\nname = \"jelly\"\nalpha = 0.3\nrest_density = 1000.0\n[[body]]\nmaterial = "
-         "\"jelly\"\nbox = { count = [4, 4, 4], spacing = " +
+         "]\n[[material]]\nname = \"blob\"\nalpha = 0.3\nrest_density = 1000.0\n[[body]]\nmaterial = "
+         "\"blob\"\nbox = { count = [4, 4, 4], spacing = " +
          spacing + ", corner = [0, 0, 0] }\n[run]\nframes = 30\n" + run;
 }
 
@@ -95,7 +95,7 @@ TEST_F(scene_warnings, name_an_emitter_whose_mouth_is_inside_a_collider) {
     return warnings_of(
         read(jelly("alpha = 0.3",
                    "[[collider]]\nplane = { normal = [0, 0, 1], offset = 0.0 }\n[[emitter]]\nmaterial = "
-                   "\"jelly\"\nradius = 0.3\nspacing = 0.1\ntranslate = [5, 0, " +
+                   "\"blob\"\nradius = 0.3\nspacing = 0.1\ntranslate = [5, 0, " +
                        height + "]\nspeed = 1.0\n")));
   };
   EXPECT_TRUE(warns(above("-0.2"), "leave its emitter inside collider 0"));
@@ -104,7 +104,7 @@ TEST_F(scene_warnings, name_an_emitter_whose_mouth_is_inside_a_collider) {
 
 TEST_F(scene_warnings, name_an_emitter_of_one_particle_a_layer) {
   const auto wide = [&](const std::string& radius) {
-    return warnings_of(read(jelly("alpha = 0.3", "[[emitter]]\nmaterial = \"jelly\"\nradius = " + radius +
+    return warnings_of(read(jelly("alpha = 0.3", "[[emitter]]\nmaterial = \"blob\"\nradius = " + radius +
                                                      "\nspacing = 0.1\ntranslate = [5, 0, 5]\n")));
   };
   EXPECT_TRUE(warns(wide("0.03"), "one particle each"));
@@ -189,6 +189,119 @@ TEST_F(scene_warnings, name_bodies_that_their_own_weight_flattens_and_spacings_t
   melting.temperature = 300.0f;
   melting.alpha_by_temperature = Schedule{{300, 0}, {310, 1}};
   EXPECT_TRUE(warns(of(melting, 0.005f), "no heat passes through it"));
+}
+
+/// Every line that `mallow info` shows: of the scene, and of what was done to its bodies.
+std::vector<std::string> told(const Scene& scene) {
+  std::vector<std::string> all;
+  const SimulationInfo info = build(scene, 1, &all).info();
+  for (const std::string& text : warnings(scene, info)) all.push_back(text);
+  return all;
+}
+
+TEST_F(scene_warnings, name_paint_that_does_nothing) {
+  const auto painted = [&](const std::string& material, const std::string& paint) {
+    std::string text = jelly(material);
+    text.replace(text.find("[run]"), 0, "paint = [" + paint + "]\n");
+    return told(read(text));
+  };
+  const std::string ball = "{ sphere = { radius = 0.2 }, alpha = 0.5 }";
+  EXPECT_TRUE(painted("alpha = 0.3", ball).empty());
+  EXPECT_TRUE(warns(painted("alpha = 0.3", ball + ", { sphere = { radius = 0.2 }, translate = [5, 5, 5], "
+                                                  "alpha = 0.5 }"),
+                    "paint[1] holds none of the body's 64 particles"));
+  const std::string melts =
+      "temperature = 290.0\nconductivity = 1.0\nalpha_by_temperature = [[280.0, 0.1], [310.0, 1.0]]\n";
+  EXPECT_TRUE(warns(painted(melts, ball), "paint[0].alpha has no effect"));
+  EXPECT_FALSE(warns(painted(melts, "{ sphere = { radius = 0.2 }, temperature = 300 }"), "no effect"));
+  EXPECT_TRUE(warns(painted(melts + "plastic_yield_by_temperature = [[280.0, 0.1], [310.0, 0.0]]",
+                            "{ sphere = { radius = 0.2 }, plastic_yield = 0.2 }"),
+                    "paint[0].plastic_yield has no effect"));
+}
+
+TEST_F(scene_warnings, name_a_volume_tolerance_that_is_always_met) {
+  const auto with = [&](const std::string& tolerance) {
+    std::string text = jelly("alpha = 0.3\nplastic_yield = 0.05");
+    text.replace(0, 8, "[solver]\nvolume_tolerance = " + tolerance);
+    return warnings_of(read(text));
+  };
+  EXPECT_TRUE(warns(with("1"),
+                    "solver.volume_tolerance 1 ends volume iterations where matter is compressed "
+                    "by 100% in the mean"));
+  for (const char* usual : {"0.0", "0.001", "0.05"}) EXPECT_FALSE(warns(with(usual), "volume_tolerance"));
+}
+
+TEST_F(scene_warnings, name_a_stride_that_leaves_more_regions_not_fewer) {
+  const auto regions = [&](const std::string& stride) {
+    return build(read(jelly("alpha = 0.3\nregion_stride = " + stride)), 1).info().bodies[0].regions;
+  };
+  const auto with = [&](const std::string& stride) {
+    return warnings_of(read(jelly("alpha = 0.3\nregion_stride = " + stride)));
+  };
+  EXPECT_TRUE(warns(with("100000"), "region_stride 100000 is more than the 39 particles of a region"));
+  EXPECT_TRUE(warns(with("100000"), "about 8 leaves fewest"));
+  EXPECT_GT(regions("100000"), regions("8"));
+  EXPECT_FALSE(warns(with("8"), "region_stride"));
+}
+
+TEST_F(scene_warnings, blame_short_steps_on_what_shortens_them) {
+  const auto with = [&](const std::string& material, const std::string& solver) {
+    std::string text = jelly(material);
+    text.replace(0, 8, "[solver]\n" + solver);
+    return warnings_of(read(text));
+  };
+  const auto of_step = with("alpha = 0.3", "time_step = 1e-4");
+  EXPECT_TRUE(warns(of_step, "solver.time_step 0.0001 s is shorter than the 0.00829502 s"));
+  const auto of_damping = with("alpha = 0.3\nyoungs_modulus = 2e4\ndamping_time = 1", "");
+  EXPECT_TRUE(warns(of_damping, "damping_time 1 s asks for steps so short that pressure"));
+  const auto of_modulus = with("alpha = 0.3\nyoungs_modulus = 1e10", "");
+  EXPECT_TRUE(warns(of_modulus, "youngs_modulus asks for steps so short that pressure"));
+  for (const auto& all : {of_step, of_damping, of_modulus})
+    EXPECT_FALSE(warns(all, "2 to 3 spacings are usual"));
+  std::string wide = jelly("alpha = 0.9");
+  wide.replace(wide.find("0.21"), 4, "0.45");
+  EXPECT_FALSE(warns(warnings_of(read(wide)), "solver.time_step 0"));
+}
+
+TEST_F(scene_warnings, say_how_many_steps_a_frame_takes_where_nobody_waits_for_them) {
+  const std::string stiff = "alpha = 0.3\nyoungs_modulus = 2000\ndamping_time = ";
+  EXPECT_TRUE(warns(warnings_of(read(jelly(stiff + "100"))), "run: a frame of 0.0333333 s takes "));
+  EXPECT_FALSE(warns(warnings_of(read(jelly(stiff + "0.01"))), "run: a frame of"));
+  EXPECT_FALSE(
+      warns(warnings_of(read(falling("0.003", "0.0063", "-9.81", "frame_time = 33\n"))), "run: a frame of"))
+      << "it is in milliseconds";
+}
+
+TEST_F(scene_warnings, name_a_material_that_hides_the_one_that_is_known_by_its_name) {
+  const auto own = [&](const std::string& material, const std::string& gravity) {
+    return warnings_of(read("[solver]\ngravity = [0, 0, " + gravity + "]\n" + material +
+                            "[[body]]\nmaterial = \"toothpaste\"\nbox = { count = [4, 4, 4], spacing = "
+                            "0.01 }\n[run]\nframe_time = 0.033\n"));
+  };
+  const std::string named = "[[material]]\nname = \"toothpaste\"\n";
+  const std::string hides = "material 'toothpaste': the scene's own [[material]] is taken";
+  EXPECT_TRUE(warns(own(named + "alpha = 0.5\n", "-9.81"), hides));
+  EXPECT_FALSE(warns(own(named + "alpha = 0.5\n", "-0.3"), hides)) << "no metres";
+  EXPECT_FALSE(
+      warns(own(named + "alpha = 0.2\nyoungs_modulus = 8000\nrest_density = 1300\n", "-9.81"), hides))
+      << "says all that it needs";
+  EXPECT_TRUE(own("", "-9.81").empty());
+  const Scene known = read(
+      "[solver]\ngravity = [0, 0, -9.81]\n[[body]]\nmaterial = \"toothpaste\"\nbox = { "
+      "count = [4, 4, 4], spacing = 0.01 }\n");
+  EXPECT_FALSE(warns(warnings_of(read(print_scene(known))), hides)) << "it is that one";
+}
+
+TEST_F(scene_warnings, name_a_material_in_metres_where_gravity_is_not) {
+  const auto under = [&](const std::string& gravity) {
+    return warnings_of(read("[solver]\ntime_step = 1e-3\ngravity = [0, 0, " + gravity +
+                            "]\n[[body]]\nmaterial = \"honey\"\nbox = { count = [4, 4, 4], spacing = 0.01 "
+                            "}\n"));
+  };
+  const std::string metres = "its numbers are in metres, kilograms and seconds, and a gravity of ";
+  EXPECT_TRUE(warns(under("-981"), metres));
+  EXPECT_TRUE(warns(under("-1"), metres));
+  for (const char* meant : {"-9.81", "-3.7", "-25", "0"}) EXPECT_FALSE(warns(under(meant), metres)) << meant;
 }
 
 }  // namespace warnings_test

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "levels.h"
+#include "matrix_regions.h"
 #include "shape_matching/reshape.h"
 #include "shape_matching/shape_matching.h"
 
@@ -484,42 +485,6 @@ TEST(rotation, has_the_same_bits_at_every_level_and_thread_count_for_any_iterati
       }
   }
 }
-
-/// Regions that own nothing but a matrix A and a last rotation: A = B + sums with B = 1, c̄ = 0.
-struct MatrixRegions {
-  ShapeMatching shape;
-  explicit MatrixRegions(std::size_t n) {
-    shape.reference.resize(n);
-    shape.center.resize(n);
-    shape.region_weight.resize(n);
-    for (Column<float>& column : shape.moment) column.resize(n);
-    for (Column<float>& column : shape.rotation) column.resize(n);
-    shape.sums.resize(n * k_row);
-    shape.undecided.resize(n);
-  }
-  void set(std::size_t j, const Eigen::Matrix3d& a, const Eigen::Quaterniond& last) {
-    shape.region_weight[j] = 1;
-    for (std::size_t k = 0; k < 3; ++k) shape.moment[k][j] = 1;
-    for (int k = 0; k < 9; ++k)
-      shape.sums[j * k_row + static_cast<std::size_t>(k)] =
-          static_cast<float>(a(k / 3, k % 3) - (k % 4 == 0 ? 1 : 0));
-    for (std::size_t k = 0; k < 4; ++k)
-      shape.rotation[k][j] = static_cast<float>(last.coeffs()[static_cast<Eigen::Index>(k)]);
-  }
-  void solve(InstructionLevel level) {
-    const VectorColumn x(shape.reference.size());
-    MatchedBodies bodies;
-    bodies.large.push_back({&shape, 0, {}, shape_input(x, 0, shape)});
-    bodies.regions.add(shape.region_weight.size());
-    solve_rotations(k_enough_iterations, {1, level}, bodies);
-  }
-  std::vector<float> row(std::size_t j) const {
-    std::vector<float> values(shape.sums.data() + j * k_row, shape.sums.data() + (j + 1) * k_row);
-    for (const Column<float>& column : shape.rotation) values.push_back(column[j]);
-    values.push_back(shape.undecided[j]);
-    return values;
-  }
-};
 
 TEST(rotation, does_not_depend_on_the_regions_beside_it) {
   std::mt19937 random(6);

@@ -74,8 +74,7 @@ struct Setup {
 /// Reference shapes are never updated. Contacts are told of on two threads.
 Simulation scene(const Setup& setup) {
   Simulation s({.support_radius = 2.1f,
-                // Checks list what has flowed, which allocates.
-                .update_interval = setup.does(Also::yields) ? 1'000'000 : 7,
+                .update_interval = 7,
                 .volume_iterations = setup.does(Also::keeps_volume) ? 2 : 0,
                 .neighbor_slack = setup.neighbor_slack,
                 .threads = setup.threads});
@@ -83,7 +82,10 @@ Simulation scene(const Setup& setup) {
     return sample(Lattice{.count = {side, side, side}, .corner = corner, .jitter = 0.1f});
   };
   Material material{.alpha = setup.alpha, .update_threshold = 1e6f, .viscosity = 0.5f};
-  if (setup.does(Also::yields)) material.plastic_yield = 0.3f;
+  if (setup.does(Also::yields)) {
+    material.plastic_yield = 0.3f;
+    material.merge_flow = 1e6f;  // they stay two
+  }
   if (setup.does(Also::heated)) {
     material.temperature = 300.0f;
     material.conductivity = 1;
@@ -91,13 +93,15 @@ Simulation scene(const Setup& setup) {
     material.alpha_by_temperature = Schedule{{280, 0}, {320, setup.alpha}};
     material.viscosity_by_temperature = Schedule{{280, 1}, {320, 0.5f}};
   }
+  const MaterialId id = s.add_material(material);
   for (Body body : {cube(9, {0, 0, 0.5f}), cube(7, {1, 1, 10.5f})}) {
     for (const Vec3& x : body.positions) {
       if (!setup.does(Also::painted)) break;
       body.stiffness.push_back(x.y() < 4 ? 1.0f : 0.5f);
       if (!setup.does(Also::heated)) body.alpha.push_back(x.x() < 4 ? 0.0f : setup.alpha);
     }
-    s.add_body(body, material);
+    body.merges = setup.does(Also::yields);
+    s.add_body(body, id);
   }
   s.add_collider({.shape = Plane{}, .friction = 0.3f});
   s.add_collider({.shape = Box{{-2, -2, -2}, {11, 11, 40}, true}, .friction = 0.3f});

@@ -7,23 +7,18 @@
 
 #include "mallow/errors.h"
 #include "mallow/simulation.h"
+#include "refusal.h"
 
 namespace mallow {
 namespace membership_test {
+
+using test::refusal;
 
 SolverConfig solver() {
   return {.time_step = 0.15f, .support_radius = 2.1f, .gravity = {0, 0, -0.3f}, .threads = 2};
 }
 Body cube(int n, const Vec3& corner) {
   return sample(Lattice{.count = {n, n, n}, .spacing = 1, .corner = corner, .jitter = 0.05f});
-}
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "nothing was refused";
 }
 
 TEST(removed_body, leaves_every_bit_of_the_others) {

@@ -16,7 +16,7 @@ namespace random_calls_test {
 
 class Caller {
  public:
-  Caller(unsigned seed, int threads, float slack) : random_(seed) {
+  Caller(unsigned seed, int threads, float slack) : random_(seed), seed_(seed) {
     SolverConfig config{.time_step = 0.15f,
                         .support_radius = 2.1f,
                         .gravity = {0, 0, -0.3f},
@@ -25,14 +25,21 @@ class Caller {
     config.sleep_speed = 0.2f;  // so that bodies sleep and wake often
     config.sleep_time = 1.0f;
     config.volume_iterations = static_cast<int>(seed % 3);  // in two of three
+    if (joins()) config.update_interval = 5;
     s_ = std::make_unique<Simulation>(config);
     s_->add_collider({.shape = Box{{-20, -20, 0}, {20, 20, 80}, true}, .friction = 0.5f});
-    for (const float alpha : {0.0f, 0.5f, 1.0f})
-      s_->add_material({.alpha = alpha,
+    for (const float alpha : {0.0f, 0.5f, 1.0f}) {
+      Material material{.alpha = alpha,
                         .viscosity = 0.5f,
                         .temperature = seed % 2 ? 300.0f : std::optional<float>{},
                         .conductivity = 1,
-                        .specific_heat = 1});
+                        .specific_heat = 1};
+      if (joins()) {
+        material.plastic_yield = 0.02f;
+        material.merge_flow = 0;
+      }
+      s_->add_material(material);
+    }
     add_body();
   }
 
@@ -114,7 +121,8 @@ class Caller {
           s_->remove_emitter(emitters_.front());
           emitters_.erase(emitters_.begin());
         }
-        Emitter emitter{.radius = 1.6f, .velocity = {number(0.5f), 0, 0}, .most_particles = 300};
+        Emitter emitter{
+            .radius = 1.6f, .velocity = {number(0.5f), 0, 0}, .most_particles = 300, .merges = joins()};
         emitter.pose.translation = {number(10), number(10), 40};
         emitter.pose.rotation = {1, 0, 0, 0};
         try {
@@ -201,6 +209,7 @@ class Caller {
     for (int k = 0; k < 4; ++k) {
       s_->step();
       for (const BodyEvent& event : s_->events()) {
+        joined_ += event.kind == BodyEvent::Kind::merged && event.other;
         events_ << static_cast<int>(event.kind) << ' ' << static_cast<std::uint64_t>(event.body) << ' '
                 << event.parts << ' ' << static_cast<std::uint64_t>(event.other.value_or(BodyId{9999})) << ' '
                 << static_cast<std::uint64_t>(event.collider.value_or(ColliderId{9999})) << ' '
@@ -214,8 +223,12 @@ class Caller {
   std::string events() const { return events_.str(); }
   void restart(int threads) { *s_ = Simulation::restore(s_->save(), threads); }
   const Simulation& simulation() const { return *s_; }
+  /// How many bodies have become part of others.
+  std::size_t joined() const { return joined_; }
 
  private:
+  /// Bodies become one as soon as they touch.
+  bool joins() const { return seed_ % 3 == 0; }
   std::size_t pick(std::size_t below) { return random_() % below; }
   float number(float most) { return most * (static_cast<float>(random_() % 2001) / 1000 - 1); }
   std::vector<ParticleId> some_of(BodyId body) {
@@ -228,14 +241,16 @@ class Caller {
     return sample(Lattice{.count = {n, n, n}, .corner = corner, .jitter = 0.05f});
   }
   void add_body() {
-    const MaterialId material{static_cast<std::uint32_t>(pick(3))};
+    const MaterialId material{joins() ? 1u : static_cast<std::uint32_t>(pick(3))};
     const int side = 2 + static_cast<int>(pick(5));
+    const float spread = joins() ? 6.0f : 12.0f;
     try {
-      Body body = cube(side, {number(12), number(12), 10 + number(5)});
+      Body body = cube(side, {number(spread), number(spread), 10 + number(5)});
       for (std::size_t i = 0; i < body.positions.size() && side == 4; ++i) {
         body.alpha.push_back(i % 2 == 0 ? 0.0f : 1.0f);
         body.stiffness.push_back(i % 3 == 0 ? 0.1f : 1.0f);
       }
+      body.merges = joins() || side % 2 == 0;
       s_->add_body(body, material);
     } catch (const ConfigError&) {
       // Something is there already.
@@ -244,6 +259,8 @@ class Caller {
   }
 
   std::mt19937 random_;
+  const unsigned seed_;
+  std::size_t joined_ = 0;
   std::unique_ptr<Simulation> s_;
   std::ostringstream events_;
   std::vector<PinId> pins_;
@@ -253,6 +270,7 @@ class Caller {
 };
 
 TEST(random_calls, leave_what_is_finite_and_the_same_bits_after_restores_on_any_number_of_threads) {
+  std::size_t joined = 0;
   for (unsigned seed = 1; seed <= 12; ++seed)
     for (const float slack : {0.0f, 0.2f}) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << ", slack " << slack);
@@ -269,7 +287,9 @@ TEST(random_calls, leave_what_is_finite_and_the_same_bits_after_restores_on_any_
         for (std::size_t row = 0; row < one.simulation().particle_count(); ++row)
           ASSERT_LT(one.simulation().positions()[row].norm(), 1e4f) << k;
       }
+      joined += one.joined();
     }
+  EXPECT_GE(joined, 5u);
 }
 
 }  // namespace random_calls_test

@@ -318,6 +318,7 @@ void add_export_command(CLI::App& app) {
   command->footer(
       "Velocities: _VELOCITY in glb, Velocity in vtp, velocities in usda, v in vdb, vx vy vz in csv; "
       "an OBJ has none.\n"
+      "Bodies of particles, counted from 0 as in report.json: Group in vtp, body in csv.\n"
       "Groups and materials have the names of the scene in obj (materials.mtl), glb and usda.\n"
       "surface.pvd plays the frames at their simulated times; surface.usda plays them as the film does: a\n"
       "time code is a frame, and velocities are per second of the film.");

@@ -73,7 +73,8 @@ void add_render_command(CLI::App& app) {
   command->add_option("DIR", options->folder, "The --out folder of a run")->required();
   command
       ->add_option("--set", options->overrides,
-                   "Change how pictures look: render.key=value, or collider[0].visible=false")
+                   "Change how pictures look: --set render.samples=16, --set collider[0].visible=false")
+      ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
   command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
       ->check(CLI::Range(0, 1024));

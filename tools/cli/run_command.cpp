@@ -22,6 +22,7 @@
 #include "mallow/scene.h"
 #include "program/cache.h"
 #include "program/checkpoint.h"
+#include "program/end_warnings.h"
 #include "program/failure.h"
 #include "program/input_files.h"
 #include "program/interrupt.h"
@@ -265,6 +266,10 @@ void print_result(const program::Cache* cache, const program::RunReport& report)
   std::printf("particles %zu\nframes %d\nsteps %lld\nsimulated_time %.9g\nstate_hash %s\n",
               report.info.particles, report.frames, static_cast<long long>(report.steps),
               report.simulated_time, program::hash_text(report.state_hash).c_str());
+  const program::RunReport::Events& events = report.events;
+  if (events.torn > 0 || events.merged > 0)
+    std::printf("torn %lld\nmerged %lld\n", static_cast<long long>(events.torn),
+                static_cast<long long>(events.merged));
   if (cache) std::printf("summary %s\n", cache->summary_file().c_str());
 }
 
@@ -290,6 +295,11 @@ void run(const RunOptions& options) {
     if (out) out->write_scene(run.scene);
     close_report("the run has not ended yet");
     run_stages(options, run);
+    for (const std::string& warning :
+         program::end_warnings(run.scene, run.report.info, snapshot(*run.simulation))) {
+      print_warning(warning);
+      run.report.info.warnings.push_back(warning);
+    }
     close_report("");
   } catch (const std::exception& failure) {
     try {

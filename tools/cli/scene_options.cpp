@@ -10,7 +10,9 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
   command.add_option("SCENE", options.file, "Scene file (TOML)")->required();
   command
       .add_option("--set", options.overrides,
-                  "Change a value of the scene: section.key=value, any number of times")
+                  "Change a value of the scene: --set solver.time_step=0.001 --set body[0].material=honey; "
+                  "'mallow keys' lists what there is")
+      ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
   std::vector<std::string> names;
   for (const Quality quality : qualities()) names.emplace_back(name(quality));

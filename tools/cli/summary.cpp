@@ -116,6 +116,11 @@ std::string facts(const json& report) {
                                    step.at("mean").get<double>(), step.at("smallest").get<double>(),
                                    step.at("limited_steps").get<long long>()));
   html += fact("reference updates", std::to_string(report.at("reference_updates").size()));
+  // Reports of earlier versions count none.
+  if (const auto events = report.find("events"); events != report.end())
+    html += fact("bodies", format("yielded %lld times, tore %lld times, merged %lld times",
+                                  events->at("yielded").get<long long>(), events->at("torn").get<long long>(),
+                                  events->at("merged").get<long long>()));
   html += fact("memory", format("%.1f MiB", report.at("bytes").get<double>() / (1024.0 * 1024.0)));
   html +=
       fact("machine", escaped(report.at("machine").at("processor").get<std::string>()) +

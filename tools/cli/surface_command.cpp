@@ -67,7 +67,9 @@ void add_surface_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("surface", "Draw the surfaces of an earlier run again, from its particles");
   command->add_option("DIR", options->folder, "The --out folder of a run")->required();
-  command->add_option("--set", options->overrides, "Change how surfaces are drawn: surface.key=value")
+  command
+      ->add_option("--set", options->overrides, "Change how surfaces are drawn: --set surface.kind=spheres")
+      ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
   command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
       ->check(CLI::Range(0, 1024));

@@ -143,7 +143,8 @@ RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> sk
       }
       {
         const StageTimer timer(report.stage_seconds, Stage::motion);
-        report.add(simulation.step_towards(frame_end));
+        const StepReport step = simulation.step_towards(frame_end);
+        report.add(step, simulation.events());
       }
       if (writer) writer->after_step(simulation);
       if (callbacks.after_step) callbacks.after_step(report);

@@ -55,6 +55,14 @@ nlohmann::ordered_json updates_json(const RunReport& report) {
   return updates;
 }
 
+nlohmann::ordered_json events_json(const RunReport& report) {
+  return {{"yielded", report.events.yielded}, {"torn", report.events.torn}, {"merged", report.events.merged}};
+}
+
+nlohmann::ordered_json compression_json(const RunReport& report) {
+  return {{"mean", report.compression.mean}, {"largest", report.compression.largest}};
+}
+
 nlohmann::ordered_json phases_json(const RunReport& report) {
   nlohmann::ordered_json phases = nlohmann::ordered_json::array();
   const double steps = static_cast<double>(std::max<std::int64_t>(report.steps, 1));
@@ -81,13 +89,20 @@ const char* name(Stage stage) {
   return k_names[static_cast<std::size_t>(stage)];
 }
 
-void RunReport::add(const StepReport& step) {
+void RunReport::add(const StepReport& step, std::span<const BodyEvent> events_of_step) {
   ++steps;
   smallest_step = steps == 1 ? step.time_step : std::min(smallest_step, step.time_step);
   largest_step = std::max(largest_step, step.time_step);
   if (step.limited) ++limited_steps;
   if (step.updated_references > 0) reference_updates.push_back({steps, step.updated_references});
   for (std::size_t i = 0; i < k_phase_count; ++i) phase_seconds[i] += step.seconds[i];
+  for (const BodyEvent& event : events_of_step) {
+    if (event.kind == BodyEvent::Kind::yielded) ++events.yielded;
+    if (event.kind == BodyEvent::Kind::torn) ++events.torn;
+    if (event.kind == BodyEvent::Kind::merged) ++events.merged;
+  }
+  compression.mean = std::max(compression.mean, step.mean_compression);
+  compression.largest = std::max(compression.largest, step.largest_compression);
 }
 
 nlohmann::ordered_json RunReport::progress() const {
@@ -100,6 +115,8 @@ nlohmann::ordered_json RunReport::progress() const {
           {"largest_step", largest_step},
           {"limited_steps", limited_steps},
           {"reference_updates", updates_json(*this)},
+          {"events", events_json(*this)},
+          {"compression", compression_json(*this)},
           {"resumed_after", resumed_after},
           {"phase_seconds", phase_seconds},
           {"stage_seconds", stage_seconds}};
@@ -117,6 +134,16 @@ void RunReport::set_progress(const nlohmann::ordered_json& progress) {
   reference_updates.clear();
   for (const auto& update : progress.at("reference_updates"))
     reference_updates.push_back({update.at("step").get<std::int64_t>(), update.at("groups").get<int>()});
+  // Checkpoints of earlier versions have neither.
+  if (const auto counts = progress.find("events"); counts != progress.end()) {
+    counts->at("yielded").get_to(events.yielded);
+    counts->at("torn").get_to(events.torn);
+    counts->at("merged").get_to(events.merged);
+  }
+  if (const auto found = progress.find("compression"); found != progress.end()) {
+    found->at("mean").get_to(compression.mean);
+    found->at("largest").get_to(compression.largest);
+  }
   progress.at("resumed_after").get_to(resumed_after);
   progress.at("phase_seconds").get_to(phase_seconds);
   progress.at("stage_seconds").get_to(stage_seconds);
@@ -156,6 +183,8 @@ nlohmann::ordered_json to_json(const RunReport& report) {
             {"largest", report.largest_step},
             {"limited_steps", report.limited_steps}}},
           {"reference_updates", updates_json(report)},
+          {"events", events_json(report)},
+          {"compression", compression_json(report)},
           {"resumed_after", report.resumed_after},
           {"phases", phases_json(report)},
           {"stage_seconds", stages_json(report)},

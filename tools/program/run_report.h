@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,15 @@ struct RunReport {
     int groups;
   };
   std::vector<ReferenceUpdate> reference_updates;
+  /// How often bodies did what BodyEvent tells, all together.
+  struct Events {
+    std::int64_t yielded = 0, torn = 0, merged = 0;
+  } events;
+  /// Of volume iterations, where there are any: StepReport::mean_compression and largest_compression.
+  struct Compression {
+    double mean = 0;     ///< over all particles, in the step where it was largest
+    double largest = 0;  ///< of a particle, in any step
+  } compression;
   std::vector<std::int64_t> resumed_after;  ///< steps after which the run was taken up again
   PhaseTimes phase_seconds{};
   StageTimes stage_seconds{};
@@ -65,8 +75,8 @@ struct RunReport {
   nlohmann::ordered_json progress() const;
   /// The reverse. Throws nlohmann's exceptions.
   void set_progress(const nlohmann::ordered_json& progress);
-  /// Takes in a step that has just been made.
-  void add(const StepReport& step);
+  /// Takes in a step that has just been made, and what happened in it.
+  void add(const StepReport& step, std::span<const BodyEvent> events);
 };
 
 nlohmann::ordered_json to_json(const RunReport& report);

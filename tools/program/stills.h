@@ -27,8 +27,4 @@ class Stills {
   float ball_radius_;                ///< [m]
 };
 
-/// What the camera has to have in view: the particles of frame 0, the ground below them, and the visible
-/// colliders near by.
-Aabb view_bounds(const Scene& scene, const ParticleFrame& first);
-
 }  // namespace mallow::program

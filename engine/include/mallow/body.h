@@ -34,7 +34,13 @@ struct Body {
   /// long as `positions`.
   std::vector<float> temperature = {};
   /// Acts on other bodies of its material that merge, and of its spacing, as on itself: two puddles become
-  /// one. Bodies that do not merge touch.
+  /// one. Bodies that do not merge touch. Where such bodies flow (Material::plastic_yield), move, and are
+  /// pressed into each other as Material::merge_flow says, they become one body at the next check
+  /// (SolverConfig::update_period), and a `merged` event names those that end: the one that was added first
+  /// keeps its id, name, user data, mass and spacing, and of report_contacts() the lower impulse counts. Rows
+  /// of all are one range; particles keep ids, velocities, pins, temperatures and what is painted on them,
+  /// and emitters go on in the body that is there. Where only one has an alpha of its own by particle, those
+  /// of the others keep the one that they have then.
   bool merges = false;
   /// What whoever made the body should know, in words: a mesh that was turned inside out, volume that the
   /// spacing loses. Nothing reads it but people.

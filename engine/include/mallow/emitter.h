@@ -37,8 +37,10 @@ struct Emitter {
   /// Random displacement of every point across the flow, at most jitter h per axis, in [0, 0.45]. Layers of a
   /// disc are turned besides, each by 2.4 rad: a strand of straight rows does not buckle.
   float jitter = k_default_jitter;
-  /// Its strand is not made longer while it has so many particles, in [1, 100000000].
+  /// Its strand is not made longer while it has so many particles, in [1, 100000000]; those of bodies that
+  /// have become one with it count.
   int most_particles = 1'000'000;
+  bool merges = false;  ///< Body::merges of its strand
 };
 
 }  // namespace mallow

@@ -87,7 +87,8 @@ MALLOW_EXPORT void write_particles(const std::filesystem::path& file, const Part
 /// What write_particles() wrote. Throws IoError.
 MALLOW_EXPORT ParticleFrame read_particles(const std::filesystem::path& file);
 
-/// `id,x,y,z,vx,vy,vz` with nine significant digits, which give back the same floats.
+/// `id,x,y,z,vx,vy,vz,body` with nine significant digits, which give back the same floats; body is the slot
+/// of the body, as in write_particles().
 MALLOW_EXPORT void write_state_csv(const std::filesystem::path& file, const ParticleFrame& frame);
 
 /// Binary PLY with normals, velocities and material ids where the mesh has them; ids are `uchar` where all

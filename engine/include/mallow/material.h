@@ -24,10 +24,11 @@ struct Material {
   /// Strain beyond which a region of shape matching flows where it is, >= 0: |Ê − I|, Ê its elastic stretch
   /// without change of volume. Pulled along one axis it flows from a strain of √1.5 of this, and a stress of
   /// √1.5 E times this; what has flowed stays when the load goes. A layer of one particle has no strain
-  /// across and does not flow. Where matter has flowed far, or was pressed together, the body takes the shape
-  /// that it has for its reference shape at the next check (SolverConfig::update_period): what touches is one
-  /// then, and what is farther apart than region_radius is not. Left out: nothing flows, only
-  /// update_threshold changes shapes. [model 2, section 5]
+  /// across and does not flow. Where matter has flowed by 0.5, or was pressed together, the body takes
+  /// the shape that it has for its reference shape: at the next check (SolverConfig::update_period) at which
+  /// no blow strains half of it by more than 0.25 and twice its yield, or at once where half of it has flowed
+  /// by 1.2. What touches is one then, and what is farther apart than region_radius is not. Left out: nothing
+  /// flows, only update_threshold changes shapes. [model 2, section 5]
   std::optional<float> plastic_yield = {};
   /// The same by temperature, in place of plastic_yield: keys of (temperature [K], strain >= 0).
   std::optional<Schedule> plastic_yield_by_temperature = {};
@@ -36,7 +37,7 @@ struct Material {
   std::optional<float> plastic_creep = {};
   /// How far matter must have flowed, |G − I| summed since the reference shape was taken, on both sides of
   /// where it touches itself, for the two sides to become one at the next check, >= 0. Less merges what
-  /// hardly touched.
+  /// hardly touched. Two bodies of this material that merge become one likewise: see Body::merges.
   float merge_flow = 0.1f;
   /// Where matter flows and a region has been stretched by more than this since the reference shape was
   /// taken, it tears at the next check, >= 0: what is farther apart than region_radius by then is not held

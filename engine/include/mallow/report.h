@@ -62,7 +62,7 @@ struct BodyEvent {
     yielded,  ///< its reference shape was updated [TK 3.2], or taken anew as it had flowed [model 2, section
               ///< 5]
     torn,     ///< that left it in more parts than it had
-    merged,   ///< that left it in fewer
+    merged,   ///< that left it in fewer, or it became one with another body: see `other`
     touched,  ///< it touches what it did not; this and the next two where report_contacts() asks for it
     hit,      ///< in this step it got at least the impulse that was asked for from what it touches
     parted,   ///< it touches it no more
@@ -72,7 +72,9 @@ struct BodyEvent {
   /// Of torn and merged: those that it has now. Particles are in one part where they share a region of shape
   /// matching, directly or through others; parts of fewer than four particles are crumbs and not counted.
   std::size_t parts = 0;
-  std::optional<BodyId> other = {};         ///< of a contact between bodies, greater than `body`
+  /// Of a contact between bodies: greater than `body`. Of merged: the body that has become part of `body` and
+  /// is no more, see Body::merges; none where parts of one body merged.
+  std::optional<BodyId> other = {};
   std::optional<ColliderId> collider = {};  ///< of a contact with a collider
   // Of touched and hit; what the particles that touch did in this step, in the mean by their impulses.
   Vec3 position{0, 0, 0};  ///< between the two bodies, or on the collider [m]

@@ -151,7 +151,7 @@ struct RenderConfig {
   int width = 960;               ///< pixels, in [16, 8192]
   int height = 540;              ///< pixels, in [16, 8192]
   int samples = 4;               ///< rays per pixel, in [1, 256]
-  std::optional<Vec3> eye = {};  ///< left out: chosen so that the first frame's scene is in view
+  std::optional<Vec3> eye = {};  ///< left out: chosen so that the scene is in view
   std::optional<Vec3> target = {};
   float field_of_view = 35.0f;  ///< vertical, degrees, in [1, 120]
   int frames_per_second = 30;   ///< of the film, in [1, 120]
@@ -193,7 +193,8 @@ MALLOW_EXPORT Scene parse_scene(const std::string& text, const std::filesystem::
                                 const SceneReadOptions& options = {});
 /// The scene as a TOML document with every value in it, defaults too; read_scene() gives the same scene back.
 MALLOW_EXPORT std::string print_scene(const Scene& scene);
-/// Every key a scene file may hold: one line each with default, range, unit and meaning.
+/// Every key a scene file may hold: one line each with default, range, unit and meaning. Lines that begin
+/// with # say which shapes a body, a paint and a collider may have.
 MALLOW_EXPORT std::string describe_scene_keys();
 
 /// The same scene in steps of `factor` times its own, see mallow/quality.h; frames stay as long as they are.
@@ -217,8 +218,8 @@ MALLOW_EXPORT std::vector<Skin> skins(const Scene& scene, Simulation& simulation
 MALLOW_EXPORT std::vector<bool> skinned_bodies(const Scene& scene);
 /// Simulated time of a frame [s]: what the scene says, or Δt0. info: of its simulation.
 MALLOW_EXPORT double frame_time(const Scene& scene, const SimulationInfo& info);
-/// What can be run, but is hardly meant, a sentence each: that of the simulation, and where the frames cover
-/// almost no time.
+/// What can be run, but is hardly meant, a sentence each: that of the simulation, and of what the scene alone
+/// knows, its materials by name and how long its frames are.
 MALLOW_EXPORT std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info);
 /// The material of each body that build() makes, in order of BodyId: the strands of emitters come last.
 MALLOW_EXPORT std::vector<std::size_t> body_materials(const Scene& scene);

@@ -46,7 +46,8 @@ class MALLOW_EXPORT Skin {
 
   /// The mesh where the body is now, which holds until the next call. Allocates nothing, but where the body
   /// has yielded since the last call for the first time. Throws ConfigError, and changes nothing, where the
-  /// simulation is another one, the body has no regions any more, or a particle that it follows is gone.
+  /// simulation is another one, the body has no regions any more or has become part of another
+  /// (Body::merges), or a particle that it follows is gone.
   const Mesh& update(const Simulation& simulation);
   /// As the last update() left it; before the first as it was bound.
   const Mesh& mesh() const;

@@ -1,0 +1,78 @@
+#include "program/end_warnings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <utility>
+
+namespace mallow::program {
+namespace {
+
+/// Spacings within which nothing at rest has a neighbour.
+constexpr float k_crushed = 0.3f;
+/// Share of crushed particles from which on a body shows it. A paste of 2560 particles with plastic_yield
+/// 0.02 on a plate that turns at 2, 6 and 12 rad/s ended with shares of 0, 0.016 and 0.095, with a
+/// plastic_creep of 20 1/s with 0, 0 and 0.005. Densities do not tell: the largest compression was 0.13.
+constexpr double k_most_crushed = 0.01;
+
+using Cell = std::array<std::int64_t, 3>;
+
+Cell cell_of(const Vec3& x, double side) {
+  Cell cell;
+  for (int axis = 0; axis < 3; ++axis)
+    cell[static_cast<std::size_t>(axis)] =
+        static_cast<std::int64_t>(std::floor(static_cast<double>(x[axis]) / side));
+  return cell;
+}
+
+}  // namespace
+
+double crushed_share(std::span<const Vec3> positions, float spacing) {
+  if (positions.empty()) return 0;
+  const float reach = k_crushed * spacing;
+  std::vector<std::pair<Cell, std::size_t>> cells;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    cells.emplace_back(cell_of(positions[i], static_cast<double>(reach)), i);
+  std::ranges::sort(cells);
+  const auto is_crushed = [&](const auto& own) {
+    const auto [cell, i] = own;
+    for (std::int64_t x = -1; x <= 1; ++x)
+      for (std::int64_t y = -1; y <= 1; ++y) {
+        const Cell begin{cell[0] + x, cell[1] + y, cell[2] - 1}, end{cell[0] + x, cell[1] + y, cell[2] + 2};
+        auto other = std::ranges::lower_bound(cells, begin, {}, &std::pair<Cell, std::size_t>::first);
+        for (; other != cells.end() && other->first < end; ++other)
+          if (other->second != i && (positions[other->second] - positions[i]).squaredNorm() < reach * reach)
+            return true;
+      }
+    return false;
+  };
+  return static_cast<double>(std::ranges::count_if(cells, is_crushed)) /
+         static_cast<double>(positions.size());
+}
+
+std::vector<std::string> end_warnings(const Scene& scene, const SimulationInfo& info,
+                                      const ParticleFrame& last) {
+  std::vector<std::string> all;
+  const std::vector<std::size_t> materials = body_materials(scene);
+  for (std::uint32_t body = 0; body < std::min(materials.size(), info.bodies.size()); ++body) {
+    const Material& material = scene.materials[materials[body]].material;
+    const bool flows = material.plastic_yield || material.plastic_yield_by_temperature;
+    if (!flows || material.plastic_creep) continue;
+    std::vector<Vec3> positions;
+    for (std::size_t i = 0; i < last.positions.size(); ++i)
+      if (last.bodies[i] == body) positions.push_back(last.positions[i]);
+    const double share = crushed_share(positions, info.bodies[body].spacing);
+    if (share < k_most_crushed) continue;
+    std::array<char, 32> percent{};
+    std::snprintf(percent.data(), percent.size(), "%.1f%%", 100 * share);
+    all.push_back(
+        "body '" + info.bodies[body].name + "': " + percent.data() +
+        " of its particles ended nearer than 0.3 spacings to another: it was crushed, as all strain "
+        "beyond plastic_yield flows at once; give material.plastic_creep, 20 1/s for a paste");
+  }
+  return all;
+}
+
+}  // namespace mallow::program

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mallow/files.h"
+#include "mallow/scene.h"
+
+namespace mallow::program {
+
+/// Share of some particles that are nearer than 0.3 spacings to another one of them. At rest they are about
+/// one apart, a lattice that is displaced at random 0.7 at least.
+double crushed_share(std::span<const Vec3> positions, float spacing);
+
+/// What only the end of a run shows, a sentence each: bodies that flow at once and were crushed. info: of the
+/// run's simulation. last: its particles at the end.
+std::vector<std::string> end_warnings(const Scene& scene, const SimulationInfo& info,
+                                      const ParticleFrame& last);
+
+}  // namespace mallow::program
