@@ -18,8 +18,8 @@ struct SurfaceConfig {
   /// Voxels a spacing, in [0.5, 16], of the particles that a surface is drawn around: where bodies have
   /// surfaces of their own each has voxels for its own spacing, and joined ones have them for the widest.
   /// Counts where voxel_size and voxels are left out. A splash of 1,000 particles, in the mean off what fine
-  /// voxels show: 2 takes 0.7 ms on one thread, 0.028 h; 2.7 takes 1.3 ms, 0.017 h; 3 takes 1.6 ms, 0.014 h;
-  /// 4 takes 3.0 ms, 0.008 h. Finer ones show the particles as ripples.
+  /// voxels show: 2 takes 0.5 ms on one thread, 0.028 h; 2.7 takes 0.8 ms, 0.017 h; 3 takes 1.0 ms, 0.014 h;
+  /// 4 takes 1.9 ms, 0.008 h. Finer ones show the particles as ripples.
   float voxels_per_spacing = 2.7f;
   /// Side of a voxel [m], > 0, whatever the spacing is.
   std::optional<float> voxel_size = {};
