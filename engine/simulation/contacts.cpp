@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/checks.h"
+#include "simulation/phases.h"
 #include "simulation/state.h"
 
 namespace mallow {

@@ -11,6 +11,7 @@
 #include "core/bounds.h"
 #include "simulation/membership.h"
 #include "simulation/overlaps.h"
+#include "simulation/phases.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 

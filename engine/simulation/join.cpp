@@ -6,6 +6,7 @@
 #include "shape_matching/reshape.h"
 #include "simulation/damage.h"
 #include "simulation/membership.h"
+#include "simulation/phases.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "simulation/phases.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 

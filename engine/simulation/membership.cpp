@@ -11,6 +11,7 @@
 #include "core/bounds.h"
 #include "shape_matching/reshape.h"
 #include "simulation/overlaps.h"
+#include "simulation/phases.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 #include "simulation/stiffness.h"

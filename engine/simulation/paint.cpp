@@ -7,6 +7,7 @@
 #include "config/validation.h"
 #include "core/parallel.h"
 #include "simulation/membership.h"
+#include "simulation/phases.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 #include "simulation/stiffness.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "config/field_tables.h"
+#include "simulation/phases.h"
 #include "simulation/saved_chunks.h"
 
 namespace mallow {

@@ -1,6 +1,7 @@
 #include "mallow/saved_state.h"
 
 #include "config/field_tables.h"
+#include "simulation/phases.h"
 #include "simulation/saved_chunks.h"
 #include "simulation/settings.h"
 

@@ -8,6 +8,7 @@
 
 #include "colliders/pose.h"
 #include "config/validation.h"
+#include "simulation/phases.h"
 #include "simulation/state.h"
 #include "simulation/stiffness.h"
 

@@ -6,6 +6,7 @@
 #include "config/validation.h"
 #include "core/parallel.h"
 #include "simulation/overlaps.h"
+#include "simulation/phases.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 #include "sph/kernel_functions.h"

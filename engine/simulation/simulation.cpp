@@ -1,6 +1,7 @@
 #include <limits>
 
 #include "core/checks.h"
+#include "simulation/phases.h"
 #include "simulation/state.h"
 
 namespace mallow {

@@ -5,6 +5,7 @@
 
 #include "core/bounds.h"
 #include "mallow/defaults.h"
+#include "simulation/phases.h"
 #include "simulation/state.h"
 
 namespace mallow {

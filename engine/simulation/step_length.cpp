@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "simulation/damage.h"
+#include "simulation/phases.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 

@@ -6,6 +6,7 @@
 #include "colliders/collider_checks.h"
 #include "core/parallel.h"
 #include "simulation/damage.h"
+#include "simulation/phases.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 

@@ -6,6 +6,7 @@
 #include "colliders/collider_checks.h"
 #include "config/validation.h"
 #include "shape_matching/reshape.h"
+#include "simulation/phases.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 #include "simulation/stiffness.h"

@@ -2,6 +2,7 @@
 #include <xxhash.h>
 
 #include "core/parallel.h"
+#include "simulation/phases.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 #include "simulation/stiffness.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mallow/mallow.h"
+#include "simulation/phases.h"
 #include "simulation/state.h"
 
 namespace mallow {

@@ -12,6 +12,7 @@
 #include "mallow/mallow.h"
 #include "meshes.h"
 #include "simulation/allocation_counter.h"
+#include "simulation/phases.h"
 #include "simulation/state.h"
 #include "surface/skin_binding.h"
 
