@@ -39,6 +39,8 @@ constexpr float k_least_share = 0.3f;
 constexpr std::ptrdiff_t k_inside = 3;
 /// Of the particles of a region, the stride that leaves fewest regions.
 constexpr double k_best_stride = 0.2;
+/// Alpha from which on a body is all but a fluid.
+constexpr float k_fluid = 0.9f;
 /// Mean compression that nobody means to leave.
 constexpr float k_loose_tolerance = 0.05f;
 
@@ -59,6 +61,7 @@ class Warnings {
     for (const BodyState& body : state_.bodies) {
       look_at_threshold(body);
       look_at_flow(body);
+      look_at_merging(body);
       look_at_density(body);
       look_at_limits(body);
       look_at_weight(body);
@@ -97,6 +100,19 @@ class Warnings {
         " m/s2): at rest its own weight updates the reference shape, so that it sinks like clay; 40 times "
         "gravity is ",
         40 * gravity);
+  }
+
+  /// What acts on another body as on itself rubs it only as a fluid does.
+  void look_at_merging(const BodyState& body) {
+    const auto merges_with = [&](const BodyState& other) {
+      return &other != &body && other.merges && other.material == body.material;
+    };
+    if (!body.merges || body.material->settings.alpha.lowest() > k_fluid ||
+        std::ranges::none_of(state_.bodies, merges_with))
+      return;
+    add(body, "slides along bodies that it merges with, as friction is between bodies that do not",
+        body.shape.flows ? ": where they are not pressed together at once, leave merges out"
+                         : ", and never becomes one with them, as it has no plastic_yield: leave merges out");
   }
 
   /// What can flow nowhere.

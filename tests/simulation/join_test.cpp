@@ -350,5 +350,27 @@ TEST(join, lets_contacts_go_on_as_those_of_the_body_that_is_there) {
   EXPECT_EQ(told, "upper touches, merged, lower parts, ");
 }
 
+// Until they are one, nothing but viscosity rubs them: blocks of dough slid down each other at 20 degrees.
+TEST(join, what_slides_until_it_is_one_is_warned_of) {
+  const auto warns = [](bool merges, const Material& material, const std::string& words) {
+    Simulation s({.time_step = 0.15f, .support_radius = 2.1f});
+    const MaterialId id = s.add_material(material);
+    for (const float up : {0.0f, 4.0f}) {
+      Body body = sample(Lattice{.count = {4, 4, 4}, .corner = {0, 0, up}});
+      body.merges = merges;
+      s.add_body(body, id);
+    }
+    return std::ranges::any_of(s.info().warnings,
+                               [&](const std::string& w) { return w.find(words) != w.npos; });
+  };
+  const std::string slides = "slides along bodies that it merges with", never = "never becomes one";
+  const Material dough{.alpha = 0.3f, .plastic_yield = 0.1f};
+  EXPECT_TRUE(warns(true, dough, slides));
+  EXPECT_FALSE(warns(true, dough, never));
+  EXPECT_FALSE(warns(false, dough, slides));
+  EXPECT_TRUE(warns(true, {.alpha = 0.1f}, never));
+  EXPECT_FALSE(warns(true, {.alpha = 1.0f}, slides));
+}
+
 }  // namespace join_test
 }  // namespace mallow
