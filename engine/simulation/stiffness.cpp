@@ -17,6 +17,8 @@ namespace {
 constexpr double k_dense = 64;
 /// Of a step's pull, where the step follows from Y.
 constexpr double k_default_pull = 1;
+/// Of the most that the longest step carries, where time_step_factor would go beyond.
+constexpr double k_room = 0.99;
 constexpr double k_rounding = 1e-5;  // of what is typed with six digits
 
 bool is_elastic(const Material& material) {
@@ -88,8 +90,10 @@ double most_modulus(const SolverConfig& config, const Material& material, float 
 
 double modulus_time_step(const SolverConfig& config, const Material& material, float spacing) {
   if (!is_elastic(material)) return std::numeric_limits<double>::infinity();
+  const double factor = static_cast<double>(config.time_step_factor);
+  const double most = static_cast<double>(std::min(most_pull(material), k_stiffest)) / (factor * factor);
   return step_of_pull(pull_rate(config, material, spacing), static_cast<double>(material.damping_time),
-                      k_default_pull);
+                      std::min(k_default_pull, k_room * most));
 }
 
 void check_modulus(const SolverConfig& config, const Material& material, const BodyState& body,

@@ -35,7 +35,7 @@ float lowest_alpha(const Material& material);
 double most_modulus(const SolverConfig& config, const Material& material, float spacing);
 
 /// Δt0 that Y asks for where it is left out; infinite where there is no Y. At it the pull of a step is 1, as
-/// it is by default without Y: that leaves room for pressure, and for the longer steps of Quality::realtime.
+/// it is by default without Y: that leaves room for pressure; less where the longest step would carry no more.
 double modulus_time_step(const SolverConfig& config, const Material& material, float spacing);
 
 /// Whether steps are short enough for Y, and for its damping; nothing where Δt0 is not known yet. body: that

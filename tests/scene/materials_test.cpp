@@ -10,6 +10,7 @@
 
 #include "config/field_archive.h"
 #include "config/field_tables.h"
+#include "mallow/quality.h"
 #include "mallow/simulation.h"
 #include "scene/scene_fixture.h"
 
@@ -68,6 +69,18 @@ TEST_F(materials_by_name, need_nothing_else_in_a_scene) {
     for (int k = 0; k < 3; ++k) simulation.step();
     for (const std::string& warning : warnings(scene, simulation.info()))
       EXPECT_EQ(warning.find("density"), std::string::npos) << warning;
+  }
+}
+
+// Five of them were refused at realtime, whose steps are longer than those that moduli ask for.
+TEST_F(materials_by_name, stand_every_quality_and_any_factor_of_steps_that_are_left_out) {
+  for (const MaterialPreset& preset : material_presets()) {
+    const Scene scene = read(by_name(preset.name, "[solver]\ngravity = [0, 0, -9.81]\n"));
+    for (const Quality quality : qualities())
+      EXPECT_NO_THROW(build(with_quality(scene, quality)).step()) << preset.name << ' ' << name(quality);
+    Scene longer = scene;
+    longer.solver.time_step_factor = 4;
+    EXPECT_NO_THROW(build(longer).step()) << preset.name;
   }
 }
 
