@@ -116,8 +116,8 @@ void give_contacts(Simulation::State& s, std::uint64_t id, std::uint64_t to) {
   std::ranges::sort(lasting, [](const Contacts::Lasting& a, const Contacts::Lasting& b) {
     return a.key != b.key ? a.key < b.key : a.apart < b.apart;
   });
-  const auto same = std::ranges::unique(lasting, {}, &Contacts::Lasting::key);
-  lasting.erase(same.begin(), same.end());
+  const auto same = [](const Contacts::Lasting& a, const Contacts::Lasting& b) { return a.key == b.key; };
+  lasting.erase(std::unique(lasting.begin(), lasting.end(), same), lasting.end());
 }
 
 /// Whatever speaks of a body speaks of the one that it is part of now.
