@@ -3,6 +3,7 @@
 #include <optional>
 #include <set>
 
+#include "config/validation.h"
 #include "core/precision.h"
 #include "mallow/files.h"
 #include "mallow/level_set.h"
@@ -172,7 +173,7 @@ Skin bind_skin(const SceneBody& body, BodyId id, const Material& material,
       std::ranges::any_of(body.paint, [](const ScenePaint& paint) { return paint.alpha.value_or(0) >= 1; });
   if (material.alpha_by_temperature.value_or(material.alpha).highest() >= 1 || paints_fluid)
     throw ConfigError("skin", "is not allowed where alpha reaches 1, as a fluid has no shape to follow");
-  if (body.merges && (material.plastic_yield || material.plastic_yield_by_temperature))
+  if (body.merges && flows(material))
     throw ConfigError("skin",
                       "is not allowed on a body that merges and flows, as it may become part of another");
   Eigen::Vector3d origin;

@@ -10,17 +10,15 @@ constexpr std::size_t k_stride = 8;
 
 void find_parts(const ShapeMatching& shape, Parts& parts) {
   const TableLists& lists = shape.regions;
-  const auto rows = static_cast<std::uint32_t>(lists.rows), n = rows;
+  const auto n = static_cast<std::uint32_t>(lists.rows);
   DisjointSets& sets = parts.sets;
   sets.reset(n);
   for (std::size_t start = 0; start < k_stride; ++start)
     for (std::size_t j = start; j < lists.begin.size() && sets.count() > 1; j += k_stride) {
-      const std::uint32_t* const entries = lists.entries.data() + lists.begin[j];
-      std::uint32_t root = sets.root(entries[0] % rows);
-      for (std::uint32_t k = 0; k < lists.count[j]; ++k) {
-        const std::uint32_t first = entries[k] % rows, length = lists.lengths.length[entries[k] / rows];
+      std::uint32_t root = sets.root(lists.entries[lists.begin[j]] % n);
+      lists.for_each_run(j, [&](std::uint32_t first, std::uint32_t length) {
         for (std::uint32_t row = first; row < first + length; ++row) root = sets.join(root, row);
-      }
+      });
     }
   parts.number.assign(n, 0);
   for (std::uint32_t i = 0; i < n; ++i) ++parts.number[sets.root(i)];

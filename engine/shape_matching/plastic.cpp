@@ -96,20 +96,17 @@ bool any_torn(const VectorColumn& positions, std::size_t begin, float far, const
     return any_part_ways(scratch.rest, shape.region_radius, scratch.here, far, execution, scratch);
   }
   const TableLists& lists = shape.regions;
-  const auto rows = static_cast<std::uint32_t>(lists.rows);
   const float* const flow = shape.plastic.flow.data();
-  return any_below(rows, execution.threads, [&](std::size_t j) {
+  return any_below(lists.rows, execution.threads, [&](std::size_t j) {
     if (!(flow[j] > 0)) return false;
     const Vec3 own = positions.get(begin + j);
-    const std::uint32_t* const entries = lists.entries.data() + lists.begin[j];
     float farthest = 0;
-    for (std::uint32_t k = 0; k < lists.count[j]; ++k) {
-      const std::size_t first = entries[k] % rows, last = first + lists.lengths.length[entries[k] / rows];
-      for (std::size_t i = std::max(first, j + 1); i < last; ++i) {  // a pair is in the lists of both
+    lists.for_each_run(j, [&](std::size_t first, std::size_t length) {
+      for (std::size_t i = std::max(first, j + 1); i < first + length; ++i) {  // a pair is in both lists
         const float square = (own - positions.get(begin + i)).squaredNorm();
         farthest = std::max(farthest, flow[i] > 0 ? square : 0.0f);
       }
-    }
+    });
     return farthest > far * far;
   });
 }

@@ -45,6 +45,13 @@ struct TableLists {
   std::vector<Histogram> partial_runs;
   std::vector<std::uint32_t> block_begin;
 
+  /// Calls visit(first row, how many) for the runs of a list.
+  template <class Visit>
+  void for_each_run(std::size_t list, const Visit& visit) const {
+    const auto n = static_cast<std::uint32_t>(rows);
+    const std::uint32_t* const own = entries.data() + begin[list];
+    for (std::uint32_t k = 0; k < count[list]; ++k) visit(own[k] % n, lengths.length[own[k] / n]);
+  }
   std::size_t bytes() const { return begin.bytes() + count.bytes() + entries.bytes(); }
 };
 

@@ -1,5 +1,6 @@
 // The lists of a saved state: what there is, all but its rows.
 #include <algorithm>
+#include <type_traits>
 
 #include "colliders/collider_archive.h"
 #include "colliders/collider_checks.h"
@@ -48,13 +49,19 @@ void unpack_slots(const SavedState& saved, const char* name, std::span<const std
 
 namespace {
 
+/// An id of any kind as the number that it is.
+template <class Archive, class Id>
+void pass_id(Archive& archive, Id& id) {
+  auto number = static_cast<std::underlying_type_t<std::remove_const_t<Id>>>(id);
+  archive(number);
+  if constexpr (!Archive::k_packs) id = Id{number};
+}
+
 /// All of a body but its material.
 template <class Archive, class BodyState>
 void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   auto& frame = body.shape.frame;
-  auto id = static_cast<std::uint64_t>(body.id);
-  archive(id);
-  if constexpr (!Archive::k_packs) body.id = BodyId{id};
+  pass_id(archive, body.id);
   archive(body.name);
   archive(body.merges);
   archive(body.enabled);
@@ -164,9 +171,7 @@ std::vector<ShapeSizes> unpack_bodies(const SavedState& saved, Simulation::State
 
 template <class Archive, class Pin>
 void pass_pin(Archive& archive, Pin& pin) {
-  auto id = static_cast<std::uint64_t>(pin.id);
-  archive(id);
-  if constexpr (!Archive::k_packs) pin.id = PinId{id};
+  pass_id(archive, pin.id);
   archive(pin.velocity);
   archive(pin.left);
   archive(pin.seconds);
@@ -200,15 +205,10 @@ template <class Archive, class State>
 void pass_emitters(Archive& archive, State& state) {
   archive(state.emitter_count);
   archive(state.sink_count);
-  const auto pass_id = [&](auto& id) {
-    auto number = static_cast<std::uint64_t>(id);
-    archive(number);
-    if constexpr (!Archive::k_packs) id = std::remove_cvref_t<decltype(id)>{number};
-  };
   pass_list(archive, state.emitters, 64, [&](auto& emitter) {
-    pass_id(emitter.id);
-    pass_id(emitter.body);
-    pass_id(emitter.pin);
+    pass_id(archive, emitter.id);
+    pass_id(archive, emitter.body);
+    pass_id(archive, emitter.pin);
     pass_fields(archive, emitter.settings);
     pass_list(archive, emitter.settings.points, sizeof(Vec3), [&](auto& x) { archive(x); });
     pass_pose(archive, emitter.settings.pose);
@@ -220,7 +220,7 @@ void pass_emitters(Archive& archive, State& state) {
     });
   });
   pass_list(archive, state.sinks, 33, [&](auto& sink) {
-    pass_id(sink.id);
+    pass_id(archive, sink.id);
     archive(sink.box.min);
     archive(sink.box.max);
     archive(sink.outside);
@@ -256,26 +256,22 @@ void pass_events(Archive& archive, State& state) {
   // A step that failed leaves those of bodies that it joined.
   pass_list(archive, state.next_events, 18, [&](auto& event) {
     auto kind = static_cast<std::uint8_t>(event.kind);
-    auto body = static_cast<std::uint64_t>(event.body);
     std::optional<std::uint64_t> other;
     if (event.other) other = static_cast<std::uint64_t>(*event.other);
     archive(kind);
-    archive(body);
+    pass_id(archive, event.body);
     archive(event.parts);
     archive(other);
     if constexpr (!Archive::k_packs) {
       if (kind > static_cast<std::uint8_t>(BodyEvent::Kind::merged))
         archive.fail("calls leave no such event");
       event.kind = static_cast<BodyEvent::Kind>(kind);
-      event.body = BodyId{body};
       if (other) event.other = BodyId{*other};
     }
   });
   pass_list(archive, state.ended, 16, [&](auto& ended) {
-    auto into = static_cast<std::uint64_t>(ended.part_of);
     archive(ended.id);
-    archive(into);
-    if constexpr (!Archive::k_packs) ended.part_of = BodyId{into};
+    pass_id(archive, ended.part_of);
   });
 }
 

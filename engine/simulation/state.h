@@ -25,6 +25,8 @@
 
 namespace mallow {
 
+/// Alpha beyond which nothing to speak of is held in shape.
+inline constexpr float k_all_but_fluid = 0.9f;
 /// Pins are named by 16 bits a particle.
 inline constexpr std::size_t k_max_pins = 65535;
 
@@ -96,7 +98,7 @@ struct BodyState {
   /// after.
   bool melts() const {
     const Schedule& alpha = material->settings.alpha_by_temperature.value_or(material->settings.alpha);
-    return alpha.highest() > 0.9f && alpha.lowest() < alpha.highest();
+    return alpha.highest() > k_all_but_fluid && alpha.lowest() < alpha.highest();
   }
   /// The paper's rule updates its reference shape: where regions flow, only if it is asked for, or what has
   /// melted would set in the shape that it had, far from where it is.

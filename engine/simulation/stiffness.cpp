@@ -91,7 +91,7 @@ double most_modulus(const SolverConfig& config, const Material& material, float 
 double modulus_time_step(const SolverConfig& config, const Material& material, float spacing) {
   if (!is_elastic(material)) return std::numeric_limits<double>::infinity();
   const double factor = static_cast<double>(config.time_step_factor);
-  const double most = static_cast<double>(std::min(most_pull(material), k_stiffest)) / (factor * factor);
+  const double most = static_cast<double>(most_pull(material)) / (factor * factor);
   return step_of_pull(pull_rate(config, material, spacing), static_cast<double>(material.damping_time),
                       std::min(k_default_pull, k_room * most));
 }

@@ -39,8 +39,6 @@ constexpr float k_least_share = 0.3f;
 constexpr std::ptrdiff_t k_inside = 3;
 /// Of the particles of a region, the stride that leaves fewest regions.
 constexpr double k_best_stride = 0.2;
-/// Alpha from which on a body is all but a fluid.
-constexpr float k_fluid = 0.9f;
 /// Mean compression that nobody means to leave.
 constexpr float k_loose_tolerance = 0.05f;
 
@@ -107,7 +105,7 @@ class Warnings {
     const auto merges_with = [&](const BodyState& other) {
       return &other != &body && other.merges && other.material == body.material;
     };
-    if (!body.merges || body.material->settings.alpha.lowest() > k_fluid ||
+    if (!body.merges || body.material->settings.alpha.lowest() > k_all_but_fluid ||
         std::ranges::none_of(state_.bodies, merges_with))
       return;
     add(body, "slides along bodies that it merges with, as friction is between bodies that do not",

@@ -8,10 +8,6 @@
 namespace mallow {
 namespace {
 
-constexpr std::size_t k_groups_at_once = 2;
-/// By which reaches grow, so that rounding leaves none out that adds something.
-constexpr float k_rounding = 1e-5f;
-
 Eigen::Vector3d corner_of(const VoxelFrame& frame, const BlockMap::Coord& block) {
   return frame.origin + frame.voxel_size * k_block_side * block.cast<double>();
 }
@@ -72,7 +68,7 @@ void BlockParticles::pick(const BlockMap& blocks, const VoxelFrame& frame, std::
   const double side = frame.voxel_size * (k_block_side - 1);
   BlockBox box{};
   // As in the search for neighbours.
-  box.squared_reach = cells_.radius() * cells_.radius() * (1 + k_rounding);
+  box.squared_reach = cells_.radius() * cells_.radius() * (1 + k_reach_rounding);
   box.per_radius = 1 / radius;
   for (int a = 0; a < 3; ++a) {
     box.corner[a] = corner[a];
@@ -97,7 +93,7 @@ void BlockParticles::drop_out_of_reach(float side, BlockNear& near) const {
       const float x = near.axes[a][k];
       reaches = reaches && x + shape.reach[a] >= 0 && x - shape.reach[a] <= side;
       near.axes[a][kept] = x;
-      near.reach[a][kept] = (1 + k_rounding) * shape.reach[a];
+      near.reach[a][kept] = (1 + k_reach_rounding) * shape.reach[a];
     }
     if (!reaches) continue;
     near.which[kept] = near.which[k];

@@ -7,9 +7,6 @@
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
-/// Share of the squared radius by which particles may look farther away from a box than from its points.
-constexpr float k_rounding = 1e-5f;
-
 /// How far eight coordinates are from what lies between two others; 0 within.
 MALLOW_INLINE Floats distance(const Floats& x, const Floats& low, const Floats& high) {
   return larger(larger(low - x, x - high), Floats{});
@@ -73,7 +70,7 @@ struct RoundKernel {
   [[gnu::always_inline]] Ints in_reach(const Floats& square, const Floats& low, const Floats& high,
                                        const ConstVectors& near, std::size_t k) const {
     const Floats dz = distance(load(near.z + k), low, high);
-    return is_at_most(square + dz * dz, all(1.0f + k_rounding));
+    return is_at_most(square + dz * dz, all(1.0f + k_reach_rounding));
   }
 };
 

@@ -18,6 +18,9 @@ struct Ellipsoid {
 
 /// Sums over the particles about a point: Σ w, Σ w (x_i − x) and Σ w |x_i − x|².
 inline constexpr std::size_t k_sums = 5;
+/// Share by which reaches, or their squares, grow, so that rounding leaves out no particle that adds
+/// something: one may look farther away from a box than from its points.
+inline constexpr float k_reach_rounding = 1e-5f;
 /// Density and its gradient at a point.
 inline constexpr std::size_t k_density_sums = 4;
 

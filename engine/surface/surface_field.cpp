@@ -26,7 +26,7 @@ constexpr double k_node_distance = 0.2;
 /// Probes are at most this far apart, in spacings: less than a sphere is wide at the default particle radius
 /// and at most what three voxels of background bridge.
 constexpr double k_probe_distance = 0.75;
-constexpr std::size_t k_cubes_at_once = 4, k_groups_at_once = 2;
+constexpr std::size_t k_cubes_at_once = 4;
 /// Bytes of a block that the surface passes through: distances, sums, neighbours, mesh.
 constexpr double k_block_bytes = 8192, k_gibibyte = 1 << 30;
 

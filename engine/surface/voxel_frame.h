@@ -10,8 +10,8 @@ namespace mallow {
 /// Voxels along a side of the blocks that level sets are kept in, those of an OpenVDB leaf.
 inline constexpr int k_block_side = 8;
 inline constexpr std::size_t k_block_voxels = 512;
-/// Blocks that a thread takes at once.
-inline constexpr std::size_t k_blocks_at_once = 8;
+/// Blocks, and groups of 2 × 2 × 2 of them, that a thread takes at once.
+inline constexpr std::size_t k_blocks_at_once = 8, k_groups_at_once = 2;
 
 /// Where the voxels of a grid lie: voxel (i, j, k) is the point origin + voxel_size · (i, j, k).
 struct VoxelFrame {
