@@ -14,22 +14,22 @@ constexpr float k_forth = 0.5f, k_back = -0.5263f;
 
 }  // namespace
 
-void MeshSmoother::find_triangles(std::size_t first, const Mesh& mesh) {
+void MeshSmoother::find_triangles(std::size_t first, std::size_t first_triangle, const Mesh& mesh) {
   const std::size_t n = mesh.vertices.size() - first;
   begin_.assign(n + 1, 0);
-  for (const auto& t : mesh.triangles)
-    for (const std::uint32_t v : t)
-      if (v >= first) ++begin_[v - first + 1];
+  for (std::size_t t = first_triangle; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) ++begin_[v - first + 1];
   for (std::size_t v = 0; v < n; ++v) begin_[v + 1] += begin_[v];
   triangles_.resize(begin_[n]);
   std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+  for (std::size_t t = first_triangle; t < mesh.triangles.size(); ++t)
     for (const std::uint32_t v : mesh.triangles[t])
-      if (v >= first) triangles_[next[v - first]++] = static_cast<std::uint32_t>(t);
+      triangles_[next[v - first]++] = static_cast<std::uint32_t>(t);
 }
 
-void MeshSmoother::smooth(int rounds, std::size_t first, const Threads& threads, Mesh& mesh) {
-  find_triangles(first, mesh);
+void MeshSmoother::smooth(int rounds, std::size_t first, std::size_t first_triangle, const Threads& threads,
+                          Mesh& mesh) {
+  find_triangles(first, first_triangle, mesh);
   const std::size_t n = mesh.vertices.size() - first;
   next_.resize(n);
   const auto for_each_vertex = [&](const auto& work) {

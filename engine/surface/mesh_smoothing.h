@@ -13,11 +13,11 @@ namespace mallow {
 /// leaves what is long, and with it the volume. Keeps its memory.
 class MeshSmoother {
  public:
-  /// Vertices from `first` on, and their normals anew; triangles have no others from there on.
-  void smooth(int rounds, std::size_t first, const Threads& threads, Mesh& mesh);
+  /// Vertices from `first` on, and their normals anew, which triangles from `first_triangle` on have.
+  void smooth(int rounds, std::size_t first, std::size_t first_triangle, const Threads& threads, Mesh& mesh);
 
  private:
-  void find_triangles(std::size_t first, const Mesh& mesh);
+  void find_triangles(std::size_t first, std::size_t first_triangle, const Mesh& mesh);
 
   std::vector<std::uint32_t> begin_, triangles_;  ///< of each vertex
   std::vector<Vec3> next_;

@@ -8,8 +8,11 @@ SurfaceParticles surface_particles(const Simulation& simulation) {
                              .bodies = {},
                              .ids = simulation.ids()};
   for (const BodyId body : simulation.bodies())
-    particles.bodies.push_back(
-        {.spacing = simulation.spacing(body), .body = slot_of(body), .rows = simulation.rows(body)});
+    particles.bodies.push_back({.spacing = simulation.spacing(body),
+                                .body = slot_of(body),
+                                .rows = simulation.rows(body),
+                                .name = simulation.name(body),
+                                .material = simulation.material(body)});
   return particles;
 }
 

@@ -1,93 +1,52 @@
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <sstream>
 #include <utility>
 
 #include "core/parallel.h"
-#include "mallow/errors.h"
 #include "mallow/surface.h"
+#include "surface/drawn_particles.h"
 #include "surface/dual_mesher.h"
+#include "surface/mesh_parts.h"
 #include "surface/mesh_smoothing.h"
 #include "surface/particle_order.h"
 #include "surface/surface_checks.h"
+#include "surface/surface_extent.h"
 #include "surface/surface_field.h"
 #include "surface/surfacer_access.h"
 
 namespace mallow {
-namespace {
-
-/// Voxels along an axis: keeps the numbers of blocks within 21 bits and offsets within a block exact.
-constexpr int k_max_side = 1 << 22;
-
-/// The box of all particles and of the surface around them.
-struct Extent {
-  Eigen::Vector3d low;      ///< of the particles [m]
-  double longest_side = 0;  ///< with the surface [m]
-};
-
-Extent extent_of(const SurfaceParticles& particles, double margin) {
-  constexpr float k_far = std::numeric_limits<float>::max();
-  Vec3 low = Vec3::Constant(k_far), high = -low;
-  for (const SurfaceBody& body : particles.bodies) {
-    const Simulation::Rows rows = rows_of(body, particles.positions.size());
-    for (std::size_t row = rows.begin; row < rows.end; ++row) {
-      const Vec3 x = particles.positions[row];
-      low = low.cwiseMin(x);
-      high = high.cwiseMax(x);
-    }
-  }
-  const Eigen::Vector3d corner = low.cast<double>();
-  return {corner, (high.cast<double>() - corner).maxCoeff() + 2 * margin};
-}
-
-/// Side of the voxels of a surface [m]. A float, where it does not follow the box: a whole number of such
-/// sides is exact in double, and so are places on the grid wherever its origin is.
-double voxel_size(const SurfaceConfig& config, float spacing, const Extent& extent) {
-  if (config.voxel_size) return static_cast<double>(*config.voxel_size);
-  if (config.voxels) return extent.longest_side / *config.voxels;
-  return static_cast<double>(spacing / config.voxels_per_spacing);
-}
-
-/// The grid of a surface. Its origin is a corner of a fixed lattice, a cube of BlockMap wide: voxels, blocks
-/// and the order of blocks stay where they are while particles come and go.
-VoxelFrame make_frame(const SurfaceConfig& config, float spacing, const Extent& extent) {
-  constexpr int k_lattice = BlockMap::k_cube_side * k_block_side;
-  VoxelFrame frame;
-  frame.voxel_size = voxel_size(config, spacing, extent);
-  const double side = k_lattice * frame.voxel_size;
-  frame.origin = (extent.low / side).array().floor() * side;
-  if (extent.longest_side / frame.voxel_size > k_max_side) {
-    std::ostringstream text;
-    text << "voxels of " << frame.voxel_size << " m are too small for these particles: the grid would be "
-         << extent.longest_side / frame.voxel_size << " voxels long, and " << k_max_side << " are allowed";
-    throw ConfigError("surface.voxel_size", text.str());
-  }
-  return frame;
-}
-
-}  // namespace
-
 struct Surfacer::Work {
   SurfaceConfig config;
   std::shared_ptr<Executor> executor;  ///< that `threads` points to
   Threads threads = 1;
   ParticleOrder order;
-  std::vector<SurfaceField> fields;  ///< one for each surface
+  // One for each surface.
+  std::vector<SurfaceField> fields;
+  std::vector<DrawnParticles> drawn;
+  std::vector<MeshPart> parts;
+  std::vector<float> spacings;  ///< the widest [m]
   DualMesher mesher;
   Mesh mesh;
+  std::size_t kept = 0;  ///< surfaces of the frame before
+  bool whole = false;    ///< the mesh and all that belongs to it are those of one frame
+  Mesh fresh;            ///< surfaces that are drawn anew where others are kept
   MeshCounts counts;
-  std::vector<float> spacings;             ///< the widest of each surface [m]
-  std::vector<std::uint32_t> body_of_row;  ///< of joined surfaces
+  std::vector<std::uint32_t> body_of_row;  ///< of joined surfaces with several bodies
   std::vector<std::uint32_t> bodies;       ///< the same by particle, in the order of its field
   MeshSmoother smoother;
+  std::vector<SurfacePart> body_parts;
 
   void draw(const SurfaceParticles& particles);
-  void draw_one(const SurfaceParticles& all, std::size_t surface, const Extent& extent);
+  void draw_all(const SurfaceParticles& particles);
+  void find_spacings(const SurfaceParticles& particles);
+  void find_bodies(const SurfaceParticles& particles);
+  void find_changes(const SurfaceParticles& particles, const Extent& extent, bool keep);
+  SurfaceSource source_of(const SurfaceParticles& all, std::size_t surface, const Extent& extent) const;
+  void draw_one(const SurfaceSource& source, std::size_t surface, Mesh& to);
   template <class Visit>
   void at_vertices(const Visit& visit);
-  void find_materials(const SurfaceField& field, const SurfaceParticles& all);
-  void find_velocities(const SurfaceField& field, const PickedVectors& velocities);
+  void find_materials(const SurfaceField& field, Mesh& to);
+  void find_velocities(const SurfaceField& field, const PickedVectors& velocities, Mesh& to);
+  void list_parts(const SurfaceParticles& particles);
 };
 
 /// Calls visit(run, points, n) for the vertices of the surface drawn last, a run of them in or next to one
@@ -115,67 +74,133 @@ void Surfacer::Work::at_vertices(const Visit& visit) {
 }
 
 /// Each vertex of a joined surface belongs to the body that has the largest share of the weight there.
-void Surfacer::Work::find_materials(const SurfaceField& field, const SurfaceParticles& all) {
-  const auto in_body_0 = [](const SurfaceBody& body) { return body.body == 0; };
-  if (std::all_of(all.bodies.begin(), all.bodies.end(), in_body_0)) return;
-  body_of_row.resize(all.positions.size());
-  for (const SurfaceBody& body : all.bodies) {
-    const Simulation::Rows rows = rows_of(body, body_of_row.size());
-    for (std::size_t row = rows.begin; row < rows.end; ++row) body_of_row[row] = body.body;
-  }
-  bodies.clear();
-  for (const std::uint32_t row : order.rows(0)) bodies.push_back(body_of_row[row]);
+void Surfacer::Work::find_materials(const SurfaceField& field, Mesh& to) {
   at_vertices([&](const DualMesher::BlockVertices& run, ConstVectors points, std::size_t n) {
-    field.body_at(run.block, points, n, bodies, std::span(mesh.material_ids).subspan(run.first, run.count));
+    field.body_at(run.block, points, n, bodies, std::span(to.material_ids).subspan(run.first, run.count));
   });
 }
 
-void Surfacer::Work::find_velocities(const SurfaceField& field, const PickedVectors& velocities) {
-  mesh.velocities.resize(mesh.vertices.size());
+void Surfacer::Work::find_velocities(const SurfaceField& field, const PickedVectors& velocities, Mesh& to) {
+  to.velocities.resize(to.vertices.size());
   at_vertices([&](const DualMesher::BlockVertices& run, ConstVectors points, std::size_t n) {
     thread_local std::vector<float> means[3];
     for (std::vector<float>& mean : means) mean.resize(n);
     field.mean_at(run.block, points, n, velocities, {means[0].data(), means[1].data(), means[2].data()});
     for (std::uint32_t v = 0; v < run.count; ++v)
-      mesh.velocities[run.first + v] = Vec3(means[0][v], means[1][v], means[2][v]);
+      to.velocities[run.first + v] = Vec3(means[0][v], means[1][v], means[2][v]);
   });
 }
 
 /// Appends the surface around the particles of a body, or of all where they are joined.
-void Surfacer::Work::draw_one(const SurfaceParticles& all, std::size_t surface, const Extent& extent) {
-  const std::span<const std::uint32_t> rows = order.rows(surface);
-  if (rows.empty()) return;
+void Surfacer::Work::draw_one(const SurfaceSource& source, std::size_t surface, Mesh& to) {
   SurfaceField& field = fields[surface];
-  const std::size_t first = counts.vertices;
-  const float spacing = spacings[surface];
-  field.build({all.positions, rows}, spacing, config, make_frame(config, spacing, extent), threads);
-  mesher.append(field, config.adaptivity, threads, counts, mesh);
-  mesh.material_ids.resize(mesh.vertices.size(), static_cast<std::uint32_t>(surface));
-  if (config.joined) find_materials(field, all);
-  if (!all.velocities.empty()) find_velocities(field, {all.velocities, rows});
-  if (config.smoothing > 0) smoother.smooth(config.smoothing, first, threads, mesh);
+  const MeshCounts first = counts;
+  field.build(source.positions, source.spacing, config, source.frame, threads);
+  mesher.append(field, config.adaptivity, threads, counts, to);
+  to.material_ids.resize(to.vertices.size(), static_cast<std::uint32_t>(surface));
+  if (!source.bodies.empty()) find_materials(field, to);
+  if (source.velocities.size() > 0) find_velocities(field, source.velocities, to);
+  if (config.smoothing > 0) smoother.smooth(config.smoothing, first.vertices, first.triangles, threads, to);
+  parts[surface] = {first.vertices, counts.vertices - first.vertices, first.triangles,
+                    counts.triangles - first.triangles, true};
 }
 
-void Surfacer::Work::draw(const SurfaceParticles& particles) {
-  check(particles);
-  counts = {};
-  mesh.velocities.clear();
-  mesh.material_ids.clear();
-  order.sort(particles, config.joined);
-  fields.resize(order.surfaces());
-  for (SurfaceField& field : fields) field.clear();
-  if (order.count() == 0) {
-    mesh = {};
-    return;
+SurfaceSource Surfacer::Work::source_of(const SurfaceParticles& all, std::size_t surface,
+                                        const Extent& extent) const {
+  const std::span<const std::uint32_t> rows = order.rows(surface);
+  SurfaceSource source{.positions = {all.positions, rows},
+                       .velocities = {},
+                       .bodies = bodies,
+                       .spacing = spacings[surface],
+                       .frame = make_frame(config, spacings[surface], extent)};
+  if (!all.velocities.empty()) source.velocities = {all.velocities, rows};
+  return source;
+}
+
+/// Where surfaces that share one are of several bodies: which particle is of which.
+void Surfacer::Work::find_bodies(const SurfaceParticles& particles) {
+  bodies.clear();
+  const auto in_body_0 = [](const SurfaceBody& body) { return body.body == 0; };
+  if (!config.joined || std::ranges::all_of(particles.bodies, in_body_0)) return;
+  body_of_row.resize(particles.positions.size());
+  for (const SurfaceBody& body : particles.bodies) {
+    const Simulation::Rows rows = rows_of(body, body_of_row.size());
+    for (std::size_t row = rows.begin; row < rows.end; ++row) body_of_row[row] = body.body;
   }
-  spacings.assign(fields.size(), 0.0f);
+  for (const std::uint32_t row : order.rows(0)) bodies.push_back(body_of_row[row]);
+}
+
+void Surfacer::Work::find_spacings(const SurfaceParticles& particles) {
+  spacings.assign(order.surfaces(), 0.0f);
   for (const SurfaceBody& body : particles.bodies) {
     float& widest = spacings[config.joined ? 0 : body.body];
     widest = std::max(widest, body.spacing);
   }
-  const float widest = *std::max_element(spacings.begin(), spacings.end());
+}
+
+/// Marks the surfaces that are to be drawn anew, and counts those that are kept as they are.
+void Surfacer::Work::find_changes(const SurfaceParticles& particles, const Extent& extent, bool keep) {
+  kept = 0;
+  for (std::size_t s = 0; s < parts.size(); ++s) {
+    if (order.rows(s).empty()) {
+      fields[s].clear();
+      drawn[s] = {};
+      parts[s] = {};
+      continue;
+    }
+    const bool same = drawn[s].note(source_of(particles, s, extent), threads) && keep;
+    parts[s].fresh = !same;
+    kept += same ? 1 : 0;
+  }
+}
+
+void Surfacer::Work::draw_all(const SurfaceParticles& particles) {
+  const bool keep = std::exchange(whole, false);
+  find_spacings(particles);
+  find_bodies(particles);
+  const float widest = *std::ranges::max_element(spacings);
   const Extent extent = extent_of(particles, static_cast<double>(config.particle_radius * widest));
-  for (std::size_t s = 0; s < fields.size(); ++s) draw_one(particles, s, extent);
+  find_changes(particles, extent, keep);
+  counts = {};
+  Mesh& to = kept > 0 ? fresh : mesh;
+  to.velocities.clear();
+  to.material_ids.clear();
+  for (std::size_t s = 0; s < parts.size(); ++s)
+    if (parts[s].fresh) draw_one(source_of(particles, s, extent), s, to);
+  if (kept > 0) put_together(fresh, threads, parts, mesh);
+  whole = true;
+}
+
+/// What SurfacePart says of the bodies of the mesh.
+void Surfacer::Work::list_parts(const SurfaceParticles& particles) {
+  body_parts.clear();
+  if (config.joined) return;
+  std::vector<const SurfaceBody*> first(parts.size(), nullptr);
+  for (const SurfaceBody& body : particles.bodies)
+    if (first[body.body] == nullptr) first[body.body] = &body;
+  for (std::size_t s = 0; s < parts.size(); ++s) {
+    if (order.rows(s).empty()) continue;
+    const MeshPart& part = parts[s];
+    body_parts.push_back({static_cast<std::uint32_t>(s), std::string(first[s]->name), first[s]->material,
+                          part.first_vertex, part.vertices, part.first_triangle, part.triangles});
+  }
+}
+
+void Surfacer::Work::draw(const SurfaceParticles& particles) {
+  check(particles);
+  order.sort(particles, config.joined);
+  fields.resize(order.surfaces());
+  drawn.resize(order.surfaces());
+  parts.resize(order.surfaces());
+  if (order.count() > 0) {
+    draw_all(particles);
+  } else {
+    for (SurfaceField& field : fields) field.clear();
+    mesh = {};
+    kept = 0;
+    whole = false;
+  }
+  list_parts(particles);
 }
 
 Surfacer::Surfacer(const SurfaceConfig& config, int threads, std::shared_ptr<Executor> executor) {
@@ -194,19 +219,29 @@ const Mesh& Surfacer::draw(const SurfaceParticles& particles) {
   return work_->mesh;
 }
 
+std::span<const SurfacePart> Surfacer::parts() const {
+  return work_->body_parts;
+}
+
 std::size_t Surfacer::surface_count() const {
   return work_->fields.size();
 }
 
 std::size_t Surfacer::bytes() const {
-  std::size_t bytes =
-      work_->order.bytes() + work_->mesher.bytes() + work_->mesh.vertices.capacity() * 4 * sizeof(Vec3);
+  // Two triangles a vertex, and place, normal and velocity.
+  constexpr std::size_t k_vertex_bytes = 5 * sizeof(Vec3) + sizeof(std::uint32_t);
+  std::size_t bytes = work_->order.bytes() + work_->mesher.bytes() +
+                      (work_->mesh.vertices.capacity() + work_->fresh.vertices.capacity()) * k_vertex_bytes;
   for (const SurfaceField& field : work_->fields) bytes += field.bytes();
+  for (const DrawnParticles& particles : work_->drawn) bytes += particles.bytes();
   return bytes;
 }
 
 std::span<const SurfaceField> SurfacerAccess::fields(const Surfacer& surfacer) {
   return surfacer.work_->fields;
+}
+std::size_t SurfacerAccess::kept(const Surfacer& surfacer) {
+  return surfacer.work_->kept;
 }
 const Threads& SurfacerAccess::threads(const Surfacer& surfacer) {
   return surfacer.work_->threads;

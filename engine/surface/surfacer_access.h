@@ -8,8 +8,10 @@
 
 namespace mallow {
 
-/// What makes grids of a surfacer's frame.
+/// What makes grids of a surfacer's frame, and what tests look at.
 struct MALLOW_EXPORT SurfacerAccess {
+  /// Surfaces with particles that the last frame kept from the one before.
+  static std::size_t kept(const Surfacer& surfacer);
   static std::span<const SurfaceField> fields(const Surfacer& surfacer);
   static const Threads& threads(const Surfacer& surfacer);
 };

@@ -40,7 +40,7 @@ TEST(surface_particles, meshes_have_the_same_bits_whatever_the_order_of_rows_whe
   for (const SurfaceKind kind : {SurfaceKind::blended, SurfaceKind::anisotropic, SurfaceKind::spheres}) {
     Surfacer surfacer({.kind = kind});
     const Mesh expected = surfacer.draw({points, points, {{.spacing = 1}}});
-    expect_same(surfacer.draw({shuffled, shuffled, {{.spacing = 1}}, ids}), expected);
+    expect_same(Surfacer({.kind = kind}).draw({shuffled, shuffled, {{.spacing = 1}}, ids}), expected);
   }
 }
 
@@ -53,7 +53,7 @@ TEST(surface_particles, columns_and_arrays_are_drawn_alike) {
   const VectorView view(columns.data(), n, n + 5);
   Surfacer surfacer({});
   const Mesh expected = surfacer.draw({points, points, {{.spacing = 1}}});
-  expect_same(surfacer.draw({view, view, {{.spacing = 1}}}), expected);
+  expect_same(Surfacer({}).draw({view, view, {{.spacing = 1}}}), expected);
 }
 
 TEST(surface_particles, rows_of_no_body_are_not_drawn_and_stretches_of_a_body_share_a_surface) {

@@ -5,10 +5,13 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "mallow/executor.h"
 #include "mallow/export.h"
+#include "mallow/ids.h"
 #include "mallow/mesh.h"
 #include "mallow/simulation.h"
 #include "mallow/surface_config.h"
@@ -64,6 +67,8 @@ struct SurfaceBody {
   /// is taken for each body up to the largest.
   std::uint32_t body = 0;
   std::optional<Simulation::Rows> rows = {};  ///< its particles; left out: all
+  std::string_view name = {};                 ///< of the body, which SurfacePart has too
+  MaterialId material = {};                   ///< the same
 };
 
 /// Particles that surfaces are drawn around, seen where they lie.
@@ -79,9 +84,20 @@ struct SurfaceParticles {
 /// The particles of a simulation as they are now; a view, valid until the next step or change.
 MALLOW_EXPORT SurfaceParticles surface_particles(const Simulation& simulation);
 
+/// The part of a mesh that is the surface of one body: a range of vertices and one of triangles, which have
+/// no other vertices.
+struct SurfacePart {
+  std::uint32_t body;   ///< as in SurfaceBody, and in Mesh::material_ids of these vertices
+  std::string name;     ///< of the first SurfaceBody that is part of the body
+  MaterialId material;  ///< the same
+  std::size_t first_vertex, vertices;
+  std::size_t first_triangle, triangles;
+};
+
 /// Draws the surfaces of one frame after another, and keeps its memory from frame to frame. A mesh is closed,
 /// manifold and oriented; its vertices have normals, material ids, which are bodies, and, where particles
-/// have them, velocities. Same particles, same bits, for any number of threads.
+/// have them, velocities. Same particles, same bits, for any number of threads. Surfaces whose particles are
+/// bit by bit those of the frame before, as of bodies that sleep, are not drawn again but kept.
 class MALLOW_EXPORT Surfacer {
  public:
   /// threads, executor: as in SolverConfig. Throws ConfigError where a value is out of range.
@@ -97,6 +113,10 @@ class MALLOW_EXPORT Surfacer {
   /// ConfigError where particles are not as said, or the surface would take more than
   /// SurfaceConfig::memory_limit.
   const Mesh& draw(const SurfaceParticles& particles);
+  /// The parts of the mesh drawn last, one for each body with particles, in the order of bodies: they follow
+  /// each other and are all of the mesh. None where surfaces are joined: there Mesh::material_ids tell bodies
+  /// apart.
+  std::span<const SurfacePart> parts() const;
   /// How many surfaces the frame drawn last has: one, or one for each body up to the last that has
   /// particles.
   std::size_t surface_count() const;
