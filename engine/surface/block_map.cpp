@@ -21,14 +21,20 @@ BlockMap::Coord place_of(std::uint64_t key) {
   return {coordinate(2 * k_bits), coordinate(k_bits), coordinate(0)};
 }
 
-/// Bits of a cube whose places along one axis are in [first, last]; `stride` bits from one place to the next.
-std::uint64_t slab(int first, int last, int stride) {
-  constexpr std::uint64_t k_places[3] = {0x000000000000FFFF, 0x000F000F000F000F, 0x1111111111111111};
-  const std::uint64_t place = k_places[stride == 16 ? 0 : stride == 4 ? 1 : 2];
-  std::uint64_t bits = 0;
-  for (int p = std::max(first, 0); p <= std::min(last, 3); ++p) bits |= place << (p * stride);
-  return bits;
-}
+/// Bits of a cube whose places along one axis are in [first, last], of which some are: by where the axis's
+/// places lie, 16, 4 bits or 1 apart.
+struct Places {
+  unsigned first, last;
+  Places(int from, int to)
+      : first(static_cast<unsigned>(std::max(from, 0))), last(static_cast<unsigned>(std::min(to, 3))) {}
+  std::uint64_t slab_16() const {
+    return ~std::uint64_t{0} >> (48 - 16 * last) & ~std::uint64_t{0} << 16 * first;
+  }
+  std::uint64_t slab_4() const {
+    return (0xFFFFu >> (12 - 4 * last) & 0xFFFFu << 4 * first) * 0x0001000100010001u;
+  }
+  std::uint64_t slab_1() const { return (0xFu >> (3 - last) & 0xFu << first) * 0x1111111111111111u; }
+};
 
 /// Numbers of the blocks of a cube and of those next to it.
 class Surroundings {
@@ -109,13 +115,14 @@ BlockMap::Cube& BlockMap::cube(std::uint64_t key) {
 
 void BlockMap::insert(const Coord& first, const Coord& last) {
   for (int x = first.x() >> 2; x <= last.x() >> 2; ++x) {
-    const std::uint64_t in_x = slab(first.x() - k_cube_side * x, last.x() - k_cube_side * x, 16);
+    const std::uint64_t in_x = Places(first.x() - k_cube_side * x, last.x() - k_cube_side * x).slab_16();
     for (int y = first.y() >> 2; y <= last.y() >> 2; ++y) {
-      const std::uint64_t in_y = slab(first.y() - k_cube_side * y, last.y() - k_cube_side * y, 4);
+      const std::uint64_t in_xy =
+          in_x & Places(first.y() - k_cube_side * y, last.y() - k_cube_side * y).slab_4();
       for (int z = first.z() >> 2; z <= last.z() >> 2; ++z) {
-        const std::uint64_t in_z = slab(first.z() - k_cube_side * z, last.z() - k_cube_side * z, 1);
+        const std::uint64_t in_z = Places(first.z() - k_cube_side * z, last.z() - k_cube_side * z).slab_1();
         Cube& c = cube(key_of(x, y, z));
-        const std::uint64_t more = in_x & in_y & in_z & ~c.blocks;
+        const std::uint64_t more = in_xy & in_z & ~c.blocks;
         if (more == 0) continue;
         c.blocks |= more;
         size_ += static_cast<std::size_t>(std::popcount(more));

@@ -46,15 +46,17 @@ void BlockParticles::find_near(const BlockMap& blocks, const VoxelFrame& frame, 
         thread_local NearParticles near;
         for (std::size_t g = begin; g < end; ++g) {
           cells_.find_places_near(corner_of(frame, groups[g].first), side, near);
-          near_[g].assign(near.places.data(), near.places.data() + near.count);
+          near_[g].places.assign(near.places.data(), near.places.data() + near.count);
+          cells_.positions(near_[g].places, near_[g].axes);
         }
       },
       k_groups_at_once);
 }
 
 void BlockParticles::load_group(std::uint32_t group, BlockNear& near) const {
-  near.group_places = near_[group];
-  cells_.positions(near.group_places, near.group);
+  const NearGroup& from = near_[group];
+  near.group_places = from.places;
+  near.group = {from.axes[0].data(), from.axes[1].data(), from.axes[2].data()};
   const std::size_t room = near.group_places.size() + k_cluster;
   for (std::vector<float>& axis : near.axes) make_room(axis, room);
   make_room(near.which, room);
@@ -75,9 +77,9 @@ void BlockParticles::pick(const BlockMap& blocks, const VoxelFrame& frame, std::
     box.low[a] = static_cast<float>(corner[a]);
     box.high[a] = static_cast<float>(corner[a] + side);
   }
-  near.count = best_sum_lanes().pick_near(
-      box, {near.group[0].data(), near.group[1].data(), near.group[2].data()}, near.group_places.size(),
-      {near.axes[0].data(), near.axes[1].data(), near.axes[2].data()}, near.which.data());
+  near.count = best_sum_lanes().pick_near(box, near.group, near.group_places.size(),
+                                          {near.axes[0].data(), near.axes[1].data(), near.axes[2].data()},
+                                          near.which.data());
   if (shaped_) drop_out_of_reach(static_cast<float>(side / radius), near);
 }
 
@@ -109,7 +111,8 @@ void BlockParticles::drop_out_of_reach(float side, BlockNear& near) const {
 
 std::size_t BlockParticles::bytes() const {
   std::size_t bytes = cells_.bytes() + ellipsoids_.bytes() + near_.capacity() * sizeof near_[0];
-  for (const std::vector<std::uint32_t>& places : near_) bytes += places.capacity() * sizeof(std::uint32_t);
+  for (const NearGroup& near : near_)
+    bytes += near.places.capacity() * sizeof(std::uint32_t) + 3 * near.axes[0].capacity() * sizeof(float);
   return bytes;
 }
 

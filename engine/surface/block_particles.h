@@ -21,8 +21,9 @@ struct BlockNear {
   std::vector<Ellipsoid> shapes;
   std::vector<float> reach[3];
 
-  std::vector<float> group[3];  ///< those near its group [m]
+  // Those near its group.
   std::span<const std::uint32_t> group_places;
+  ConstVectors group{};              ///< positions [m]
   std::vector<std::uint32_t> which;  ///< of those it has
   std::vector<std::uint32_t> listed;
 
@@ -52,12 +53,17 @@ class BlockParticles {
   std::size_t bytes() const;
 
  private:
+  /// The particles near a group.
+  struct NearGroup {
+    std::vector<std::uint32_t> places;
+    std::vector<float> axes[3];  ///< positions [m], with room for k_cluster more
+  };
   void drop_out_of_reach(float side, BlockNear& near) const;
 
   ParticleCells cells_;
   Ellipsoids ellipsoids_;
   bool shaped_ = false;
-  std::vector<std::vector<std::uint32_t>> near_;  ///< places of the particles near each group
+  std::vector<NearGroup> near_;  ///< of each group
 };
 
 }  // namespace mallow

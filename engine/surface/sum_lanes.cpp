@@ -5,6 +5,22 @@
 #include "core/cluster_lanes.h"
 
 namespace mallow::MALLOW_LEVEL {
+#ifdef __AVX512F__
+/// Two planes of eight points in one register.
+using Wide = float __attribute__((vector_size(2 * k_cluster * sizeof(float))));
+// With a mask of all lanes: GCC 12 takes what the plain ones return for not set.
+MALLOW_INLINE Wide larger(const Wide& a, const Wide& b) {
+  return reinterpret_cast<Wide>(
+      _mm512_maskz_max_ps(0xFFFF, reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b)));
+}
+MALLOW_INLINE Wide smaller(const Wide& a, const Wide& b) {
+  return reinterpret_cast<Wide>(
+      _mm512_maskz_min_ps(0xFFFF, reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b)));
+}
+MALLOW_INLINE Wide both(const Floats& low, const Floats& high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+#endif
 namespace {
 
 /// How far eight coordinates are from what lies between two others; 0 within.
@@ -39,9 +55,10 @@ std::size_t pick_near(const BlockBox& block, ConstVectors positions, std::size_t
   return kept;
 }
 
-/// 1 − |x_i − x|², at least 0, of eight points and one particle.
-MALLOW_INLINE Floats nearness(const Floats& square) {
-  return larger(1.0f - square, Floats{});
+/// 1 − |x_i − x|², at least 0, of points and one particle.
+template <class L>
+MALLOW_INLINE L nearness(const L& square) {
+  return larger(1.0f - square, L{});
 }
 
 /// Groups of points above each other in z.
@@ -49,14 +66,7 @@ struct PointColumn {
   Floats low_x, high_x, low_y, high_y;
 };
 
-MALLOW_INLINE Floats zero() {
-  return all(0);
-}
-MALLOW_INLINE ClusterVec3 zeros() {
-  return {zero(), zero(), zero()};
-}
-
-// What is summed: a State of eight points, and over which particles.
+// What is summed: a State of points, a lane each, and over which particles.
 
 /// Kernels that are spheres of the kernel radius.
 struct RoundKernel {
@@ -67,6 +77,9 @@ struct RoundKernel {
     const Floats dy = distance(load(near.y + k), column.low_y, column.high_y);
     return dx * dx + dy * dy;
   }
+  [[gnu::always_inline]] bool any_in_reach(const Floats& square) const {
+    return any(is_at_most(square, all(1.0f + k_reach_rounding)));
+  }
   [[gnu::always_inline]] Ints in_reach(const Floats& square, const Floats& low, const Floats& high,
                                        const ConstVectors& near, std::size_t k) const {
     const Floats dz = distance(load(near.z + k), low, high);
@@ -76,21 +89,26 @@ struct RoundKernel {
 
 struct BlendedSums : RoundKernel {
   static constexpr std::size_t k_values = k_sums;
+  template <class L>
   struct State {
-    Floats weight;
-    ClusterVec3 offset;
-    Floats square;
+    L weight;
+    Vec3Of<L> offset;
+    L square;
   };
-  [[gnu::always_inline]] State start() const { return {zero(), zeros(), zero()}; }
-  [[gnu::always_inline]] void add(State& s, const ClusterVec3& d, std::uint32_t) const {
-    const Floats square = dot_from_left(d, d);
-    const Floats t = nearness(square);
-    const Floats w = t * t * t;
+  template <class L>
+  [[gnu::always_inline]] State<L> start() const {
+    return State<L>{};
+  }
+  template <class L>
+  [[gnu::always_inline]] void add(State<L>& s, const Vec3Of<L>& d, std::uint32_t) const {
+    const L square = dot_from_left(d, d);
+    const L t = nearness(square);
+    const L w = t * t * t;
     s.weight += w;
     s.offset += w * d;
     s.square += w * square;
   }
-  [[gnu::always_inline]] void put(const State& s, Floats* to, std::size_t stride) const {
+  [[gnu::always_inline]] void put(const State<Floats>& s, Floats* to, std::size_t stride) const {
     to[0] = s.weight;
     to[stride] = s.offset.x;
     to[2 * stride] = s.offset.y;
@@ -103,18 +121,24 @@ struct NearestSquare : RoundKernel {
   float farthest;
 
   static constexpr std::size_t k_values = 1;
+  template <class L>
   struct State {
-    Floats least;
+    L least;
   };
-  [[gnu::always_inline]] State start() const { return {all(farthest)}; }
-  [[gnu::always_inline]] void add(State& s, const ClusterVec3& d, std::uint32_t) const {
+  template <class L>
+  [[gnu::always_inline]] State<L> start() const {
+    return {L{} + farthest};
+  }
+  template <class L>
+  [[gnu::always_inline]] void add(State<L>& s, const Vec3Of<L>& d, std::uint32_t) const {
     s.least = smaller(s.least, dot_from_left(d, d));
   }
-  [[gnu::always_inline]] void put(const State& s, Floats* to, std::size_t) const { to[0] = s.least; }
+  [[gnu::always_inline]] void put(const State<Floats>& s, Floats* to, std::size_t) const { to[0] = s.least; }
 };
 
 /// G v
-MALLOW_INLINE ClusterVec3 product(const Ellipsoid& g, const ClusterVec3& v) {
+template <class L>
+MALLOW_INLINE Vec3Of<L> product(const Ellipsoid& g, const Vec3Of<L>& v) {
   return {g.xx * v.x + g.xy * v.y + g.xz * v.z, g.xy * v.x + g.yy * v.y + g.yz * v.z,
           g.xz * v.x + g.yz * v.y + g.zz * v.z};
 }
@@ -125,31 +149,37 @@ struct DensitySums {
   ConstVectors reach;
 
   static constexpr std::size_t k_values = k_density_sums;
+  template <class L>
   struct State {
-    Floats density;
-    ClusterVec3 gradient;
+    L density;
+    Vec3Of<L> gradient;
   };
-  [[gnu::always_inline]] State start() const { return {zero(), zeros()}; }
+  template <class L>
+  [[gnu::always_inline]] State<L> start() const {
+    return State<L>{};
+  }
   [[gnu::always_inline]] Ints across(const PointColumn& column, const ConstVectors& near,
                                      std::size_t k) const {
     const Floats dx = distance(load(near.x + k), column.low_x, column.high_x);
     const Floats dy = distance(load(near.y + k), column.low_y, column.high_y);
     return is_at_most(dx, load(reach.x + k)) & is_at_most(dy, load(reach.y + k));
   }
+  [[gnu::always_inline]] bool any_in_reach(const Ints& reaches) const { return any(reaches); }
   [[gnu::always_inline]] Ints in_reach(const Ints& reaches, const Floats& low, const Floats& high,
                                        const ConstVectors& near, std::size_t k) const {
     return reaches & is_at_most(distance(load(near.z + k), low, high), load(reach.z + k));
   }
-  [[gnu::always_inline]] void add(State& s, const ClusterVec3& d, std::uint32_t i) const {
+  template <class L>
+  [[gnu::always_inline]] void add(State<L>& s, const Vec3Of<L>& d, std::uint32_t i) const {
     const Ellipsoid& g = shapes[i];
-    const ClusterVec3 q = product(g, d);
-    const Floats t = nearness(dot_from_left(q, q));
-    const Floats slope = g.weight * (t * t);
+    const Vec3Of<L> q = product(g, d);
+    const L t = nearness(dot_from_left(q, q));
+    const L slope = g.weight * (t * t);
     s.density += slope * t;
     // ∇(1 − |G d|²)³ = 6 t² G (G d)
     s.gradient += slope * product(g, q);
   }
-  [[gnu::always_inline]] void put(const State& s, Floats* to, std::size_t stride) const {
+  [[gnu::always_inline]] void put(const State<Floats>& s, Floats* to, std::size_t stride) const {
     const ClusterVec3 gradient = 6.0f * s.gradient;
     to[0] = s.density;
     to[stride] = gradient.x;
@@ -161,16 +191,21 @@ struct DensitySums {
 struct WeightedValues : RoundKernel {
   ConstVectors values;
 
+  template <class L>
   struct State {
-    Floats weight;
-    ClusterVec3 sum;
+    L weight;
+    Vec3Of<L> sum;
   };
-  [[gnu::always_inline]] State start() const { return {zero(), zeros()}; }
-  [[gnu::always_inline]] void add(State& s, const ClusterVec3& d, std::uint32_t i) const {
-    const Floats t = nearness(dot_from_left(d, d));
-    const Floats w = t * t * t;
+  template <class L>
+  [[gnu::always_inline]] State<L> start() const {
+    return State<L>{};
+  }
+  template <class L>
+  [[gnu::always_inline]] void add(State<L>& s, const Vec3Of<L>& d, std::uint32_t i) const {
+    const L t = nearness(dot_from_left(d, d));
+    const L w = t * t * t;
     s.weight += w;
-    s.sum += ClusterVec3{w * values.x[i], w * values.y[i], w * values.z[i]};
+    s.sum += Vec3Of<L>{w * values.x[i], w * values.y[i], w * values.z[i]};
   }
 };
 
@@ -190,28 +225,55 @@ MALLOW_INLINE void list_in_reach(const Kernel& kernel, const NearColumns& near, 
   std::uint32_t* to[groups];
   for (std::size_t g = 0; g < groups; ++g) to[g] = near.listed + g * room;
   Ints numbers = k_count;
-  for (std::size_t k = 0; k < end; k += k_cluster) {
+  for (std::size_t k = 0; k < end; k += k_cluster, numbers += static_cast<int>(k_cluster)) {
     const auto across = kernel.across(column, particles, k);
+    if (!kernel.any_in_reach(across)) continue;
     for (std::size_t g = 0; g < groups; ++g)
       to[g] += compress(bits(kernel.in_reach(across, low[g], high[g], particles, k)), numbers, to[g]);
-    numbers += static_cast<int>(k_cluster);
   }
   for (std::size_t g = 0; g < groups; ++g)
     counts[g] = static_cast<std::size_t>(to[g] - (near.listed + g * room));
 }
 
+#ifdef __AVX512F__
+/// The sums of two planes as those of each.
+template <template <class> class State>
+MALLOW_INLINE void split(const State<Wide>& sums, State<Floats>* to) {
+  constexpr std::size_t k_values = sizeof sums / sizeof(Wide);
+  Floats halves[k_values][2], planes[2][k_values];
+  __builtin_memcpy(halves, &sums, sizeof sums);
+  for (std::size_t v = 0; v < k_values; ++v)
+    for (std::size_t p = 0; p < 2; ++p) planes[p][v] = halves[v][p];
+  __builtin_memcpy(to, planes, sizeof planes);
+}
+#endif
+
 /// Sums at the points of a group over listed particles. Not inlined: a compiler that sees how a group's
 /// points lie takes z for one number, and its arithmetic twice.
 template <std::size_t planes, class Kernel>
 [[gnu::noinline]] void sum_listed(const Kernel& kernel, const ConstVectors& near, const std::uint32_t* listed,
-                                  std::size_t count, const Group<planes>& group, typename Kernel::State* to) {
+                                  std::size_t count, const Group<planes>& group,
+                                  typename Kernel::template State<Floats>* to) {
   const ConstVectors particles = near;
-  typename Kernel::State sums[planes];
-  for (typename Kernel::State& sum : sums) sum = kernel.start();
+#ifdef __AVX512F__
+  if constexpr (planes == 2) {
+    const Vec3Of<Wide> x = {both(group.x, group.x), both(group.y, group.y), both(group.z[0], group.z[1])};
+    auto sum = kernel.template start<Wide>();
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t i = listed[k];
+      kernel.add(sum, Vec3Of<Wide>{particles.x[i] - x.x, particles.y[i] - x.y, particles.z[i] - x.z}, i);
+    }
+    split(sum, to);
+    return;
+  }
+#endif
+  typename Kernel::template State<Floats> sums[planes];
+  for (auto& sum : sums) sum = kernel.template start<Floats>();
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = listed[k];
     const Floats dx = particles.x[i] - group.x, dy = particles.y[i] - group.y;
-    for (std::size_t p = 0; p < planes; ++p) kernel.add(sums[p], {dx, dy, particles.z[i] - group.z[p]}, i);
+    for (std::size_t p = 0; p < planes; ++p)
+      kernel.add(sums[p], ClusterVec3{dx, dy, particles.z[i] - group.z[p]}, i);
   }
   for (std::size_t p = 0; p < planes; ++p) to[p] = sums[p];
 }
@@ -255,7 +317,7 @@ MALLOW_INLINE void sum_in_columns(const Kernel& kernel, const PointLattice& latt
       for (std::size_t g = 0; g < k_groups; ++g) {
         group.z[0] = low[g];
         group.z[1] = high[g];
-        typename Kernel::State s[2];
+        typename Kernel::template State<Floats> s[2];
         sum_listed<2>(kernel, near.positions, near.listed + g * near.room(), counts[g], group, s);
         for (std::size_t p = 0; p < 2; ++p) kernel.put(s[p], &sums[0][2 * (g % 2) + p], 4);
         if (g % 2 == 0) continue;
@@ -270,7 +332,7 @@ MALLOW_INLINE void sum_in_columns(const Kernel& kernel, const PointLattice& latt
 template <class Kernel>
 MALLOW_INLINE void sum_at_eight(const Kernel& kernel, const NearColumns& near, const PointColumn& column,
                                 const Floats& low_z, const Floats& high_z, const ClusterVec3& x,
-                                typename Kernel::State& sums) {
+                                typename Kernel::template State<Floats>& sums) {
   std::size_t count;
   list_in_reach<1>(kernel, near, column, &low_z, &high_z, &count);
   sum_listed<1>(kernel, near.positions, near.listed, count, {x.x, x.y, {x.z}}, &sums);
@@ -283,7 +345,7 @@ MALLOW_INLINE void sum_at_corners(const Kernel& kernel, const PointLattice& latt
   const float far = static_cast<float>(lattice.step) * lattice.voxel;
   const ClusterVec3 x = {
       {0, 0, 0, 0, far, far, far, far}, {0, 0, far, far, 0, 0, far, far}, {0, far, 0, far, 0, far, 0, far}};
-  typename Kernel::State s;
+  typename Kernel::template State<Floats> s;
   const Floats zero = all(0);
   sum_at_eight(kernel, near, {zero, all(far), zero, all(far)}, zero, all(far), x, s);
   Floats sums[Kernel::k_values];
@@ -321,7 +383,7 @@ void mean(ConstVectors points, std::size_t n, const NearColumns& near, ConstVect
   const auto largest = [](const Floats& x) { return -smallest(-x); };
   for (std::size_t k = 0; k < n; k += k_cluster) {
     const ClusterVec3 x = load(points, k);
-    WeightedValues::State s;
+    WeightedValues::State<Floats> s;
     sum_at_eight(WeightedValues{{}, values}, near, {smallest(x.x), largest(x.x), smallest(x.y), largest(x.y)},
                  smallest(x.z), largest(x.z), x, s);
     const Floats per_weight = where(is_larger(s.weight, Floats{}), 1.0f / s.weight);

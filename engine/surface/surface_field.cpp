@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 #include "core/parallel.h"
-#include "mallow/errors.h"
 #include "mallow/instruction_level.h"
 
 namespace mallow {
@@ -27,8 +25,6 @@ constexpr double k_node_distance = 0.2;
 /// and at most what three voxels of background bridge.
 constexpr double k_probe_distance = 0.75;
 constexpr std::size_t k_cubes_at_once = 4;
-/// Bytes of a block that the surface passes through: distances, sums, neighbours, mesh.
-constexpr double k_block_bytes = 8192, k_gibibyte = 1 << 30;
 
 /// How much deeper than `z` spacings x̄ lies under a flat face, `z` above the outermost layer of a full
 /// lattice with a kernel of `radius` spacings. Layers are taken as sheets: (1 − d²/R²)⁴ is the kernel's
@@ -80,15 +76,6 @@ void find_neighbors(const BlockMap& blocks, const Threads& threads,
       k_cubes_at_once);
 }
 
-[[noreturn]] void refuse_memory(double blocks, const VoxelFrame& frame, const SurfaceConfig& config) {
-  std::ostringstream text;
-  text << "voxels of " << frame.voxel_size
-       << " m are too small for these particles: the surface would take at least "
-       << blocks * k_block_bytes / k_gibibyte << " GiB, and surface.memory_limit allows "
-       << config.memory_limit << " GiB";
-  throw ConfigError("surface.voxel_size", text.str());
-}
-
 }  // namespace
 
 void SurfaceField::clear() {
@@ -136,49 +123,13 @@ void SurfaceField::build(const PickedVectors& positions, float spacing, const Su
     shape_.threshold = static_cast<float>(std::pow(model.threshold, 0.25));
     particles_.shape(model, threads);
   }
-  find_blocks(reach, config);
+  finder_.find(particles_.cells(), frame_, reach, config.memory_limit, threads, blocks_);
   find_neighbors(blocks_, threads, neighbors_);
   particles_.find_near(blocks_, frame_, threads);
   probe(threads);
   classify(threads);
   if (node_step_ > 1) sum_at_nodes(threads);
   if (probe_step_ > 1) fill(threads);
-}
-
-/// Every block with a voxel within `reach` voxels of a particle, and some more; all else is outside.
-void SurfaceField::find_blocks(double reach, const SurfaceConfig& config) {
-  const double most = static_cast<double>(config.memory_limit) * k_gibibyte / k_block_bytes;
-  const ParticleCells& particles = particles_.cells();
-  // Particles come sorted, so that those of a block follow each other, in a few runs: a box for each run.
-  blocks_.clear();
-  const auto insert_around = [&](const Eigen::Array3d& low, const Eigen::Array3d& high) {
-    const Eigen::Array3d from = ((low - reach - (k_block_side - 1)) / k_block_side).ceil(),
-                         to = ((high + reach) / k_block_side).floor();
-    if (const double count = (to - from + 1).prod(); count > most) refuse_memory(count, frame_, config);
-    blocks_.insert(from.cast<int>(), to.cast<int>());
-    if (static_cast<double>(blocks_.size()) > most)
-      refuse_memory(static_cast<double>(blocks_.size()), frame_, config);
-  };
-  const auto in_voxels = [&](std::size_t place) -> Eigen::Vector3d {
-    return (particles.position(place).cast<double>() - frame_.origin) / frame_.voxel_size;
-  };
-  const auto block_of = [](const Eigen::Vector3d& voxel) -> BlockMap::Coord {
-    return (voxel / k_block_side).array().floor().cast<int>();
-  };
-  Eigen::Vector3d low = in_voxels(0), high = low;
-  BlockMap::Coord block = block_of(low);
-  for (std::size_t i = 1; i < particles.count(); ++i) {
-    const Eigen::Vector3d x = in_voxels(i);
-    if (const BlockMap::Coord here = block_of(x); here != block) {
-      insert_around(low, high);
-      block = here;
-      low = high = x;
-    }
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  insert_around(low, high);
-  blocks_.number();
 }
 
 /// Calls visit(block, near) for the blocks that are needed, with the particles near each.
@@ -370,7 +321,7 @@ void SurfaceField::fill(const Threads& threads) {
 }
 
 std::size_t SurfaceField::bytes() const {
-  return particles_.bytes() + blocks_.bytes() + distances_.bytes() +
+  return particles_.bytes() + finder_.bytes() + blocks_.bytes() + distances_.bytes() +
          neighbors_.capacity() * sizeof neighbors_[0] + node_sums_.capacity() * sizeof(float) +
          (place_.capacity() + node_place_.capacity()) * sizeof(std::size_t) + kind_.capacity() +
          needs_nodes_.capacity() + outside_.capacity() + inside_.capacity();

@@ -8,6 +8,7 @@
 #include "core/column.h"
 #include "core/threads.h"
 #include "mallow/surface_config.h"
+#include "surface/block_finder.h"
 #include "surface/block_map.h"
 #include "surface/block_particles.h"
 #include "surface/node_weights.h"
@@ -61,7 +62,6 @@ class SurfaceField {
   static constexpr float k_background = 3.0f;
 
  private:
-  void find_blocks(double reach, const SurfaceConfig& config);
   template <class Needed, class Visit>
   void for_each_block(const Threads& threads, const Needed& needed, const Visit& visit) const;
   BlockNear& near_block(std::uint32_t block) const;
@@ -89,6 +89,7 @@ class SurfaceField {
   NodeWeights weights_{};
 
   BlockParticles particles_;
+  BlockFinder finder_;
   BlockMap blocks_;
   std::vector<std::array<std::uint32_t, 27>> neighbors_;
   std::vector<BlockKind> kind_;

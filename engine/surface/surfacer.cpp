@@ -60,13 +60,17 @@ void Surfacer::Work::at_vertices(const Visit& visit) {
         thread_local std::vector<float> points[3];
         for (std::size_t r = begin; r < end; ++r) {
           const std::size_t n = padded(runs[r].count);
-          for (std::size_t a = 0; a < 3; ++a) {
-            points[a].resize(n);
-            // The last fills up to eights: they are to lie near each other.
-            for (std::uint32_t v = 0; v < n; ++v)
-              points[a][v] =
-                  mesher.local(runs[r].first + std::min(v, runs[r].count - 1))[static_cast<Eigen::Index>(a)];
+          for (std::vector<float>& axis : points) axis.resize(std::max(axis.size(), n));
+          float *const x = points[0].data(), *const y = points[1].data(), *const z = points[2].data();
+          const Eigen::Vector3f* const from = &mesher.local(runs[r].first);
+          for (std::size_t v = 0; v < runs[r].count; ++v) {
+            x[v] = from[v].x();
+            y[v] = from[v].y();
+            z[v] = from[v].z();
           }
+          // What fills up to eights is to lie near the others.
+          for (float* const axis : {x, y, z})
+            std::fill(axis + runs[r].count, axis + n, axis[runs[r].count - 1]);
           visit(runs[r], ConstVectors{points[0].data(), points[1].data(), points[2].data()}, n);
         }
       },
@@ -84,10 +88,11 @@ void Surfacer::Work::find_velocities(const SurfaceField& field, const PickedVect
   to.velocities.resize(to.vertices.size());
   at_vertices([&](const DualMesher::BlockVertices& run, ConstVectors points, std::size_t n) {
     thread_local std::vector<float> means[3];
-    for (std::vector<float>& mean : means) mean.resize(n);
+    for (std::vector<float>& mean : means) mean.resize(std::max(mean.size(), n));
     field.mean_at(run.block, points, n, velocities, {means[0].data(), means[1].data(), means[2].data()});
-    for (std::uint32_t v = 0; v < run.count; ++v)
-      to.velocities[run.first + v] = Vec3(means[0][v], means[1][v], means[2][v]);
+    const float *const x = means[0].data(), *const y = means[1].data(), *const z = means[2].data();
+    Vec3* const first = to.velocities.data() + run.first;
+    for (std::size_t v = 0; v < run.count; ++v) first[v] = Vec3(x[v], y[v], z[v]);
   });
 }
 
