@@ -23,11 +23,19 @@ constexpr double k_farthest = 1 << 28;
   throw ConfigError("surface.voxel_size", text.str());
 }
 
-/// Of a block whose numbers have up to 21 bits: those near each other mostly have numbers near each other.
+/// Runs that are kept open, a power of two.
+constexpr std::size_t k_open = 512;
+
+/// Of a block whose numbers have up to 21 bits.
 std::uint64_t key_of(const BlockMap::Coord& block) {
   constexpr int k_bits = 21, k_bias = 1 << (k_bits - 1);
   const auto bits = [](int c) { return static_cast<std::uint64_t>(c + k_bias); };
   return bits(block.x()) << (2 * k_bits) | bits(block.y()) << k_bits | bits(block.z());
+}
+
+/// Blocks near each other have different ones: eight along each axis.
+std::size_t slot_of(std::uint64_t block) {
+  return static_cast<std::size_t>((block >> 36 & 7u << 6) | (block >> 18 & 7u << 3) | (block & 7u));
 }
 
 /// The largest whole number that is not above.
@@ -62,10 +70,9 @@ struct VoxelBox {
 
 }  // namespace
 
-/// Particles come sorted, so that those of a block follow each other, in a few runs: a box for each. Returns
-/// how many there are.
-std::size_t BlockFinder::find_runs(const ParticleCells& particles, const VoxelFrame& frame, double reach,
-                                   const Threads& threads) {
+/// Particles come sorted, so that those of a block follow each other, in a few runs: a box for each.
+void BlockFinder::find_runs(const ParticleCells& particles, const VoxelFrame& frame, double reach,
+                            const Threads& threads) {
   const std::size_t n = particles.count();
   runs_.resize(n);
   counts_.resize((n + k_block - 1) / k_block);
@@ -92,14 +99,6 @@ std::size_t BlockFinder::find_runs(const ParticleCells& particles, const VoxelFr
     close();
     counts_[begin / k_block] = static_cast<std::size_t>(to - (runs_.data() + begin));
   });
-  std::size_t count = 0;
-  for (std::size_t c = 0; c < counts_.size(); ++c) {
-    const auto from = runs_.begin() + static_cast<std::ptrdiff_t>(c * k_block);
-    std::copy(from, from + static_cast<std::ptrdiff_t>(counts_[c]),
-              runs_.begin() + static_cast<std::ptrdiff_t>(count));
-    count += counts_[c];
-  }
-  return count;
 }
 
 void BlockFinder::find(const ParticleCells& particles, const VoxelFrame& frame, double reach,
@@ -108,22 +107,32 @@ void BlockFinder::find(const ParticleCells& particles, const VoxelFrame& frame, 
   // More than the memory of one particle's blocks is not to be counted.
   if (const double side = 2 * reach / k_block_side; side > k_farthest)
     refuse_memory(side * side * side, frame, memory_limit);
-  const std::size_t count = find_runs(particles, frame, reach, threads);
-  const auto end = runs_.begin() + static_cast<std::ptrdiff_t>(count);
-  std::sort(runs_.begin(), end, [](const Run& a, const Run& b) { return a.block < b.block; });
+  find_runs(particles, frame, reach, threads);
   blocks.clear();
-  for (auto run = runs_.begin(); run != end;) {
-    Run all = *run;
-    for (++run; run != end && run->block == all.block; ++run) {
-      all.first = all.first.cwiseMin(run->first);
-      all.last = all.last.cwiseMax(run->last);
-    }
-    const double in_box = ((all.last - all.first).cast<double>().array() + 1).prod();
+  const auto insert = [&](const Run& run) {
+    const double in_box = ((run.last - run.first).cast<double>().array() + 1).prod();
     if (in_box > most) refuse_memory(in_box, frame, memory_limit);
-    blocks.insert(all.first, all.last);
+    blocks.insert(run.first, run.last);
     if (static_cast<double>(blocks.size()) > most)
       refuse_memory(static_cast<double>(blocks.size()), frame, memory_limit);
+  };
+  // Runs of a block come at several times, not far from each other: their boxes are put together first.
+  open_.assign(k_open, Run{});
+  for (std::size_t c = 0; c < counts_.size(); ++c) {
+    for (std::size_t k = 0; k < counts_[c]; ++k) {
+      const Run& run = runs_[c * k_block + k];
+      Run& open = open_[slot_of(run.block)];
+      if (open.block == run.block) {
+        open.first = open.first.cwiseMin(run.first);
+        open.last = open.last.cwiseMax(run.last);
+        continue;
+      }
+      if (open.block != UINT64_MAX) insert(open);
+      open = run;
+    }
   }
+  for (const Run& run : open_)
+    if (run.block != UINT64_MAX) insert(run);
   blocks.number();
 }
 

@@ -18,7 +18,7 @@ class BlockFinder {
   void find(const ParticleCells& particles, const VoxelFrame& frame, double reach, float memory_limit,
             const Threads& threads, BlockMap& blocks);
   std::size_t bytes() const {
-    return runs_.capacity() * sizeof(Run) + counts_.capacity() * sizeof(std::size_t);
+    return (runs_.capacity() + open_.capacity()) * sizeof(Run) + counts_.capacity() * sizeof(std::size_t);
   }
 
  private:
@@ -27,11 +27,12 @@ class BlockFinder {
     std::uint64_t block;          ///< orders runs by block
     BlockMap::Coord first, last;  ///< corners of the box of blocks within their reach
   };
-  std::size_t find_runs(const ParticleCells& particles, const VoxelFrame& frame, double reach,
-                        const Threads& threads);
+  void find_runs(const ParticleCells& particles, const VoxelFrame& frame, double reach,
+                 const Threads& threads);
 
   std::vector<Run> runs_;
-  std::vector<std::size_t> counts_;  ///< of runs, by block of particles
+  std::vector<std::size_t> counts_;  ///< of runs of each k_block particles, whose place they are at
+  std::vector<Run> open_;            ///< runs that more of their block may come to, by its key
 };
 
 }  // namespace mallow

@@ -39,6 +39,8 @@ void BlockParticles::shape(const AnisotropyModel& model, const Threads& threads)
 void BlockParticles::find_near(const BlockMap& blocks, const VoxelFrame& frame, const Threads& threads) {
   const auto groups = blocks.groups();
   if (near_.size() < groups.size()) near_.resize(groups.size());
+  if (kept_.size() < blocks.size()) kept_.resize(blocks.size());
+  for (Kept& kept : kept_) kept.there = false;
   const double side = frame.voxel_size * (2 * k_block_side - 1);
   parallel_for(
       threads, groups.size(),
@@ -53,19 +55,38 @@ void BlockParticles::find_near(const BlockMap& blocks, const VoxelFrame& frame, 
       k_groups_at_once);
 }
 
-void BlockParticles::load_group(std::uint32_t group, BlockNear& near) const {
-  const NearGroup& from = near_[group];
-  near.group_places = from.places;
-  near.group = {from.axes[0].data(), from.axes[1].data(), from.axes[2].data()};
-  const std::size_t room = near.group_places.size() + k_cluster;
-  for (std::vector<float>& axis : near.axes) make_room(axis, room);
-  make_room(near.which, room);
-  make_room(near.listed, NearColumns::k_lists * room);
+void BlockParticles::keep(std::uint32_t block, const BlockNear& near) {
+  if (shaped_) return;
+  Kept& kept = kept_[block];
+  kept.there = true;
+  kept.count = near.count;
+  // With what follows, which is far away.
+  const std::size_t room = near.count + k_cluster;
+  const float* const from[3] = {near.positions.x, near.positions.y, near.positions.z};
+  for (std::size_t a = 0; a < 3; ++a) kept.axes[a].assign(from[a], from[a] + room);
+  kept.which.assign(near.which, near.which + near.count);
 }
 
-void BlockParticles::pick(const BlockMap& blocks, const VoxelFrame& frame, std::uint32_t block,
+void BlockParticles::find(const BlockMap& blocks, const VoxelFrame& frame, std::uint32_t block,
                           BlockNear& near) const {
-  const Eigen::Vector3d corner = corner_of(frame, blocks.blocks()[block]);
+  const NearGroup& group = near_[blocks.group_of(block)];
+  near.group_places = group.places;
+  if (const Kept& kept = kept_[block]; kept.there) {
+    near.count = kept.count;
+    near.positions = {kept.axes[0].data(), kept.axes[1].data(), kept.axes[2].data()};
+    near.which = kept.which.data();
+  } else {
+    pick(frame, blocks.blocks()[block], group, near);
+  }
+  make_room(near.listed, NearColumns::k_lists * (near.count + k_cluster));
+}
+
+void BlockParticles::pick(const VoxelFrame& frame, const BlockMap::Coord& block, const NearGroup& group,
+                          BlockNear& near) const {
+  const std::size_t room = group.places.size() + k_cluster;
+  for (std::vector<float>& axis : near.axes) make_room(axis, room);
+  make_room(near.numbers, room);
+  const Eigen::Vector3d corner = corner_of(frame, block);
   const auto radius = static_cast<double>(cells_.radius());
   const double side = frame.voxel_size * (k_block_side - 1);
   BlockBox box{};
@@ -77,9 +98,12 @@ void BlockParticles::pick(const BlockMap& blocks, const VoxelFrame& frame, std::
     box.low[a] = static_cast<float>(corner[a]);
     box.high[a] = static_cast<float>(corner[a] + side);
   }
-  near.count = best_sum_lanes().pick_near(box, near.group, near.group_places.size(),
-                                          {near.axes[0].data(), near.axes[1].data(), near.axes[2].data()},
-                                          near.which.data());
+  const Vectors to = {near.axes[0].data(), near.axes[1].data(), near.axes[2].data()};
+  near.count =
+      best_sum_lanes().pick_near(box, {group.axes[0].data(), group.axes[1].data(), group.axes[2].data()},
+                                 group.places.size(), to, near.numbers.data());
+  near.positions = {to.x, to.y, to.z};
+  near.which = near.numbers.data();
   if (shaped_) drop_out_of_reach(static_cast<float>(side / radius), near);
 }
 
@@ -98,7 +122,7 @@ void BlockParticles::drop_out_of_reach(float side, BlockNear& near) const {
       near.reach[a][kept] = (1 + k_reach_rounding) * shape.reach[a];
     }
     if (!reaches) continue;
-    near.which[kept] = near.which[k];
+    near.numbers[kept] = near.which[k];
     near.shapes[kept++] = shape;
   }
   near.count = kept;
@@ -113,6 +137,9 @@ std::size_t BlockParticles::bytes() const {
   std::size_t bytes = cells_.bytes() + ellipsoids_.bytes() + near_.capacity() * sizeof near_[0];
   for (const NearGroup& near : near_)
     bytes += near.places.capacity() * sizeof(std::uint32_t) + 3 * near.axes[0].capacity() * sizeof(float);
+  for (const Kept& kept : kept_)
+    bytes += sizeof kept + kept.which.capacity() * sizeof(std::uint32_t) +
+             3 * kept.axes[0].capacity() * sizeof(float);
   return bytes;
 }
 

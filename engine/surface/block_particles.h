@@ -13,26 +13,23 @@
 
 namespace mallow {
 
-/// The particles near one block, in the order of their numbers, and memory for those near its group.
+/// The particles near one block, in the order of their numbers.
 struct BlockNear {
   std::size_t count = 0;
-  std::vector<float> axes[3];  ///< from the block's first voxel [kernel radii]
+  ConstVectors positions{};              ///< from the block's first voxel [kernel radii]
+  const std::uint32_t* which = nullptr;  ///< of those near its group
+  std::span<const std::uint32_t> group_places;
   // Where each has its own kernel.
   std::vector<Ellipsoid> shapes;
   std::vector<float> reach[3];
 
-  // Those near its group.
-  std::span<const std::uint32_t> group_places;
-  ConstVectors group{};              ///< positions [m]
-  std::vector<std::uint32_t> which;  ///< of those it has
-  std::vector<std::uint32_t> listed;
+  // Memory for what these point to, and for lanes.
+  std::vector<float> axes[3];
+  std::vector<std::uint32_t> numbers, listed;
 
   std::uint32_t place(std::size_t k) const { return group_places[which[k]]; }
-  NearColumns columns() { return {of(axes), count, listed.data()}; }
-  ConstVectors reaches() const { return of(reach); }
-
- private:
-  static ConstVectors of(const std::vector<float>* v) { return {v[0].data(), v[1].data(), v[2].data()}; }
+  NearColumns columns() { return {positions, count, listed.data()}; }
+  ConstVectors reaches() const { return {reach[0].data(), reach[1].data(), reach[2].data()}; }
 };
 
 /// The particles that a surface is drawn around, as its blocks see them. Those near each group of 2 × 2 × 2
@@ -46,10 +43,10 @@ class BlockParticles {
   void find_near(const BlockMap& blocks, const VoxelFrame& frame, const Threads& threads);
 
   const ParticleCells& cells() const { return cells_; }
-  /// What pick() reads of the group of a block.
-  void load_group(std::uint32_t group, BlockNear& near) const;
-  /// The particles near a block of the group loaded last.
-  void pick(const BlockMap& blocks, const VoxelFrame& frame, std::uint32_t block, BlockNear& near) const;
+  /// The particles near a block.
+  void find(const BlockMap& blocks, const VoxelFrame& frame, std::uint32_t block, BlockNear& near) const;
+  /// Keeps what was found of a block for the next time that it is looked for, until the next find_near().
+  void keep(std::uint32_t block, const BlockNear& near);
   std::size_t bytes() const;
 
  private:
@@ -58,12 +55,22 @@ class BlockParticles {
     std::vector<std::uint32_t> places;
     std::vector<float> axes[3];  ///< positions [m], with room for k_cluster more
   };
+  /// What was found of a block.
+  struct Kept {
+    bool there = false;
+    std::size_t count = 0;
+    std::vector<float> axes[3];
+    std::vector<std::uint32_t> which;
+  };
+  void pick(const VoxelFrame& frame, const BlockMap::Coord& block, const NearGroup& group,
+            BlockNear& near) const;
   void drop_out_of_reach(float side, BlockNear& near) const;
 
   ParticleCells cells_;
   Ellipsoids ellipsoids_;
   bool shaped_ = false;
   std::vector<NearGroup> near_;  ///< of each group
+  std::vector<Kept> kept_;       ///< of each block
 };
 
 }  // namespace mallow

@@ -2,25 +2,9 @@
 // group sees a quarter of the particles near a block of voxels that are as wide as three of them are apart.
 #include "surface/sum_lanes.h"
 
-#include "core/cluster_lanes.h"
+#include "core/wide_lanes.h"
 
 namespace mallow::MALLOW_LEVEL {
-#ifdef __AVX512F__
-/// Two planes of eight points in one register.
-using Wide = float __attribute__((vector_size(2 * k_cluster * sizeof(float))));
-// With a mask of all lanes: GCC 12 takes what the plain ones return for not set.
-MALLOW_INLINE Wide larger(const Wide& a, const Wide& b) {
-  return reinterpret_cast<Wide>(
-      _mm512_maskz_max_ps(0xFFFF, reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b)));
-}
-MALLOW_INLINE Wide smaller(const Wide& a, const Wide& b) {
-  return reinterpret_cast<Wide>(
-      _mm512_maskz_min_ps(0xFFFF, reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b)));
-}
-MALLOW_INLINE Wide both(const Floats& low, const Floats& high) {
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-}
-#endif
 namespace {
 
 /// How far eight coordinates are from what lies between two others; 0 within.
@@ -66,7 +50,20 @@ struct PointColumn {
   Floats low_x, high_x, low_y, high_y;
 };
 
-// What is summed: a State of points, a lane each, and over which particles.
+/// A value of points as those of their planes.
+template <class L>
+MALLOW_INLINE void put_lanes(const L& value, Floats* planes) {
+  __builtin_memcpy(planes, &value, sizeof value);
+}
+template <class L>
+MALLOW_INLINE void put_lanes(const Vec3Of<L>& v, Floats* planes, std::size_t stride) {
+  put_lanes(v.x, planes);
+  put_lanes(v.y, planes + stride);
+  put_lanes(v.z, planes + 2 * stride);
+}
+
+// What is summed: a State of points, a lane each, over which particles, and what is put: k_values a plane,
+// `stride` planes apart.
 
 /// Kernels that are spheres of the kernel radius.
 struct RoundKernel {
@@ -108,12 +105,11 @@ struct BlendedSums : RoundKernel {
     s.offset += w * d;
     s.square += w * square;
   }
-  [[gnu::always_inline]] void put(const State<Floats>& s, Floats* to, std::size_t stride) const {
-    to[0] = s.weight;
-    to[stride] = s.offset.x;
-    to[2 * stride] = s.offset.y;
-    to[3 * stride] = s.offset.z;
-    to[4 * stride] = s.square;
+  template <class L>
+  [[gnu::always_inline]] void put(const State<L>& s, Floats* to, std::size_t stride) const {
+    put_lanes(s.weight, to);
+    put_lanes(s.offset, to + stride, stride);
+    put_lanes(s.square, to + 4 * stride);
   }
 };
 
@@ -133,7 +129,10 @@ struct NearestSquare : RoundKernel {
   [[gnu::always_inline]] void add(State<L>& s, const Vec3Of<L>& d, std::uint32_t) const {
     s.least = smaller(s.least, dot_from_left(d, d));
   }
-  [[gnu::always_inline]] void put(const State<Floats>& s, Floats* to, std::size_t) const { to[0] = s.least; }
+  template <class L>
+  [[gnu::always_inline]] void put(const State<L>& s, Floats* to, std::size_t) const {
+    put_lanes(s.least, to);
+  }
 };
 
 /// G v
@@ -179,12 +178,10 @@ struct DensitySums {
     // ∇(1 − |G d|²)³ = 6 t² G (G d)
     s.gradient += slope * product(g, q);
   }
-  [[gnu::always_inline]] void put(const State<Floats>& s, Floats* to, std::size_t stride) const {
-    const ClusterVec3 gradient = 6.0f * s.gradient;
-    to[0] = s.density;
-    to[stride] = gradient.x;
-    to[2 * stride] = gradient.y;
-    to[3 * stride] = gradient.z;
+  template <class L>
+  [[gnu::always_inline]] void put(const State<L>& s, Floats* to, std::size_t stride) const {
+    put_lanes(s.density, to);
+    put_lanes(6.0f * s.gradient, to + stride, stride);
   }
 };
 
@@ -206,6 +203,11 @@ struct WeightedValues : RoundKernel {
     const L w = t * t * t;
     s.weight += w;
     s.sum += Vec3Of<L>{w * values.x[i], w * values.y[i], w * values.z[i]};
+  }
+  template <class L>
+  [[gnu::always_inline]] void put(const State<L>& s, Floats* to, std::size_t stride) const {
+    put_lanes(s.weight, to);
+    put_lanes(s.sum, to + stride, stride);
   }
 };
 
@@ -235,25 +237,12 @@ MALLOW_INLINE void list_in_reach(const Kernel& kernel, const NearColumns& near, 
     counts[g] = static_cast<std::size_t>(to[g] - (near.listed + g * room));
 }
 
-#ifdef __AVX512F__
-/// The sums of two planes as those of each.
-template <template <class> class State>
-MALLOW_INLINE void split(const State<Wide>& sums, State<Floats>* to) {
-  constexpr std::size_t k_values = sizeof sums / sizeof(Wide);
-  Floats halves[k_values][2], planes[2][k_values];
-  __builtin_memcpy(halves, &sums, sizeof sums);
-  for (std::size_t v = 0; v < k_values; ++v)
-    for (std::size_t p = 0; p < 2; ++p) planes[p][v] = halves[v][p];
-  __builtin_memcpy(to, planes, sizeof planes);
-}
-#endif
-
 /// Sums at the points of a group over listed particles. Not inlined: a compiler that sees how a group's
 /// points lie takes z for one number, and its arithmetic twice.
 template <std::size_t planes, class Kernel>
 [[gnu::noinline]] void sum_listed(const Kernel& kernel, const ConstVectors& near, const std::uint32_t* listed,
-                                  std::size_t count, const Group<planes>& group,
-                                  typename Kernel::template State<Floats>* to) {
+                                  std::size_t count, const Group<planes>& group, Floats* to,
+                                  std::size_t stride) {
   const ConstVectors particles = near;
 #ifdef __AVX512F__
   if constexpr (planes == 2) {
@@ -263,7 +252,7 @@ template <std::size_t planes, class Kernel>
       const std::uint32_t i = listed[k];
       kernel.add(sum, Vec3Of<Wide>{particles.x[i] - x.x, particles.y[i] - x.y, particles.z[i] - x.z}, i);
     }
-    split(sum, to);
+    kernel.put(sum, to, stride);
     return;
   }
 #endif
@@ -275,7 +264,7 @@ template <std::size_t planes, class Kernel>
     for (std::size_t p = 0; p < planes; ++p)
       kernel.add(sums[p], ClusterVec3{dx, dy, particles.z[i] - group.z[p]}, i);
   }
-  for (std::size_t p = 0; p < planes; ++p) to[p] = sums[p];
+  for (std::size_t p = 0; p < planes; ++p) kernel.put(sums[p], to + p, stride);
 }
 
 /// Puts the sums at 2 × 4 × 4 points, a plane of which is a row of lanes, to where z goes fastest.
@@ -317,9 +306,8 @@ MALLOW_INLINE void sum_in_columns(const Kernel& kernel, const PointLattice& latt
       for (std::size_t g = 0; g < k_groups; ++g) {
         group.z[0] = low[g];
         group.z[1] = high[g];
-        typename Kernel::template State<Floats> s[2];
-        sum_listed<2>(kernel, near.positions, near.listed + g * near.room(), counts[g], group, s);
-        for (std::size_t p = 0; p < 2; ++p) kernel.put(s[p], &sums[0][2 * (g % 2) + p], 4);
+        sum_listed<2>(kernel, near.positions, near.listed + g * near.room(), counts[g], group,
+                      &sums[0][2 * (g % 2)], 4);
         if (g % 2 == 0) continue;
         for (std::size_t v = 0; v < Kernel::k_values; ++v)
           put_planes(sums[v], side, to + v * n + (i * side + j) * side + 2 * (g - 1));
@@ -332,10 +320,10 @@ MALLOW_INLINE void sum_in_columns(const Kernel& kernel, const PointLattice& latt
 template <class Kernel>
 MALLOW_INLINE void sum_at_eight(const Kernel& kernel, const NearColumns& near, const PointColumn& column,
                                 const Floats& low_z, const Floats& high_z, const ClusterVec3& x,
-                                typename Kernel::template State<Floats>& sums) {
+                                Floats* sums) {
   std::size_t count;
   list_in_reach<1>(kernel, near, column, &low_z, &high_z, &count);
-  sum_listed<1>(kernel, near.positions, near.listed, count, {x.x, x.y, {x.z}}, &sums);
+  sum_listed<1>(kernel, near.positions, near.listed, count, {x.x, x.y, {x.z}}, sums, 1);
 }
 
 /// Sums on a lattice of two points an axis.
@@ -345,11 +333,9 @@ MALLOW_INLINE void sum_at_corners(const Kernel& kernel, const PointLattice& latt
   const float far = static_cast<float>(lattice.step) * lattice.voxel;
   const ClusterVec3 x = {
       {0, 0, 0, 0, far, far, far, far}, {0, 0, far, far, 0, 0, far, far}, {0, far, 0, far, 0, far, 0, far}};
-  typename Kernel::template State<Floats> s;
   const Floats zero = all(0);
-  sum_at_eight(kernel, near, {zero, all(far), zero, all(far)}, zero, all(far), x, s);
   Floats sums[Kernel::k_values];
-  kernel.put(s, sums, 1);
+  sum_at_eight(kernel, near, {zero, all(far), zero, all(far)}, zero, all(far), x, sums);
   for (std::size_t v = 0; v < Kernel::k_values; ++v) store(sums[v], to + v * k_cluster);
 }
 
@@ -383,11 +369,11 @@ void mean(ConstVectors points, std::size_t n, const NearColumns& near, ConstVect
   const auto largest = [](const Floats& x) { return -smallest(-x); };
   for (std::size_t k = 0; k < n; k += k_cluster) {
     const ClusterVec3 x = load(points, k);
-    WeightedValues::State<Floats> s;
+    Floats sums[4];  // of weights and of three values
     sum_at_eight(WeightedValues{{}, values}, near, {smallest(x.x), largest(x.x), smallest(x.y), largest(x.y)},
-                 smallest(x.z), largest(x.z), x, s);
-    const Floats per_weight = where(is_larger(s.weight, Floats{}), 1.0f / s.weight);
-    const ClusterVec3 of_points = per_weight * s.sum;
+                 smallest(x.z), largest(x.z), x, sums);
+    const Floats per_weight = where(is_larger(sums[0], Floats{}), 1.0f / sums[0]);
+    const ClusterVec3 of_points = per_weight * ClusterVec3{sums[1], sums[2], sums[3]};
     store(of_points.x, means.x + k);
     store(of_points.y, means.y + k);
     store(of_points.z, means.z + k);

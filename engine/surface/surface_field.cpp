@@ -141,12 +141,9 @@ void SurfaceField::for_each_block(const Threads& threads, const Needed& needed, 
       [&](std::size_t begin, std::size_t end) {
         thread_local BlockNear near;
         for (std::size_t g = begin; g < end; ++g) {
-          bool loaded = false;
           for (const std::uint32_t block : groups[g].blocks) {
             if (block == k_no_block || !needed(block)) continue;
-            if (!loaded) particles_.load_group(static_cast<std::uint32_t>(g), near);
-            loaded = true;
-            particles_.pick(blocks_, frame_, block, near);
+            particles_.find(blocks_, frame_, block, near);
             visit(block, near);
           }
         }
@@ -192,6 +189,8 @@ void SurfaceField::probe(const Threads& threads) {
         float* const distances = probe_step_ == 1 ? distances_.data() + n * b : scratch;
         find_distances(points, near, keep ? node_sums_.data() + k_sums * n * b : sums, distances);
         note_sides(b, distances, near.count > 0);
+        // The surface may be in it: it will be looked at again.
+        if (probe_step_ > 1 && (inside_[b] & 1) == 0) particles_.keep(b, near);
       });
 }
 

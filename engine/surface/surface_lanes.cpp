@@ -11,7 +11,7 @@
 // crumbs in gaps of two spacings.
 #include "surface/surface_lanes.h"
 
-#include "core/cluster_lanes.h"
+#include "core/wide_lanes.h"
 
 namespace mallow::MALLOW_LEVEL {
 namespace {
@@ -25,32 +25,42 @@ constexpr float k_least_weight = 0.02f;
 /// Densities, and slopes of them [per kernel radius], below this are none.
 constexpr float k_least_density = 1e-6f, k_least_slope = 1e-6f;
 
+/// Of points, a lane each.
+template <class L>
 struct Sums {
-  Floats weight;
-  ClusterVec3 offset;
-  Floats square;
+  L weight;
+  Vec3Of<L> offset;
+  L square;
 };
 
-MALLOW_INLINE Floats cut(const SurfaceShape& shape, const Floats& distance) {
-  return smaller(larger(distance, all(-shape.background)), all(shape.background));
+template <class L>
+MALLOW_INLINE L in_all(float value) {
+  return L{} + value;
 }
 
-MALLOW_INLINE Floats distance_of(const SurfaceShape& shape, const Sums& s) {
-  const Floats full = smaller(2.0f / shape.full_weight * s.weight, all(1.0f));
-  const Floats per_weight = 1.0f / larger(s.weight, all(k_least_weight));
-  const ClusterVec3 mean = per_weight * s.offset;
-  const Floats from_mean = dot_from_left(mean, mean);
-  const Floats excess = s.square * per_weight - from_mean - (shape.spread + shape.extra_spread * full);
-  const Floats r = shape.offset + shape.extra_offset * full;
-  const Floats distance = square_root(from_mean + k_excess_share * larger(excess, Floats{})) - r;
-  const Ints body = is_larger(s.weight, all(k_least_weight));
-  const Floats outside = where(~body, all(shape.background));
+template <class L>
+MALLOW_INLINE L cut(const SurfaceShape& shape, const L& distance) {
+  return smaller(larger(distance, in_all<L>(-shape.background)), in_all<L>(shape.background));
+}
+
+template <class L>
+MALLOW_INLINE L distance_of(const SurfaceShape& shape, const Sums<L>& s) {
+  const L full = smaller(2.0f / shape.full_weight * s.weight, in_all<L>(1.0f));
+  const L per_weight = 1.0f / larger(s.weight, in_all<L>(k_least_weight));
+  const Vec3Of<L> mean = per_weight * s.offset;
+  const L from_mean = dot_from_left(mean, mean);
+  const L excess = s.square * per_weight - from_mean - (shape.spread + shape.extra_spread * full);
+  const L r = shape.offset + shape.extra_offset * full;
+  const L distance = square_root(from_mean + k_excess_share * larger(excess, L{})) - r;
+  const auto body = is_larger(s.weight, in_all<L>(k_least_weight));
+  const L outside = where(~body, in_all<L>(shape.background));
   return where(body, cut(shape, distance * (1.0f / shape.voxel_size))) + outside;
 }
 
 void distances(const SurfaceShape& shape, const float* sums, std::size_t n, float* to) noexcept {
   for (std::size_t k = 0; k < n; k += k_cluster)
-    store(distance_of(shape, {load(sums + k), load(sums + n + k, n), load(sums + 4 * n + k)}), to + k);
+    store(distance_of<Floats>(shape, {load(sums + k), load(sums + n + k, n), load(sums + 4 * n + k)}),
+          to + k);
 }
 
 void find_sides(const float* distances, std::size_t n, float far, float deep, std::uint64_t* outside,
@@ -67,14 +77,13 @@ void find_sides(const float* distances, std::size_t n, float far, float deep, st
 
 /// Interpolates to voxel v between nodes that are `stride` rows of lanes apart. What a weight of 0 would add
 /// is left out.
-template <int step>
-MALLOW_INLINE Floats blend(const NodeWeights& weights, std::size_t v, const Floats* nodes,
-                           std::size_t stride) {
+template <int step, class L>
+MALLOW_INLINE L blend(const NodeWeights& weights, std::size_t v, const L* nodes, std::size_t stride) {
   constexpr std::size_t k_step = step, k_before = step == 4 ? 1 : 0;
   const std::size_t below = v / k_step + k_before;
   if (v % k_step == 0) return nodes[below * stride];
   const std::size_t first = below < 2 ? 0 : 1;
-  Floats sum = weights.w[v][first] * nodes[first * stride];
+  L sum = weights.w[v][first] * nodes[first * stride];
   for (std::size_t n = first + 1; n < first + 4; ++n) sum += weights.w[v][n] * nodes[n * stride];
   return sum;
 }
@@ -87,8 +96,8 @@ void fill_between(const SurfaceShape& shape, const NodeWeights& weights, const N
   Floats along_z[k_nodes];
   for (std::size_t n = 0; n < k_nodes; ++n)
     for (std::size_t v = 0; v < k_side; ++v) along_z[n][v] = weights.w[v][n];
-  // sums[sum][node x][voxel y], each a row along z.
-  Floats by_plane[k_sums][k_nodes][k_side];
+  // By sum, node x and voxel y, one or two rows along z.
+  Wide by_plane[k_sums][k_nodes][k_side / k_wide];
   for (std::size_t s = 0; s < k_sums; ++s) {
     for (std::size_t x = 0; x < k_nodes; ++x) {
       Floats rows[k_nodes];
@@ -99,16 +108,21 @@ void fill_between(const SurfaceShape& shape, const NodeWeights& weights, const N
         rows[y] += nodes.fifth[x * k_nodes + y][s * nodes.stride] * along_z[k_nodes - 1];
       }
 #pragma GCC unroll 8
-      for (std::size_t y = 0; y < k_side; ++y) by_plane[s][x][y] = blend<step>(weights, y, rows, 1);
+      for (std::size_t y = 0; y < k_side; ++y) {
+        const Floats row = blend<step>(weights, y, rows, 1);
+        __builtin_memcpy(reinterpret_cast<Floats*>(by_plane[s][x]) + y, &row, sizeof row);
+      }
     }
   }
-  for (std::size_t y = 0; y < k_side; ++y) {
+  constexpr std::size_t k_rows = k_side / k_wide;
+  for (std::size_t y = 0; y < k_rows; ++y) {
 #pragma GCC unroll 8
     for (std::size_t x = 0; x < k_side; ++x) {
       const auto at = [&](std::size_t s) __attribute__((always_inline)) {
-        return blend<step>(weights, x, &by_plane[s][0][y], k_side);
+        return blend<step>(weights, x, &by_plane[s][0][y], k_rows);
       };
-      store(distance_of(shape, {at(0), {at(1), at(2), at(3)}, at(4)}), to + (x * k_side + y) * k_side);
+      store(distance_of<Wide>(shape, {at(0), {at(1), at(2), at(3)}, at(4)}),
+            to + (x * k_rows + y) * k_wide * k_side);
     }
   }
 }

@@ -11,8 +11,7 @@ namespace mallow {
 /// The particles near one block, until the next call.
 BlockNear& SurfaceField::near_block(std::uint32_t block) const {
   thread_local BlockNear near;
-  particles_.load_group(blocks_.group_of(block), near);
-  particles_.pick(blocks_, frame_, block, near);
+  particles_.find(blocks_, frame_, block, near);
   return near;
 }
 
