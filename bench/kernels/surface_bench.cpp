@@ -1,4 +1,5 @@
 // Surfaces around particles: the whole, and its two stages.
+#include <cmath>
 #include <memory>
 
 #include "core/parallel.h"
@@ -20,18 +21,34 @@ struct SurfaceScene {
   SurfaceConfig config;
 
   SurfaceParticles particles() const { return {.positions = positions, .bodies = {{.spacing = spacing}}}; }
+  /// Moves a particle by a bit, and back the next time: what did not change would not be drawn again.
+  void stir() {
+    float& x = positions.front().x();
+    x = std::nextafter(x, stirred_ ? -1e9f : 1e9f);
+    stirred_ = !stirred_;
+  }
+
+ private:
+  bool stirred_ = false;
 };
 
 SurfaceScene cube_scene(const LatticeScene& lattice) {
-  return {sample(Lattice{.count = lattice.count, .spacing = lattice.spacing, .jitter = 0}).positions,
-          lattice.spacing,
-          {.voxels = 128}};
+  SurfaceScene scene;
+  scene.positions =
+      sample(Lattice{.count = lattice.count, .spacing = lattice.spacing, .jitter = 0}).positions;
+  scene.spacing = lattice.spacing;
+  scene.config = {.voxels = 128, .kernel_radius = 2.0f};
+  return scene;
 }
 
 SurfaceScene balls_scene() {
   const Scene scene = read_scene(data_file("scenes/table1/balls_8264.toml"));
   Simulation simulation = build(scene, 1);
-  return {simulation.positions_by_id(), simulation.info().bodies.front().spacing, scene.surface};
+  SurfaceScene drawn;
+  drawn.positions = simulation.positions_by_id();
+  drawn.spacing = simulation.info().bodies.front().spacing;
+  drawn.config = scene.surface;
+  return drawn;
 }
 
 /// What is drawn again and again, with memory that stays.
@@ -73,7 +90,10 @@ void add_scene(const std::string& name, const MakeScene& make, int threads, Kern
   set.add({"surface", name, threads, "", "particle"}, [=] {
     const auto scene = std::make_shared<SurfaceScene>(make());
     const auto surfacer = std::make_shared<Surfacer>(scene->config, threads);
-    const auto draw = [=]() -> const Mesh& { return surfacer->draw(scene->particles()); };
+    const auto draw = [=]() -> const Mesh& {
+      scene->stir();
+      return surfacer->draw(scene->particles());
+    };
     return Timed{.run = [=] { draw(); },
                  .items = static_cast<double>(scene->positions.size()),
                  .about = {{"particles", scene->positions.size()},

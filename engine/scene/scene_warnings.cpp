@@ -2,10 +2,12 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "mallow/materials.h"
 #include "mallow/scene.h"
 #include "scene/scene_fields.h"
+#include "scene/surface_warnings.h"
 #include "simulation/settings.h"
 
 namespace mallow {
@@ -129,6 +131,7 @@ std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info
     all.push_back("solver: gravity is left out, and so 0.3 m/s2 as in the paper, but " + what +
                   "; gravity = [0.0, 0.0, -9.81] is that of the earth");
   look_at_presets(scene, all);
+  for (std::string& text : surface_warnings(scene.surface, info)) all.push_back(std::move(text));
   const double frames = scene.run.frames, frame = frame_time(scene, info);
   const double seconds = frames * frame;
   if (scene.run.frames == 0) return all;

@@ -41,5 +41,7 @@ struct CellLanes {
   std::size_t (*list_cells)(const BlockBits& cut, std::uint16_t* list, std::uint16_t* place) noexcept;
 };
 MALLOW_DECLARE_LEVELS(CellLanes, cell_lanes)
+/// Those of best_instruction_level().
+const CellLanes& best_cell_lanes();
 
 }  // namespace mallow

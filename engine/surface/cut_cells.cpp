@@ -19,11 +19,6 @@ constexpr BlockBits k_outside = all_bits(0), k_inside = all_bits(UINT64_MAX);
 constexpr std::array<std::size_t, 8> k_slots_below = {0, 1, 3, 4, 9, 10, 12, 13},
                                      k_slots_above = {13, 14, 16, 17, 22, 23, 25, 26};
 
-const CellLanes& best_cell_lanes() {
-  static const InstructionLevel level = best_instruction_level();
-  return MALLOW_SELECT(level, cell_lanes);
-}
-
 /// The corners of a cell that are inside, a bit each.
 unsigned corners_of(const CornerBits& corners, int x, int y, int z) {
   unsigned inside = 0;
@@ -33,6 +28,11 @@ unsigned corners_of(const CornerBits& corners, int x, int y, int z) {
 }
 
 }  // namespace
+
+const CellLanes& best_cell_lanes() {
+  static const InstructionLevel level = best_instruction_level();
+  return MALLOW_SELECT(level, cell_lanes);
+}
 
 /// Surface blocks, and those below them, whose last cells reach into one.
 void CutCells::choose_blocks(const SurfaceField& field) {
@@ -54,7 +54,7 @@ void CutCells::choose_blocks(const SurfaceField& field) {
 void CutCells::find_signs(const SurfaceField& field, std::size_t at) {
   const std::uint32_t block = blocks_[at];
   if (field.kind(block) == BlockKind::surface)
-    best_cell_lanes().find_signs(field.distances(block), inside_[at]);
+    inside_[at] = field.signs(block);
   else
     inside_[at] = field.kind(block) == BlockKind::inside ? k_inside : k_outside;
 }

@@ -54,11 +54,13 @@ void DualMesher::place_vertices(const SurfaceField& field, std::size_t at, Mesh&
   const auto& neighbors = field.neighbors(block);
   for (std::size_t k = 0; k < neighbors.size(); ++k) from.distances[k] = distances_of(field, neighbors[k]);
   from.range = cells.bits.range;
+  const VoxelFrame& frame = field.frame();
+  const Eigen::Vector3d base = frame.base(), shift = frame.shift();
   for (Eigen::Index a = 0; a < 3; ++a) {
-    from.first[a] = k_block_side * field.blocks().blocks()[block][a];
-    from.origin[a] = field.frame().origin[a];
+    from.first[a] = shift[a] + k_block_side * field.blocks().blocks()[block][a];
+    from.origin[a] = base[a];
   }
-  from.voxel_size = field.frame().voxel_size;
+  from.voxel_size = frame.voxel_size;
   const std::size_t first = first_vertex_ + std::size_t{cells.first_vertex};
   best_vertex_lanes().place_vertices(
       from, list.vertices,

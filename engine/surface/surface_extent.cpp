@@ -13,6 +13,10 @@ namespace {
 
 /// Voxels along an axis: keeps the numbers of blocks within 21 bits and offsets within a block exact.
 constexpr int k_max_side = 1 << 22;
+/// Voxels from one origin to the next: a whole number of cubes of BlockMap. Where the side of a voxel is a
+/// float places on the grid are exact, and origins can lie far apart: so they stay where they are while
+/// particles come and go, and surfaces of bodies that rest are kept.
+constexpr int k_lattice = BlockMap::k_cube_side * k_block_side, k_wide_lattice = 1 << 18;
 
 /// Side of the voxels of a surface [m]. A float, where it does not follow the box: a whole number of such
 /// sides is exact in double, and so are places on the grid wherever its origin is.
@@ -40,10 +44,11 @@ Extent extent_of(const SurfaceParticles& particles, double margin) {
 }
 
 VoxelFrame make_frame(const SurfaceConfig& config, float spacing, const Extent& extent) {
-  constexpr int k_lattice = BlockMap::k_cube_side * k_block_side;
   VoxelFrame frame;
   frame.voxel_size = voxel_size(config, spacing, extent);
-  const double side = k_lattice * frame.voxel_size;
+  const bool follows_box = config.voxels && !config.voxel_size;
+  frame.whole = !follows_box;
+  const double side = (follows_box ? k_lattice : k_wide_lattice) * frame.voxel_size;
   frame.origin = (extent.low / side).array().floor() * side;
   if (extent.longest_side / frame.voxel_size > k_max_side) {
     std::ostringstream text;

@@ -13,9 +13,9 @@ struct Extent {
 /// margin: from particles to the surface [m].
 Extent extent_of(const SurfaceParticles& particles, double margin);
 
-/// The grid of a surface. Its origin is a corner of a fixed lattice, a cube of BlockMap wide: voxels, blocks
-/// and the order of blocks stay where they are while particles come and go. Throws ConfigError where it would
-/// be too large.
+/// The grid of a surface. Its origin is a corner of a fixed lattice, whole in cubes of BlockMap: voxels,
+/// blocks and the order of blocks stay where they are while particles come and go. Throws ConfigError where
+/// it would be too large.
 VoxelFrame make_frame(const SurfaceConfig& config, float spacing, const Extent& extent);
 
 }  // namespace mallow

@@ -179,6 +179,7 @@ void SurfaceField::probe(const Threads& threads) {
   const std::size_t n = points.count();
   outside_.resize(blocks_.size());
   inside_.resize(blocks_.size());
+  signs_.resize(blocks_.size());
   if (probe_step_ == 1) distances_.resize_unset(n * blocks_.size());
   const bool keep = node_step_ == probe_step_ && node_step_ > 1;
   if (keep) node_sums_.resize(k_sums * n * blocks_.size());
@@ -188,6 +189,7 @@ void SurfaceField::probe(const Threads& threads) {
         float sums[k_sums * k_block_voxels], scratch[k_block_voxels];
         float* const distances = probe_step_ == 1 ? distances_.data() + n * b : scratch;
         find_distances(points, near, keep ? node_sums_.data() + k_sums * n * b : sums, distances);
+        if (probe_step_ == 1) best_cell_lanes().find_signs(distances, signs_[b]);
         note_sides(b, distances, near.count > 0);
         // The surface may be in it: it will be looked at again.
         if (probe_step_ > 1 && (inside_[b] & 1) == 0) particles_.keep(b, near);
@@ -298,6 +300,7 @@ void SurfaceField::fill(const Threads& threads) {
     for_each_block(threads, cut, [&](std::uint32_t b, BlockNear& near) {
       float sums[k_sums * k_block_voxels];
       find_distances(lattice(1), near, sums, to(b));
+      best_cell_lanes().find_signs(to(b), signs_[b]);
     });
     return;
   }
@@ -314,6 +317,7 @@ void SurfaceField::fill(const Threads& threads) {
             collect_rows(b, rows, nodes);
           }
           best_surface_lanes().fill_block(shape_, weights_, rows, to(b));
+          best_cell_lanes().find_signs(to(b), signs_[b]);
         }
       },
       k_blocks_at_once);
@@ -323,7 +327,8 @@ std::size_t SurfaceField::bytes() const {
   return particles_.bytes() + finder_.bytes() + blocks_.bytes() + distances_.bytes() +
          neighbors_.capacity() * sizeof neighbors_[0] + node_sums_.capacity() * sizeof(float) +
          (place_.capacity() + node_place_.capacity()) * sizeof(std::size_t) + kind_.capacity() +
-         needs_nodes_.capacity() + outside_.capacity() + inside_.capacity();
+         signs_.capacity() * sizeof(BlockBits) + needs_nodes_.capacity() + outside_.capacity() +
+         inside_.capacity();
 }
 
 }  // namespace mallow

@@ -11,6 +11,7 @@
 #include "surface/block_finder.h"
 #include "surface/block_map.h"
 #include "surface/block_particles.h"
+#include "surface/cell_lanes.h"
 #include "surface/node_weights.h"
 #include "surface/picked_vectors.h"
 #include "surface/surface_lanes.h"
@@ -47,6 +48,8 @@ class SurfaceField {
   BlockKind kind(std::uint32_t block) const { return kind_[block]; }
   /// The 512 distances of a surface block, z fastest.
   const float* distances(std::uint32_t block) const { return distances_.data() + place_[block]; }
+  /// Where these are below 0.
+  const BlockBits& signs(std::uint32_t block) const { return signs_[block]; }
   /// Kernel-weighted means of the particles' values at points near a block. points: a whole number of eights,
   /// [voxels] from the block's first voxel. values: by particle, as they were given to build().
   void mean_at(std::uint32_t block, ConstVectors points, std::size_t n, const PickedVectors& values,
@@ -99,6 +102,7 @@ class SurfaceField {
   std::vector<std::uint8_t> outside_, inside_;
   std::vector<float> node_sums_;  ///< of the blocks that need them
   std::vector<std::size_t> node_place_, place_;
+  std::vector<BlockBits> signs_;  ///< of each block, set where the surface is in it
   Column<float> distances_;
 };
 

@@ -191,6 +191,30 @@ TEST_F(scene_warnings, name_bodies_that_their_own_weight_flattens_and_spacings_t
   EXPECT_TRUE(warns(of(melting, 0.005f), "no heat passes through it"));
 }
 
+TEST_F(scene_warnings, name_voxels_that_particles_fall_between_and_smoothing_that_takes_drops_away) {
+  const auto with = [&](const std::string& settings) {
+    return warnings_of(read(falling("0.1", "0.21", "-9.81", "frame_time = 0.03\n[surface]\n" + settings)));
+  };
+  EXPECT_TRUE(with("").empty());
+  EXPECT_TRUE(with("voxels_per_spacing = 1.6\n").empty());
+  const std::string lost = "a particle by itself may lie between voxels";
+  EXPECT_TRUE(warns(with("voxels_per_spacing = 1.5\n"), lost));
+  EXPECT_TRUE(warns(with("voxels_per_spacing = 1.5\n"), "gives 1.5 voxels a spacing, and below 1.57459"));
+  EXPECT_TRUE(with("voxels_per_spacing = 1.5\nparticle_radius = 0.6\n").empty());
+  EXPECT_TRUE(warns(with("voxel_size = 0.07\n"), "voxel_size gives 1.42857"));
+  EXPECT_TRUE(with("voxel_size = 0.06\n").empty());
+  // Four particles an axis, whose box is at least four spacings long.
+  EXPECT_TRUE(with("voxels = 8\n").size() == 0u);
+  const std::string many = falling("0.1", "0.21", "-9.81", "frame_time = 0.03\n[surface]\nvoxels = 8\n");
+  std::string wide = many;
+  wide.replace(wide.find("[4, 4, 4]"), 9, "[9, 9, 9]");
+  EXPECT_TRUE(warns(warnings_of(read(wide)), "voxels gives at most 0.888889 voxels a spacing"));
+  EXPECT_TRUE(with("smoothing = 30\n").empty());
+  EXPECT_TRUE(warns(with("smoothing = 60\n"), "takes half or more of what is a particle wide"));
+  EXPECT_TRUE(warns(with("voxels_per_spacing = 2\nsmoothing = 12\n"), "smoothing 12"));
+  EXPECT_TRUE(with("voxels_per_spacing = 4\nsmoothing = 100\n").empty());
+}
+
 /// Every line that `mallow info` shows: of the scene, and of what was done to its bodies.
 std::vector<std::string> told(const Scene& scene) {
   std::vector<std::string> all;

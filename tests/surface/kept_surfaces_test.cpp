@@ -145,6 +145,21 @@ TEST(kept_surfaces, only_bodies_of_which_a_bit_changed_are_drawn_anew) {
   EXPECT_EQ(SurfacerAccess::kept(surfacer), 8u);
 }
 
+TEST(kept_surfaces, are_not_drawn_again_because_something_flies_off) {
+  Crowd crowd(4);
+  Surfacer surfacer({});
+  SurfaceParticles particles = crowd.particles(false);
+  std::vector<Vec3> positions;
+  for (std::size_t i = 0; i < particles.positions.size(); ++i) positions.push_back(particles.positions[i]);
+  particles.positions = positions;
+  surfacer.draw(particles);
+  for (const Vec3& by : {Vec3(-9, 5, 2), Vec3(-90, 0, -200), Vec3(700, -20, 100)}) {
+    for (std::size_t i = particles.bodies.back().rows->begin; i < positions.size(); ++i) positions[i] += by;
+    expect_same(surfacer.draw(particles), Surfacer({}).draw(particles));
+    EXPECT_EQ(SurfacerAccess::kept(surfacer), 8u);
+  }
+}
+
 TEST(kept_surfaces, consecutive_meshes_of_bodies_at_rest_are_the_same_bits) {
   Simulation simulation({.support_radius = 2.1f, .gravity = {0, 0, -9.81f}});
   const MaterialId jelly =

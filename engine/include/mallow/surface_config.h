@@ -19,7 +19,7 @@ struct SurfaceConfig {
   /// surfaces of their own each has voxels for its own spacing, and joined ones have them for the widest.
   /// Counts where voxel_size and voxels are left out. A splash of 1,000 particles, in the mean off what fine
   /// voxels show: 2 takes 0.5 ms on one thread, 0.028 h; 2.7 takes 0.8 ms, 0.017 h; 3 takes 1.0 ms, 0.014 h;
-  /// 4 takes 1.9 ms, 0.008 h. Finer ones show the particles as ripples.
+  /// 4 takes 1.9 ms, 0.008 h. Finer ones show ripples; below 1.6 lone particles are lost.
   float voxels_per_spacing = 2.7f;
   /// Side of a voxel [m], > 0, whatever the spacing is.
   std::optional<float> voxel_size = {};
@@ -28,7 +28,7 @@ struct SurfaceConfig {
   /// anew: where something flies off, the surface of all else gets coarser and flickers.
   std::optional<int> voxels = {};
   /// Radius of the kernels that blend the particles, in spacings, in [1, 4]; from 2 on where they are
-  /// anisotropic.
+  /// anisotropic. 2.5 hides the particles of sheets and strands, but parts 2.3 spacings apart melt.
   float kernel_radius = 2.0f;
   /// Distance of the surface from the outermost particles, in spacings, in [0.1, 1].
   float particle_radius = 0.55f;
@@ -40,7 +40,7 @@ struct SurfaceConfig {
   /// moves it by no more than this many voxels, in [0, 1]. 0: all triangles are about a voxel large.
   float adaptivity = 0;
   /// Rounds that smooth the mesh, in [0, 100]; each evens out bumps of about a voxel and keeps the volume
-  /// [Taubin 1995].
+  /// [Taubin 1995]; pieces two voxels wide shrink, to a half in 10 rounds.
   int smoothing = 0;
   /// Memory that a surface may take [GiB], > 0; one that would need more is refused before it is allocated.
   float memory_limit = 4.0f;
