@@ -26,6 +26,8 @@ static_assert(Leaf::DIM == k_block_side);
 
 /// Voxels on each side of the surface that hold a distance.
 constexpr int k_half_band = static_cast<int>(SurfaceField::k_background);
+/// Numbers of voxels that an int holds, with those of a grid added.
+constexpr double k_farthest = 1 << 30;
 
 /// The blocks as leaves, with those beside surface blocks, whose voxels are on one side; no voxel is active.
 Grid::Ptr copy_blocks(const SurfaceField& field) {
@@ -34,9 +36,14 @@ Grid::Ptr copy_blocks(const SurfaceField& field) {
   const float background =
       std::nextafter(static_cast<float>(k_half_band * voxel), 2 * k_half_band * static_cast<float>(voxel));
   auto grid = Grid::create(background);
+  // Voxels are numbered from the world's origin where that is a whole number of voxels away: grids of all
+  // frames and bodies share a transform, and tools that sum moments see small numbers.
+  const Eigen::Vector3d shift = field.frame().shift();
+  const bool numbered = shift.cwiseAbs().maxCoeff() < k_farthest;
+  const BlockMap::Coord first = numbered ? BlockMap::Coord(shift.cast<int>()) : BlockMap::Coord(0, 0, 0);
   const auto origin = [&](std::uint32_t b) {
-    const BlockMap::Coord& block = field.blocks().blocks()[b];
-    return openvdb::Coord(k_block_side * block.x(), k_block_side * block.y(), k_block_side * block.z());
+    const BlockMap::Coord at = first + k_block_side * field.blocks().blocks()[b];
+    return openvdb::Coord(at.x(), at.y(), at.z());
   };
   for (std::uint32_t b = 0; b < field.blocks().size(); ++b)
     if (field.kind(b) == BlockKind::inside) grid->tree().addTile(1, origin(b), -background, false);
@@ -54,7 +61,7 @@ Grid::Ptr copy_blocks(const SurfaceField& field) {
       }
   }
   const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
-  const Eigen::Vector3d& corner = field.frame().origin;
+  const Eigen::Vector3d corner = numbered ? field.frame().base() : field.frame().origin;
   transform->postTranslate({corner.x(), corner.y(), corner.z()});
   grid->setTransform(transform);
   return grid;
