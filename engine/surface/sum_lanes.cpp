@@ -51,10 +51,14 @@ struct PointColumn {
 };
 
 /// A value of points as those of their planes.
-template <class L>
-MALLOW_INLINE void put_lanes(const L& value, Floats* planes) {
-  __builtin_memcpy(planes, &value, sizeof value);
+MALLOW_INLINE void put_lanes(const Floats& value, Floats* plane) {
+  *plane = value;
 }
+#ifdef __AVX512F__
+MALLOW_INLINE void put_lanes(const Wide& value, Floats* planes) {
+  store(value, reinterpret_cast<float*>(planes));
+}
+#endif
 template <class L>
 MALLOW_INLINE void put_lanes(const Vec3Of<L>& v, Floats* planes, std::size_t stride) {
   put_lanes(v.x, planes);
@@ -257,6 +261,7 @@ template <std::size_t planes, class Kernel>
   }
 #endif
   typename Kernel::template State<Floats> sums[planes];
+#pragma GCC unroll 2
   for (auto& sum : sums) sum = kernel.template start<Floats>();
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = listed[k];
@@ -264,6 +269,7 @@ template <std::size_t planes, class Kernel>
     for (std::size_t p = 0; p < planes; ++p)
       kernel.add(sums[p], ClusterVec3{dx, dy, particles.z[i] - group.z[p]}, i);
   }
+#pragma GCC unroll 2
   for (std::size_t p = 0; p < planes; ++p) kernel.put(sums[p], to + p, stride);
 }
 

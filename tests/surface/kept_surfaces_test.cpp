@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 #include <random>
 #include <string>
@@ -7,24 +6,13 @@
 #include "mallow/simulation.h"
 #include "mallow/surface.h"
 #include "meshes.h"
+#include "same_meshes.h"
 #include "surface/surfacer_access.h"
 
 namespace mallow {
 namespace kept_surfaces_test {
 
 using Rows = Simulation::Rows;
-
-template <class T>
-bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-void expect_same(const Mesh& a, const Mesh& b) {
-  EXPECT_TRUE(same_bits(a.vertices, b.vertices));
-  EXPECT_TRUE(same_bits(a.normals, b.normals));
-  EXPECT_TRUE(same_bits(a.velocities, b.velocities));
-  EXPECT_TRUE(same_bits(a.material_ids, b.material_ids));
-  EXPECT_TRUE(same_bits(a.triangles, b.triangles));
-}
 
 /// Bodies that move, rest, come and go at random, drawn frame after frame.
 class Crowd {

@@ -1,26 +1,15 @@
-#include <cstring>
 #include <numeric>
 #include <random>
 
 #include "mallow/simulation.h"
 #include "mallow/surface.h"
 #include "meshes.h"
+#include "same_meshes.h"
 
 namespace mallow {
 namespace surface_particles_test {
 
 using Rows = Simulation::Rows;
-
-bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
-}
-void expect_same(const Mesh& a, const Mesh& b) {
-  EXPECT_TRUE(same_bits(a.vertices, b.vertices));
-  EXPECT_TRUE(same_bits(a.normals, b.normals));
-  EXPECT_TRUE(same_bits(a.velocities, b.velocities));
-  EXPECT_EQ(a.material_ids, b.material_ids);
-  EXPECT_EQ(a.triangles, b.triangles);
-}
 
 std::vector<Vec3> shaken_ball(const Vec3& center, float radius) {
   return sample(sphere_shape(center, radius), {.spacing = 1.0f, .jitter = 0.3f}).positions;
