@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "core/parallel.h"
@@ -14,6 +15,13 @@
 #include "surface/surfacer_access.h"
 
 namespace mallow {
+namespace {
+
+/// A surface is small where a thread has so many more particles to see to.
+constexpr std::size_t k_small_share = 4;
+
+}  // namespace
+
 struct Surfacer::Work {
   SurfaceConfig config;
   std::shared_ptr<Executor> executor;  ///< that `threads` points to
@@ -41,6 +49,7 @@ struct Surfacer::Work {
   void find_bodies(const SurfaceParticles& particles);
   void find_changes(const SurfaceParticles& particles, const Extent& extent, bool keep);
   SurfaceSource source_of(const SurfaceParticles& all, std::size_t surface, const Extent& extent) const;
+  void build_fields(const SurfaceParticles& particles, const Extent& extent);
   void draw_one(const SurfaceSource& source, std::size_t surface, Mesh& to);
   template <class Visit>
   void at_vertices(const Visit& visit);
@@ -96,11 +105,43 @@ void Surfacer::Work::find_velocities(const SurfaceField& field, const PickedVect
   });
 }
 
+/// The fields of all surfaces that are drawn anew. Those with a small share of the particles are built side
+/// by side, each on one thread, as their loops are too short to be shared; the others one after the other.
+void Surfacer::Work::build_fields(const SurfaceParticles& particles, const Extent& extent) {
+  const auto build = [&](std::size_t s) {
+    const SurfaceSource source = source_of(particles, s, extent);
+    fields[s].build(source.positions, source.spacing, config, source.frame, threads);
+  };
+  const std::size_t small = order.count() / (k_small_share * static_cast<std::size_t>(threads.count()));
+  std::vector<std::size_t> side_by_side;
+  for (std::size_t s = 0; s < parts.size(); ++s) {
+    if (!parts[s].fresh) continue;
+    if (threads.count() > 1 && order.rows(s).size() <= small)
+      side_by_side.push_back(s);
+    else
+      build(s);
+  }
+  std::vector<std::exception_ptr> errors(side_by_side.size());  // loops must not throw
+  parallel_for(
+      threads, side_by_side.size(),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+          try {
+            build(side_by_side[k]);
+          } catch (...) {
+            errors[k] = std::current_exception();
+          }
+        }
+      },
+      1);
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
+}
+
 /// Appends the surface around the particles of a body, or of all where they are joined.
 void Surfacer::Work::draw_one(const SurfaceSource& source, std::size_t surface, Mesh& to) {
   SurfaceField& field = fields[surface];
   const MeshCounts first = counts;
-  field.build(source.positions, source.spacing, config, source.frame, threads);
   mesher.append(field, config.adaptivity, threads, counts, to);
   to.material_ids.resize(to.vertices.size(), static_cast<std::uint32_t>(surface));
   if (!source.bodies.empty()) find_materials(field, to);
@@ -170,6 +211,7 @@ void Surfacer::Work::draw_all(const SurfaceParticles& particles) {
   Mesh& to = kept > 0 ? fresh : mesh;
   to.velocities.clear();
   to.material_ids.clear();
+  build_fields(particles, extent);
   for (std::size_t s = 0; s < parts.size(); ++s)
     if (parts[s].fresh) draw_one(source_of(particles, s, extent), s, to);
   if (kept > 0) put_together(fresh, threads, parts, mesh);

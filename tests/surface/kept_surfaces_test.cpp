@@ -99,9 +99,12 @@ TEST(kept_surfaces, meshes_are_those_that_a_new_surfacer_draws_whatever_moves_co
   }
 }
 
-TEST(kept_surfaces, a_frame_that_could_not_be_drawn_leaves_nothing_behind) {
+/// On one thread, and on two, which draw small surfaces side by side.
+class unfinished_frame : public testing::TestWithParam<int> {};
+
+TEST_P(unfinished_frame, leaves_nothing_behind) {
   Crowd crowd(5);
-  Surfacer surfacer({.voxel_size = 0.5f, .memory_limit = 0.001f});
+  Surfacer surfacer({.voxel_size = 0.5f, .memory_limit = 0.001f}, GetParam());
   const Mesh expected = surfacer.draw(crowd.particles(true));
   SurfaceParticles particles = crowd.particles(true);
   std::vector<Vec3> positions;
@@ -115,6 +118,8 @@ TEST(kept_surfaces, a_frame_that_could_not_be_drawn_leaves_nothing_behind) {
   EXPECT_THROW(surfacer.draw(particles), ConfigError);
   expect_same(surfacer.draw(crowd.particles(true)), expected);
 }
+
+INSTANTIATE_TEST_SUITE_P(kept_surfaces, unfinished_frame, testing::Values(1, 2));
 
 TEST(kept_surfaces, only_bodies_of_which_a_bit_changed_are_drawn_anew) {
   Crowd crowd(3);
