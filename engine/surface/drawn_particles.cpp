@@ -19,13 +19,14 @@ std::uint32_t difference(const Vec3& a, const Vec3& b) {
 
 /// Copies vectors, and tells whether all bits were there already.
 bool note_vectors(const PickedVectors& from, const Threads& threads, std::vector<Vec3>& to) {
-  std::atomic<bool> same = from.size() == to.size();
+  const bool comparable = from.size() == to.size();
+  std::atomic<bool> same = comparable;
   to.resize(from.size());
   parallel_for(threads, to.size(), [&](std::size_t begin, std::size_t end) {
     std::uint32_t bits = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 now = from[i];
-      bits |= difference(now, to[i]);
+      if (comparable) bits |= difference(now, to[i]);
       to[i] = now;
     }
     if (bits != 0) same.store(false, std::memory_order_relaxed);
