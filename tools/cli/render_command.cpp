@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "cli/messages.h"
 #include "cli/summary.h"
 #include "mallow/files.h"
+#include "program/background_writer.h"
 #include "program/cached_run.h"
 #include "program/failure.h"
 #include "program/input_files.h"
@@ -31,6 +33,38 @@ std::vector<int> frames_to_show(const program::Cache& cache) {
   return surfaces.empty() ? cache.particle_frames() : surfaces;
 }
 
+/// Reads the frames one after another, each while the picture of the one before is taken.
+class FrameReader {
+ public:
+  struct Frame {
+    ParticleFrame particles;
+    Mesh surface;
+  };
+  FrameReader(const program::Cache& cache, const std::vector<int>& frames)
+      : cache_(cache), frames_(frames), with_surfaces_(!cache.surface_frames().empty()) {
+    start_next();
+  }
+  Frame next() {
+    Frame frame = coming_.get();
+    start_next();
+    return frame;
+  }
+
+ private:
+  void start_next() {
+    if (next_ == frames_.size()) return;
+    coming_ = std::async(std::launch::async, [this, number = frames_[next_++]]() -> Frame {
+      return {read_particles(cache_.particles_file(number)),
+              with_surfaces_ ? read_mesh(cache_.surface_file(number)) : Mesh{}};
+    });
+  }
+  const program::Cache& cache_;
+  const std::vector<int>& frames_;
+  bool with_surfaces_;
+  std::size_t next_ = 0;
+  std::future<Frame> coming_;
+};
+
 void render_cache(const RenderOptions& options) {
   check_film(options.film);
   program::CachedRun run = program::open_cached_run(options, "render");
@@ -40,17 +74,23 @@ void render_cache(const RenderOptions& options) {
   const ParticleFrame first = read_particles(cache.particles_file(cache.particle_frames().front()));
   program::Stills stills(run.scene, first, run.spacings, run.threads);
   const std::vector<int> frames = frames_to_show(cache);
-  const bool surfaces = !cache.surface_frames().empty();
   program::StageTimes seconds{};
   std::size_t count = 0;
   try {
     std::filesystem::create_directories(cache.images_folder());
     cache.remove_images_but(frames);
+    FrameReader reader(cache, frames);
+    program::BackgroundWriter files;
     count = for_each_frame(frames, "rendering", [&](int number) {
       const program::StageTimer timer(seconds, program::Stage::pictures);
-      stills.take(read_particles(cache.particles_file(number)),
-                  surfaces ? read_mesh(cache.surface_file(number)) : Mesh{}, cache.image_file(number));
+      const FrameReader::Frame frame = reader.next();
+      auto picture = std::make_shared<const render::Image>(stills.take(frame.particles, frame.surface));
+      files.add([&cache, number, picture] { render::write_png(cache.image_file(number), *picture); });
     });
+    {
+      const program::StageTimer timer(seconds, program::Stage::pictures);
+      files.finish();
+    }
     {
       const program::StageTimer timer(seconds, program::Stage::film);
       make_film(options.film, cache, run.scene.render.frames_per_second, run.threads);

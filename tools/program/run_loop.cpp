@@ -72,7 +72,8 @@ class FrameWriter {
     }
     if (stills_) {
       const StageTimer timer(report_.stage_seconds, Stage::pictures);
-      stills_->take(*frame, *mesh, cache_.image_file(number));
+      auto picture = std::make_shared<const render::Image>(stills_->take(*frame, *mesh));
+      files_.add([this, number, picture] { render::write_png(cache_.image_file(number), *picture); });
     }
   }
 

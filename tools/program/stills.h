@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "mallow/files.h"
@@ -17,7 +16,7 @@ class Stills {
   Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads);
 
   /// The surface of a frame, or its particles where the surface is empty.
-  void take(const ParticleFrame& frame, const Mesh& surface, const std::filesystem::path& file);
+  render::Image take(const ParticleFrame& frame, const Mesh& surface);
 
  private:
   const Scene& scene_;

@@ -15,7 +15,7 @@ constexpr std::array<Optics, 8> k_optics{{
     {},
     {},
     {},
-    {.index = 1.35f, .wrap = 0.25f, .free_path = 0.25f, .color_depth = 0.10f},
+    {.index = 1.35f, .wrap = 0.25f, .free_path = 0.45f, .color_depth = 0.30f},
     {.index = 1.5f, .satin = 8, .rough = true},
     {.index = 1.4f, .wrap = 0.5f, .satin = 20},
     {.index = 1.5f},
@@ -33,6 +33,9 @@ constexpr float k_facets_backwards = 0.45f * k_slope_variance / (k_slope_varianc
 constexpr float k_from_behind = 0.35f;
 // Light from all around inside cream, in place of what goes in elsewhere and comes out here.
 constexpr float k_inner = 0.12f;
+
+// What is scattered inside a clear body has come so often through the depth that gives it its colour.
+constexpr float k_scattered_way = 1.4f;
 
 /// The tone curve, by linear pieces: the powers in it would take a fifth of the time of a picture.
 class Curve {
@@ -113,7 +116,9 @@ Vec3 shade(const Environment& environment, const Seen& seen, const Vec3& open, c
   const Optics& optics = optics_of(seen.look);
   Vec3 ambient = (open + light.ambient().matrix()).cwiseMax(0.0f);
   if (optics.wrap > 0) ambient = mix(ambient, environment.mean_sky(), k_inner);
-  Vec3 color = seen.albedo.cwiseProduct(
+  // What is scattered inside a clear body has gone some way through it.
+  const Vec3 albedo = optics.is_clear() ? Vec3(seen.albedo.array().pow(k_scattered_way)) : seen.albedo;
+  Vec3 color = albedo.cwiseProduct(
       environment.key_color().cwiseProduct(direct(optics, seen, environment.key_direction())) * light.key() +
       ambient);
   if (optics.satin > 0) return color + satin_highlight(optics, seen, environment, light.key());

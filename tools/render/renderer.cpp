@@ -89,10 +89,10 @@ Vec3 Renderer::State::edge_color(const World& world, const Viewport& view, int x
 // What most of a picture is needs no search for edges, and the floor no light.
 Vec3 Renderer::State::still_color(const World& world, const Viewport& view, const Vec3& floor, int x,
                                   int y) const {
-  const Surfel& seen = light_map.surfel(x, y);
+  const Ray ray = view.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+  const Surfel seen = world.look_past(ray);
   if (seen.look == Look::floor && seen.fade == 0) return floor;
-  return develop(
-      world.open_color(view.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f), seen));
+  return develop(world.open_color(ray, seen));
 }
 
 Vec3 Renderer::State::color(const World& world, const Viewport& view, bool flat, int x, int y) const {

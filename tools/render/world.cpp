@@ -333,7 +333,10 @@ void World::pass_through(std::span<const Surfel* const> at, std::span<Passage> p
     for (std::size_t k = 0; k < count; ++k) {
       const Bodies::Exit& exit = exits[k];
       Passage& passage = passages[place[k]];
-      if (exit.t == k_far) continue;
+      if (exit.t == k_far) {
+        if (bounce == 0) passage.way = k_far;  // a leaf without an inside
+        continue;
+      }
       passage.way += exit.t;
       const Vec3 leaves = rays[k].at(exit.t);
       passage.ray.origin = leaves - epsilon_ * exit.normal;
