@@ -1,6 +1,7 @@
 #include "cli/render_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -18,6 +19,7 @@
 #include "program/failure.h"
 #include "program/input_files.h"
 #include "program/stills.h"
+#include "program/view_bounds.h"
 
 namespace mallow::cli {
 namespace {
@@ -65,15 +67,30 @@ class FrameReader {
   std::future<Frame> coming_;
 };
 
+/// The camera has what the film shows in view, by up to so many of its frames.
+program::Stills stills_of(const program::CachedRun& run, const std::vector<int>& frames) {
+  constexpr std::size_t k_looks = 32;
+  if (run.scene.render.eye || frames.empty()) {
+    const int first = run.cache.particle_frames().front();
+    return {run.scene, read_particles(run.cache.particles_file(first)), run.spacings, run.threads};
+  }
+  program::FilmBounds bounds;
+  const std::size_t looks = std::min(k_looks, frames.size());
+  for (std::size_t k = 0; k < looks; ++k)
+    bounds.add(read_particles(
+        run.cache.particles_file(frames[looks > 1 ? k * (frames.size() - 1) / (looks - 1) : 0])));
+  const auto box = bounds.box(run.scene, *std::ranges::min_element(run.spacings));
+  return {run.scene, box.value_or(Aabb{{-1, -1, -1}, {1, 1, 1}}), run.spacings, run.threads};
+}
+
 void render_cache(const RenderOptions& options) {
   check_film(options.film);
   program::CachedRun run = program::open_cached_run(options, "render");
   print_warning(run.cache.lock_warning());
   const program::Cache& cache = run.cache;
   program::InputFiles(run.scene).refuse(options.film.file, "--film");
-  const ParticleFrame first = read_particles(cache.particles_file(cache.particle_frames().front()));
-  program::Stills stills(run.scene, first, run.spacings, run.threads);
   const std::vector<int> frames = frames_to_show(cache);
+  program::Stills stills = stills_of(run, frames);
   program::StageTimes seconds{};
   std::size_t count = 0;
   try {

@@ -27,9 +27,12 @@ RenderConfig of_scene(const Scene& scene) {
 }  // namespace
 
 Stills::Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads)
+    : Stills(scene, view_bounds(scene, first), spacings, threads) {}
+
+Stills::Stills(const Scene& scene, const Aabb& film, std::span<const float> spacings, int threads)
     : scene_(scene),
       renderer_(of_scene(scene), threads),
-      camera_(render::frame_camera(view_bounds(scene, first), scene.render)),
+      camera_(render::frame_camera(film, scene.render, visible_colliders(scene))),
       palette_(body_appearances(scene)),
       ball_radius_(0.5f * *std::min_element(spacings.begin(), spacings.end())) {}
 

@@ -9,11 +9,13 @@
 
 namespace mallow::program {
 
-/// Takes the pictures of a run: camera and looks are those of frame 0 and stay through the film.
+/// Takes the pictures of a run: camera and looks stay through the film.
 class Stills {
  public:
   /// `scene` must outlive the stills. spacings: h of each body [m].
   Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads);
+  /// The same for a film whose bounds are known.
+  Stills(const Scene& scene, const Aabb& film, std::span<const float> spacings, int threads);
 
   /// The surface of a frame, or its particles where the surface is empty.
   render::Image take(const ParticleFrame& frame, const Mesh& surface);

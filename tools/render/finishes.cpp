@@ -15,7 +15,7 @@ constexpr std::array<Optics, 8> k_optics{{
     {},
     {},
     {},
-    {.index = 1.35f, .wrap = 0.25f, .free_path = 0.45f, .color_depth = 0.30f},
+    {.index = 1.35f, .wrap = 0.25f, .free_path = 0.35f, .color_depth = 0.20f},
     {.index = 1.5f, .satin = 8, .rough = true},
     {.index = 1.4f, .wrap = 0.5f, .satin = 20},
     {.index = 1.5f},
