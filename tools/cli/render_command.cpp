@@ -91,6 +91,7 @@ void render_cache(const RenderOptions& options) {
   program::InputFiles(run.scene).refuse(options.film.file, "--film");
   const std::vector<int> frames = frames_to_show(cache);
   program::Stills stills = stills_of(run, frames);
+  stills.set_frame_time(run.report.value("frame_time", 0.0));
   program::StageTimes seconds{};
   std::size_t count = 0;
   try {

@@ -37,6 +37,7 @@ class FrameWriter {
       std::vector<float> spacings;
       for (const BodyInfo& body : report.info.bodies) spacings.push_back(body.spacing);
       stills_.emplace(scene, first, spacings, plan.threads);
+      stills_->set_frame_time(report.frame_time);
     }
   }
 

@@ -17,6 +17,12 @@ class Stills {
   /// The same for a film whose bounds are known.
   Stills(const Scene& scene, const Aabb& film, std::span<const float> spacings, int threads);
 
+  /// Simulated time from one frame to the next [s], of which the shutter is open for a share; 0 to begin
+  /// with.
+  void set_frame_time(double seconds) {
+    renderer_.set_exposure(scene_.render.shutter * static_cast<float>(seconds));
+  }
+
   /// The surface of a frame, or its particles where the surface is empty.
   render::Image take(const ParticleFrame& frame, const Mesh& surface);
 

@@ -138,7 +138,7 @@ void Bodies::commit(RTCGeometry geometry) {
   check();
 }
 
-void Bodies::set_mesh(const Mesh& mesh, std::span<const Appearance> palette) {
+void Bodies::set_mesh(const Mesh& mesh, std::span<const Appearance> palette, float exposure) {
   check_palette(mesh.material_ids, palette, !mesh.triangles.empty());
   mesh_ = &mesh;
   body_of_ = mesh.material_ids;
@@ -149,12 +149,26 @@ void Bodies::set_mesh(const Mesh& mesh, std::span<const Appearance> palette) {
   if (mesh.triangles.empty()) return commit(nullptr);
 
   const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(Vec3), mesh.vertices.size());
+  const bool moves = exposure > 0 && !mesh.velocities.empty();
+  // Where it is when the shutter opens and when it closes.
+  const std::array<float, 2> times{-0.5f * exposure, 0.5f * exposure};
+  rtcSetGeometryTimeStepCount(geometry, moves ? 2 : 1);
+  for (unsigned slot = 0; slot < (moves ? 2u : 1u); ++slot) {
+    auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, slot, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.vertices.size()));
+    check();
+    if (!moves) {
+      std::copy(mesh.vertices.begin(), mesh.vertices.end(), vertices);
+      continue;
+    }
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      vertices[v] = mesh.vertices[v] + times[slot] * mesh.velocities[v];
+      box_ = {box_->min.cwiseMin(vertices[v]), box_->max.cwiseMax(vertices[v])};
+    }
+  }
   void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                             sizeof(mesh.triangles[0]), mesh.triangles.size());
   check();
-  std::copy(mesh.vertices.begin(), mesh.vertices.end(), static_cast<Vec3*>(vertices));
   std::copy(mesh.triangles.begin(), mesh.triangles.end(),
             static_cast<std::array<std::uint32_t, 3>*>(triangles));
   commit(geometry);
@@ -210,7 +224,7 @@ Bodies::Hit Bodies::hit_of(const Ray& ray, float t, const RTCHit& record) const 
   hit.face = Vec3(record.Ng_x, record.Ng_y, record.Ng_z).normalized();
   if (hit.face.dot(ray.direction) > 0) hit.face = -hit.face;
   if (mesh_ != nullptr) {
-    fill_mesh_hit(record, hit);
+    fill_mesh_hit(record, ray.time == 0.5f, hit);
   } else {
     hit.normal = hit.face;
     const Appearance& appearance = palette_[body_of_.empty() ? 0 : body_of_[record.primID]];
@@ -223,7 +237,7 @@ Bodies::Hit Bodies::hit_of(const Ray& ray, float t, const RTCHit& record) const 
   return hit;
 }
 
-void Bodies::fill_mesh_hit(const RTCHit& record, Hit& hit) const {
+void Bodies::fill_mesh_hit(const RTCHit& record, bool in_place, Hit& hit) const {
   const auto& corners = mesh_->triangles[record.primID];
   const std::array<float, 3> weights{1 - record.u - record.v, record.u, record.v};
   hit.normal.setZero();
@@ -241,6 +255,7 @@ void Bodies::fill_mesh_hit(const RTCHit& record, Hit& hit) const {
   // Meshes without a clear outside are lit from the side that is seen.
   if (hit.normal.dot(hit.face) < 0) hit.normal = -hit.normal;
 
+  if (!in_place) return;  // the vertices are elsewhere at other times
   // Rays start on the surface that the smooth normals stand for, so that coarse triangles do not shade
   // themselves (Hanika 2021, "Hacking the shadow terminator").
   Vec3 lift = Vec3::Zero();

@@ -23,7 +23,8 @@ class Bodies {
   Bodies();
 
   /// The mesh and palette must outlive the rays. Throws ConfigError where a material id has no appearance.
-  void set_mesh(const Mesh& mesh, std::span<const Appearance> palette);
+  /// exposure: time for which the shutter is open [s]; what has velocities moves with them meanwhile.
+  void set_mesh(const Mesh& mesh, std::span<const Appearance> palette, float exposure);
   void set_points(std::span<const Vec3> positions, float radius, std::span<const std::uint32_t> bodies,
                   std::span<const Appearance> palette);
 
@@ -66,7 +67,7 @@ class Bodies {
   /// What was hit, of Embree's record of it.
   Hit hit_of(const Ray& ray, float t, const RTCHit& record) const;
   Vec3 smooth_normal(const RTCHit& record) const;
-  void fill_mesh_hit(const RTCHit& record, Hit& hit) const;
+  void fill_mesh_hit(const RTCHit& record, bool in_place, Hit& hit) const;
   const std::vector<Vec3>& normals() const { return mesh_->normals.empty() ? normals_ : mesh_->normals; }
 
   std::unique_ptr<RTCDeviceTy, ReleaseDevice> device_;

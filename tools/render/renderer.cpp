@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "render/bodies.h"
 #include "render/light_map.h"
+#include "render/motion.h"
 #include "render/sampling.h"
 #include "render/viewport.h"
 #include "render/world.h"
@@ -22,6 +23,10 @@ namespace {
 constexpr int k_edge_rays = 4;
 constexpr int k_first_edge_rays = 4;
 constexpr float k_edge_spread = 0.02f;
+// Rays through the pixels where something moves, at least, and what their times step on by: any number of
+// them in a row are spread evenly.
+constexpr int k_motion_rays = 24;
+constexpr float k_golden = 0.618034f;
 
 void check(const Camera& camera) {
   Checks checks;
@@ -48,13 +53,19 @@ struct Renderer::State {
   RenderConfig config;
   Threads threads;
   Bodies bodies;
+  float exposure = 0;  // [s]
+  MotionMap motion;
   LightMap light_map;
   std::optional<HdrPicture> surroundings;
   HdrPicture soft_surroundings;
 };
 
 Vec3 Renderer::State::edge_color(const World& world, const Viewport& view, int x, int y) const {
-  const int most = k_edge_rays * config.samples;
+  const bool moves = motion.at(x, y);
+  const int most =
+      moves ? std::max(k_motion_rays, k_edge_rays * config.samples) : k_edge_rays * config.samples;
+  // Each pixel has times of its own, the same in every frame.
+  const float own = unit(hash(static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(x)));
   Vec3 sum = Vec3::Zero(), lowest = Vec3::Ones(), highest = Vec3::Zero();
   std::array<Ray, World::k_batch> rays;
   std::array<Surfel, World::k_batch> seen;
@@ -68,6 +79,10 @@ Vec3 Renderer::State::edge_color(const World& world, const Viewport& view, int x
       const Point2 point = sobol(static_cast<std::uint32_t>(taken + k));
       rays[static_cast<std::size_t>(k)] =
           view.ray(static_cast<float>(x) + point.x(), static_cast<float>(y) + point.y());
+      if (moves) {
+        const float time = own + static_cast<float>(taken + k) * k_golden;
+        rays[static_cast<std::size_t>(k)].time = time - std::floor(time);
+      }
     }
     const auto used = static_cast<std::size_t>(count);
     world.look({rays.data(), used}, to);
@@ -96,7 +111,7 @@ Vec3 Renderer::State::still_color(const World& world, const Viewport& view, cons
 }
 
 Vec3 Renderer::State::color(const World& world, const Viewport& view, bool flat, int x, int y) const {
-  if (!flat && light_map.is_edge(x, y)) return edge_color(world, view, x, y);
+  if ((!flat && light_map.is_edge(x, y)) || motion.at(x, y)) return edge_color(world, view, x, y);
   return develop(world.color(view.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f),
                              light_map.surfel(x, y), light_map.light(x, y)));
 }
@@ -150,9 +165,20 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
+void Renderer::set_exposure(float seconds) {
+  Checks checks;
+  check_value("exposure", seconds, k_not_negative, checks);
+  checks.finish();
+  state_->exposure = seconds;
+}
+
 Image Renderer::render(const Mesh& mesh, std::span<const Appearance> palette,
                        std::span<const Collider> colliders, const Camera& camera) {
-  state_->bodies.set_mesh(mesh, palette);
+  state_->bodies.set_mesh(mesh, palette, state_->exposure);
+  check(camera);
+  if (state_->exposure > 0 && !mesh.velocities.empty())
+    state_->motion =
+        MotionMap(mesh, state_->exposure, Viewport(camera, state_->config.width, state_->config.height));
   return state_->draw(colliders, camera);
 }
 
@@ -162,6 +188,7 @@ Image Renderer::render_points(std::span<const Vec3> positions, float radius,
   Checks checks;
   check_value("radius", radius, k_positive, checks);
   checks.finish();
+  state_->motion = {};
   state_->bodies.set_points(positions, radius, bodies, palette);
   return state_->draw(colliders, camera);
 }
