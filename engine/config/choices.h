@@ -19,8 +19,8 @@ constexpr std::array<const char*, 2> choices(BodyContact) {
 constexpr std::array<const char*, 3> choices(SurfaceKind) {
   return {"blended", "anisotropic", "spheres"};
 }
-constexpr std::array<const char*, 2> choices(Finish) {
-  return {"jelly", "clay"};
+constexpr std::array<const char*, 5> choices(Finish) {
+  return {"jelly", "clay", "cream", "gloss", "syrup"};
 }
 inline std::array<const char*, 3> choices(InstructionLevel) {
   return {name(InstructionLevel::baseline), name(InstructionLevel::v3), name(InstructionLevel::v4)};

@@ -342,6 +342,7 @@ std::vector<std::filesystem::path*> named_files(Scene& scene) {
   for (SceneBody& body : scene.bodies)
     for (ScenePaint& paint : body.paint) add(paint.sources);
   for (SceneCollider& collider : scene.colliders) add(collider.sources);
+  if (!scene.render.environment.empty()) files.push_back(&scene.render.environment);
   return files;
 }
 

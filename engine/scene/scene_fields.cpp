@@ -22,7 +22,7 @@ BoundFields fields(SceneMaterial& material) {
   const BoundFields look{
       {"color", &material.color, between(0, 1), "", "red, green and blue in pictures, linear",
        "one of a palette"},
-      {"finish", &material.finish, k_any, "", "in pictures: translucent and glossy, or opaque and dull"},
+      {"finish", &material.finish, k_any, "", "in pictures: clear and cloudy, opaque and dull, soft, opaque and glossy, or clear"},
   };
   return joined({{"name", &material.name, k_any, "", "what bodies call it", k_required}},
                 joined(fields(material.material), look));
@@ -149,6 +149,13 @@ BoundFields fields(Aabb& box) {
       {"min", &box.min, k_finite, "m", "lowest corner", k_required},
       {"max", &box.max, k_finite, "m", "highest corner", k_required},
   };
+}
+
+BoundFields fields(RenderConfig& render) {
+  BoundFields all = fields<RenderConfig>(render);
+  all.push_back({"environment", &render.environment, k_any, "",
+                 "Radiance picture (.hdr) of all around to light by, z up, relative to the scene", "a studio"});
+  return all;
 }
 
 const std::vector<Kind<BodySource>>& source_kinds() {

@@ -30,6 +30,7 @@ BoundFields fields(ScenePin& pin);  ///< without its box
 BoundFields fields(SceneEmitter& emitter);
 BoundFields fields(SceneSink& sink);  ///< without its box
 BoundFields fields(Aabb& box);
+BoundFields fields(RenderConfig& render);
 
 /// What scene files hold in place of a shape: itself, or what it is made of.
 template <class Shape>

@@ -48,6 +48,8 @@ class SceneReader {
     read_section("surface", fields(scene_.surface));
     read_section("run", fields(scene_.run));
     read_section("render", fields(scene_.render));
+    if (const Node* render = find(root_, "render"))
+      check_file(*render, "render", "environment", files_, scene_.render.environment, problems_);
     check_materials();
     check_groups();
     check_particles();

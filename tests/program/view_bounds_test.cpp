@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
+
+#include "render/renderer.h"
+#include "render/viewport.h"
 
 namespace mallow::program {
 namespace view_bounds_test {
@@ -83,6 +87,49 @@ TEST(view_bounds, are_the_same_however_long_the_film_is) {
   const ParticleFrame first = snapshot(build(shorter, 1));
   EXPECT_EQ(view_bounds(shorter, first).min, view_bounds(longer, first).min);
   EXPECT_EQ(view_bounds(shorter, first).max, view_bounds(longer, first).max);
+}
+
+/// A puddle that spreads from a drop to so many times its width.
+std::vector<ParticleFrame> puddle(float spread) {
+  std::vector<ParticleFrame> frames(5);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    const float t = static_cast<float>(f) / 4, width = 0.1f * (1 + t * (spread - 1)),
+                height = 0.3f * (1 - t) + 0.01f;
+    for (int i = 0; i < 1000; ++i)
+      frames[f].positions.push_back({width * (static_cast<float>(i % 10) / 9 - 0.5f),
+                                     width * (static_cast<float>(i / 10 % 10) / 9 - 0.5f),
+                                     height + 0.01f * static_cast<float>(i / 100)});
+    frames[f].bodies.assign(1000, 0);
+    frames[f].time = static_cast<double>(t);
+  }
+  return frames;
+}
+
+TEST(film_bounds, give_a_picture_that_what_the_film_shows_fills_and_never_leaves) {
+  for (const std::string& more :
+       {k_cube, k_cube + "[[collider]]\nbox = { min = [-0.3, -0.3, 0], max = [0.3, 0.3, "
+                         "0.4], inside = true }\n"}) {
+    const Scene scene = scene_of(more);
+    for (const float spread : {1.0f, 3.0f, 8.0f}) {
+      FilmBounds bounds;
+      std::vector<ParticleFrame> frames = puddle(spread);
+      frames[2].positions[7] = {90, 0, 1};  // flies off alone
+      for (const ParticleFrame& frame : frames) bounds.add(frame);
+      const render::Camera camera =
+          render::frame_camera(bounds.box(scene, 0.01f).value(), scene.render, visible_colliders(scene));
+      const render::Viewport view(camera, scene.render.width, scene.render.height);
+      frames[2].positions[7] = frames[2].positions[8];
+      Eigen::Array2f lowest(1e9f, 1e9f), highest = -lowest;
+      for (const ParticleFrame& frame : frames)
+        for (const Vec3& x : frame.positions) {
+          lowest = lowest.min(view.pixel(x)->array());
+          highest = highest.max(view.pixel(x)->array());
+        }
+      const Eigen::Array2f sides(view.width, view.height);
+      EXPECT_TRUE((lowest > 0.02f * sides).all() && (highest < 0.98f * sides).all()) << "cropped";
+      EXPECT_GT(((highest - lowest) / sides).maxCoeff(), 0.4f) << "too small, spread " << spread;
+    }
+  }
 }
 
 }  // namespace view_bounds_test

@@ -14,6 +14,7 @@
 
 #include "mallow/errors.h"
 #include "mallow/files.h"
+#include "render/hdr.h"
 
 namespace mallow::render {
 namespace renderer_test {
@@ -75,6 +76,17 @@ TEST(renderer, same_bits_for_any_thread_count) {
     EXPECT_EQ(renderer.render(mesh, palette, colliders, camera).rgb, one.rgb) << threads << " threads";
     EXPECT_EQ(renderer.render(mesh, palette, colliders, camera).rgb, one.rgb) << "second frame";
   }
+}
+
+TEST(renderer, a_picture_keeps_nothing_of_the_one_before) {
+  const Camera camera = frame_camera(k_bounds, small());
+  Renderer renderer(small(), 2);
+  renderer.render(ball({-2, 1, 5}, 1, 40, 0), k_palette, k_floor, camera);
+  const Mesh mesh = ball({1, 0, 1.5f}, 1.5f, 40, 0);
+  EXPECT_EQ(renderer.render(mesh, k_palette, k_floor, camera).rgb,
+            Renderer(small(), 2).render(mesh, k_palette, k_floor, camera).rgb);
+  EXPECT_EQ(renderer.render({}, {}, k_floor, camera).rgb,
+            Renderer(small(), 2).render({}, {}, k_floor, camera).rgb);
 }
 
 TEST(renderer, one_of_a_thousand_bodies_has_its_own_appearance) {
@@ -193,7 +205,8 @@ TEST(renderer, no_frame_means_an_empty_bright_studio) {
   for (const std::vector<Collider>& colliders : {k_floor, std::vector<Collider>{}}) {
     const Image mesh = renderer.render({}, {}, colliders, camera);
     ASSERT_EQ(mesh.rgb.size(), 3u * 160 * 90);
-    EXPECT_GT(*std::min_element(mesh.rgb.begin(), mesh.rgb.end()), 215);
+    EXPECT_GT(*std::min_element(mesh.rgb.begin(), mesh.rgb.end()), 185);
+    EXPECT_LT(*std::max_element(mesh.rgb.begin(), mesh.rgb.end()), 225) << "bodies cannot be brighter";
     EXPECT_LT(*std::max_element(mesh.rgb.begin(), mesh.rgb.end()), 255) << "burnt out";
     EXPECT_EQ(renderer.render_points({}, 1, {}, {}, colliders, camera).rgb, mesh.rgb);
   }
@@ -248,7 +261,7 @@ TEST(renderer, looks_into_kept_in_shapes_through_their_front) {
         Collider{.shape = Cone{{0, 0, 0}, {0, 0, 6}, 4, 6, true}}}) {
     const Image image = renderer.render(ball({0, 0, 3}, 2, 40, 0), k_palette, {&shell, 1}, camera);
     const auto color = pixel(image, 80, 50);
-    EXPECT_GT(color[0], color[2] + 60);
+    EXPECT_GT(color[0], color[2] + 45);
   }
 }
 
@@ -260,6 +273,36 @@ TEST(renderer, leaves_the_threads_of_others_alone) {
   Renderer renderer(small(), 1);
   renderer.render(ball({0, 0, 3}, 3, 8, 0), k_palette, {}, frame_camera(k_bounds, small()));
   EXPECT_EQ(most_threads(), before);
+}
+
+TEST(renderer, blurs_what_moves_along_its_way_alike_for_any_thread_count) {
+  const Camera camera = frame_camera(k_bounds, small());
+  Mesh mesh = ball({0, 0, 3}, 1.5f, 40, 0);
+  Renderer still(small(), 1);
+  const Image sharp = still.render(mesh, k_clay, k_floor, camera);
+  mesh.velocities.assign(mesh.vertices.size(), Vec3(0, 2, 0));
+  EXPECT_EQ(still.render(mesh, k_clay, k_floor, camera).rgb, sharp.rgb) << "without an exposure";
+  std::vector<Image> images;
+  for (const int threads : {1, 3}) {
+    Renderer renderer(small(), threads);
+    renderer.set_exposure(1);
+    images.push_back(renderer.render(mesh, k_clay, k_floor, camera));
+  }
+  EXPECT_EQ(images[0].rgb, images[1].rgb);
+  // Half a way of 2 m to either side: what the ball covers half of the time is half red.
+  const auto redness = [&](const Image& image, const Vec3& point) {
+    const Eigen::Vector2f at = project(camera, small(), point);
+    const auto color = pixel(image, static_cast<int>(80 * (1 + at.x())), static_cast<int>(45 * (1 - at.y())));
+    return color[0] - color[2];
+  };
+  const int inside = redness(sharp, {0, 0, 3});
+  EXPECT_NEAR(redness(images[0], {0, 0, 3}), inside, 25);
+  for (const float side : {-1.0f, 1.0f}) {
+    const int half = redness(images[0], {0, 1.5f * side, 3});
+    EXPECT_GT(half, inside / 5);
+    EXPECT_LT(half, 4 * inside / 5);
+    EXPECT_LT(redness(images[0], {0, 2.8f * side, 3}), inside / 10);
+  }
 }
 
 TEST(renderer, refuses_what_it_cannot_draw) {
@@ -310,6 +353,69 @@ TEST(camera, looks_at_ramps_from_their_free_side) {
     const Collider ramp{.shape = Plane{normal, 0}};
     const Camera camera = frame_camera(k_bounds, {}, {&ramp, 1});
     EXPECT_GT(normal.dot(camera.eye - camera.target), 0) << normal.transpose();
+  }
+}
+
+const std::string k_head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+
+// A Radiance file of a size, of which pixel(x, y) gives the four bytes.
+template <class Pixel>
+std::string hdr_file(int width, int height, const Pixel& pixel) {
+  std::string file = k_head + "-Y " + std::to_string(height) + " +X " + std::to_string(width) + "\n";
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (const int byte : pixel(x, y)) file.push_back(static_cast<char>(byte));
+  return file;
+}
+
+struct HdrFile {
+  std::filesystem::path path = std::filesystem::temp_directory_path() / "mallow_render_test.hdr";
+  explicit HdrFile(const std::string& bytes) { write_whole(path, std::string_view(bytes)); }
+  ~HdrFile() { std::filesystem::remove(path); }
+};
+
+TEST(environment, lights_by_a_picture_whose_sun_casts_the_shadow) {
+  // Grey all around, a sun at 45 degrees above +x or -x.
+  const Camera camera{.eye = {0, -14, 5}, .target = {0, 0, 1}};
+  RenderConfig config = small();
+  const auto darkest_column = [&](int sun) {
+    const HdrFile file(hdr_file(64, 32, [&](int x, int y) {
+      return std::array<int, 4>{128, 128, 128, y == 8 && x == sun ? 140 : 128};
+    }));
+    config.environment = file.path;
+    Renderer renderer(config, 1);
+    const Image bare = renderer.render({}, {}, k_floor, camera);
+    const Image image = renderer.render(ball({0, 0, 2}, 1, 40, 0), k_clay, k_floor, camera);
+    EXPECT_LT(*std::max_element(bare.rgb.begin(), bare.rgb.end()), 255) << "burnt out";
+    int darkest = 0, most = 0;
+    for (int x = 0; x < 160; ++x) {
+      int loss = 0;
+      for (int y = 45; y < 90; ++y) loss += std::max(0, pixel(bare, x, y)[1] - pixel(image, x, y)[1]);
+      if (loss > most) most = loss, darkest = x;
+    }
+    return darkest;
+  };
+  EXPECT_LT(darkest_column(0), 75) << "a sun on the right";
+  EXPECT_GT(darkest_column(32), 85) << "a sun on the left";
+}
+
+TEST(environment, refuses_what_is_no_whole_picture) {
+  const std::string good = hdr_file(8, 4, [](int, int) { return std::array<int, 4>{1, 2, 3, 128}; });
+  EXPECT_EQ(read_hdr(HdrFile(good).path).radiance.size(), 32u);
+  for (const std::string& bad :
+       {std::string(), std::string("PNG"), std::string("#?RADIANCE\n"), good.substr(0, 20),
+        k_head + "-Y 16000 +X 16000\n", k_head + "-Y -4 +X 8\n", k_head + "-Y 2000000000 +X 2000000000\n"})
+    EXPECT_THROW(read_hdr(HdrFile(bad).path), IoError) << bad.substr(0, 60);
+  EXPECT_THROW(read_hdr("/nowhere/at/all.hdr"), IoError);
+  EXPECT_THROW(read_hdr(std::filesystem::temp_directory_path()), IoError);
+  // Cut or changed anywhere, it is read or refused, and every value is a number.
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    for (const std::string& bytes : {good.substr(0, i), good.substr(0, i) + '\xff' + good.substr(i + 1)}) {
+      try {
+        for (const Vec3& pixel : read_hdr(HdrFile(bytes).path).radiance) EXPECT_TRUE(pixel.allFinite());
+      } catch (const IoError&) {
+      }
+    }
   }
 }
 

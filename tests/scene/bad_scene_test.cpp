@@ -122,7 +122,8 @@ const Case k_cases[] = {
     {{.material = "name = \"jelly\"\ncolor = [0, 0, 1.5]"},
      "scene.toml:5:16: material[0].color[2]: 1.5 is not allowed: a number in [0, 1]"},
     {{.material = "name = \"jelly\"\nfinish = \"glass\""},
-     "scene.toml:5:10: material[0].finish: \"glass\" (a string) is not allowed: \"jelly\" or \"clay\""},
+     "scene.toml:5:10: material[0].finish: \"glass\" (a string) is not allowed: \"jelly\", \"clay\", \"cream\", \"gloss\" or "
+     "\"syrup\""},
     {{.rest = "[surface]\nvoxels = 4"},
      "scene.toml:9:10: surface.voxels: 4 is not allowed: a whole number in [8, 1024]"},
     {{.rest = "[run]\nframes = -1"},

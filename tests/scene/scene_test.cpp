@@ -170,6 +170,7 @@ particle_radius = 0.25
 frames = 0
 frame_time = 0.3
 [render]
+environment = "tetra.off"
 width = 320
 height = 240
 samples = 1

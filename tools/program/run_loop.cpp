@@ -37,6 +37,7 @@ class FrameWriter {
       std::vector<float> spacings;
       for (const BodyInfo& body : report.info.bodies) spacings.push_back(body.spacing);
       stills_.emplace(scene, first, spacings, plan.threads);
+      stills_->set_frame_time(report.frame_time);
     }
   }
 
@@ -72,7 +73,8 @@ class FrameWriter {
     }
     if (stills_) {
       const StageTimer timer(report_.stage_seconds, Stage::pictures);
-      stills_->take(*frame, *mesh, cache_.image_file(number));
+      auto picture = std::make_shared<const render::Image>(stills_->take(*frame, *mesh));
+      files_.add([this, number, picture] { render::write_png(cache_.image_file(number), *picture); });
     }
   }
 

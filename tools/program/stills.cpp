@@ -17,21 +17,29 @@ std::vector<Collider> colliders_at(const Scene& scene, double time) {
   return colliders;
 }
 
+/// How pictures are taken, with files where they are.
+RenderConfig of_scene(const Scene& scene) {
+  RenderConfig config = scene.render;
+  if (!config.environment.empty()) config.environment = scene.file.parent_path() / config.environment;
+  return config;
+}
+
 }  // namespace
 
 Stills::Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads)
+    : Stills(scene, view_bounds(scene, first), spacings, threads) {}
+
+Stills::Stills(const Scene& scene, const Aabb& film, std::span<const float> spacings, int threads)
     : scene_(scene),
-      renderer_(scene.render, threads),
-      camera_(render::frame_camera(view_bounds(scene, first), scene.render)),
+      renderer_(of_scene(scene), threads),
+      camera_(render::frame_camera(film, scene.render, visible_colliders(scene))),
       palette_(body_appearances(scene)),
       ball_radius_(0.5f * *std::min_element(spacings.begin(), spacings.end())) {}
 
-void Stills::take(const ParticleFrame& frame, const Mesh& surface, const std::filesystem::path& file) {
+render::Image Stills::take(const ParticleFrame& frame, const Mesh& surface) {
   const std::vector<Collider> colliders = colliders_at(scene_, frame.time);
-  render::write_png(file, surface.triangles.empty()
-                              ? renderer_.render_points(frame.positions, ball_radius_, frame.bodies, palette_,
-                                                        colliders, camera_)
-                              : renderer_.render(surface, palette_, colliders, camera_));
+  if (!surface.triangles.empty()) return renderer_.render(surface, palette_, colliders, camera_);
+  return renderer_.render_points(frame.positions, ball_radius_, frame.bodies, palette_, colliders, camera_);
 }
 
 }  // namespace mallow::program

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "mallow/files.h"
@@ -10,14 +9,22 @@
 
 namespace mallow::program {
 
-/// Takes the pictures of a run: camera and looks are those of frame 0 and stay through the film.
+/// Takes the pictures of a run: camera and looks stay through the film.
 class Stills {
  public:
   /// `scene` must outlive the stills. spacings: h of each body [m].
   Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads);
+  /// The same for a film whose bounds are known.
+  Stills(const Scene& scene, const Aabb& film, std::span<const float> spacings, int threads);
+
+  /// Simulated time from one frame to the next [s], of which the shutter is open for a share; 0 to begin
+  /// with.
+  void set_frame_time(double seconds) {
+    renderer_.set_exposure(scene_.render.shutter * static_cast<float>(seconds));
+  }
 
   /// The surface of a frame, or its particles where the surface is empty.
-  void take(const ParticleFrame& frame, const Mesh& surface, const std::filesystem::path& file);
+  render::Image take(const ParticleFrame& frame, const Mesh& surface);
 
  private:
   const Scene& scene_;

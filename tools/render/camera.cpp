@@ -37,16 +37,30 @@ int planes_between(const Vec3& side, const Collider& collider) {
   return count;
 }
 
+// Whether something is made to hold what moves: one looks into it from above.
+bool is_vessel(const Collider& collider) {
+  constexpr int k_walls = 4;
+  int solids = 0;
+  bool keeps_in = false;
+  visit_parts(collider, [&]<class Shape>(const Shape& shape) {
+    if constexpr (!std::is_same_v<Shape, Plane>) {
+      ++solids;
+      keeps_in = keeps_in || ShapeTraits<Shape>::keeps_in(shape);
+    }
+  });
+  return keeps_in || solids >= k_walls;
+}
+
 // The direction from the scene to the eye: three quarters from the front, +x, unless another side sees more
 // ramps and walls from their free side.
 Vec3 view_side(std::span<const Collider> colliders) {
   constexpr float k_degree = std::numbers::pi_v<float> / 180;
-  constexpr float k_elevation = 17 * k_degree;
+  const float elevation = (std::ranges::any_of(colliders, is_vessel) ? 36 : 20) * k_degree;
   Vec3 best = Vec3::Zero();
   int fewest = std::numeric_limits<int>::max();
   for (const float azimuth : {-38.0f, 38.0f, -142.0f, 142.0f}) {
-    const Vec3 side(std::cos(k_elevation) * std::cos(azimuth * k_degree),
-                    std::cos(k_elevation) * std::sin(azimuth * k_degree), std::sin(k_elevation));
+    const Vec3 side(std::cos(elevation) * std::cos(azimuth * k_degree),
+                    std::cos(elevation) * std::sin(azimuth * k_degree), std::sin(elevation));
     int between = 0;
     for (const Collider& collider : colliders) between += planes_between(side, collider);
     if (between >= fewest) continue;

@@ -44,9 +44,14 @@ Obstacles::Obstacles(std::span<const Collider> colliders, const Camera& camera)
 template <class Solid>
 void Obstacles::add(const Solid& shape, const Pose& pose, const Camera&) {
   const bool keeps_in = ShapeTraits<Solid>::keeps_in(shape);
+  const Aabb tight = placed(bounds(shape), pose);
+  const Vec3 margin = Vec3::Constant(1e-3f * view_size_);  // what is rounded at its sides is in it
+  const Aabb box{tight.min - margin, tight.max + margin};
+  box_ = box_ ? Aabb{box_->min.cwiseMin(box.min), box_->max.cwiseMax(box.max)} : box;
   shapes_.push_back({.shape = shape,
                      .rotation = rotation_of(pose).cast<float>(),
                      .translation = pose.translation.cast<float>(),
+                     .box = box,
                      .is_solid = true,
                      .is_shell = keeps_in,
                      .board = std::nullopt});
@@ -58,10 +63,12 @@ void Obstacles::add(const Plane& of_frame, const Pose& pose, const Camera& camer
     floor_ = std::max(plane.offset / plane.normal.z(), floor_.value_or(-k_far));
     return;
   }
+  is_bounded_ = false;
   const bool seen = plane.normal.dot(camera.eye) > plane.offset;
   shapes_.push_back({.shape = plane,
                      .rotation = Eigen::Matrix3f::Identity(),
                      .translation = {0, 0, 0},
+                     .box = {Vec3::Constant(-k_far), Vec3::Constant(k_far)},
                      .is_solid = seen,
                      .is_shell = !seen,
                      .board = board_of(plane, camera)});
@@ -82,7 +89,7 @@ Crossings Obstacles::cross(const Shape& shape, const Ray& ray) {
 std::optional<Obstacles::Hit> Obstacles::nearest(const Ray& ray, float t_max) const {
   std::optional<Hit> hit;
   for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
-    if (!shapes_[i].is_solid) continue;
+    if (!shapes_[i].is_solid || !meets(ray, shapes_[i].box)) continue;
     for (const Crossing& c : cross(shapes_[i], ray)) {
       if (!(c.t > 0 && c.t < t_max) || c.normal.dot(ray.direction) >= 0) continue;
       t_max = c.t;
@@ -94,7 +101,7 @@ std::optional<Obstacles::Hit> Obstacles::nearest(const Ray& ray, float t_max) co
 
 bool Obstacles::shades(const Ray& to_light) const {
   for (const Shape& shape : shapes_) {
-    if (!shape.is_solid) continue;
+    if (!shape.is_solid || !meets(to_light, shape.box)) continue;
     for (const Crossing& c : cross(shape, to_light)) {
       if (c.t > 0 && c.t < k_far && c.normal.dot(to_light.direction) > 0) return true;
     }
@@ -105,7 +112,7 @@ bool Obstacles::shades(const Ray& to_light) const {
 Obstacles::Veil Obstacles::veil(const Ray& ray, float t_max) const {
   Veil veil;
   for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
-    if (!shapes_[i].is_shell) continue;
+    if (!shapes_[i].is_shell || !meets(ray, shapes_[i].box)) continue;
     for (const Crossing& c : cross(shapes_[i], ray)) {
       const float cosine = c.normal.dot(ray.direction);
       if (!(c.t > 0 && c.t < t_max) || cosine <= 0) continue;

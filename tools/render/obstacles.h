@@ -1,21 +1,14 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "colliders/shapes.h"
+#include "render/ray.h"
 #include "render/renderer.h"
 
 namespace mallow::render {
-
-struct Ray {
-  Vec3 origin;
-  Vec3 direction;  ///< unit length
-  Vec3 at(float t) const { return origin + t * direction; }
-};
-inline constexpr float k_far = std::numeric_limits<float>::infinity();
 
 /// What is shown of a plane that is not the floor.
 struct Board {
@@ -34,6 +27,11 @@ class Obstacles {
 
   /// Height of the floor: the highest horizontal plane that is free above.
   std::optional<float> floor() const { return floor_; }
+
+  /// Whether all but the floor have bounds; walls have none.
+  bool is_bounded() const { return is_bounded_; }
+  /// What holds them then; nothing where there are none.
+  const std::optional<Aabb>& box() const { return box_; }
 
   struct Hit {
     float t;
@@ -58,6 +56,7 @@ class Obstacles {
     Primitive shape;  ///< a plane is given in the world
     Eigen::Matrix3f rotation;
     Vec3 translation;
+    Aabb box;       ///< in the world; of a plane all there is
     bool is_solid;  ///< to what comes from the free side; the others are looked through entirely
     bool is_shell;  ///< looked through where it is seen from behind
     std::optional<Board> board;
@@ -69,6 +68,8 @@ class Obstacles {
   Veil look(const Shape& shape, const Vec3& position, float cosine) const;
   std::vector<Shape> shapes_;
   std::optional<float> floor_;
+  bool is_bounded_ = true;
+  std::optional<Aabb> box_;
   float view_size_;
 };
 

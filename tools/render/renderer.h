@@ -47,6 +47,10 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
+  /// What moves with velocities is blurred from now on as far as it comes in this time [s], >= 0: half of it
+  /// before and half of it after the moment of the frame. Colliders, and particles drawn as balls, are not.
+  void set_exposure(float seconds);
+
   /// A surface; its material ids index `palette`. An empty mesh gives the empty studio. Throws ConfigError
   /// where a material id has no appearance or the camera is out of range.
   Image render(const Mesh& mesh, std::span<const Appearance> palette, std::span<const Collider> colliders,

@@ -49,18 +49,17 @@ Tangents tangents(const Vec3& n) {
   return {{1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()}, {b, sign + n.y() * n.y() * a, -n.y()}};
 }
 
-InterleavedDisc::InterleavedDisc(int samples_per_pixel)
-    : samples_(static_cast<std::size_t>(samples_per_pixel)) {
-  const std::size_t count = k_tile * k_tile * samples_;
+InterleavedDisc::InterleavedDisc(int samples_per_pixel) {
+  const auto count = static_cast<std::uint32_t>(k_tile * k_tile * samples_per_pixel);
   points_.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) points_.push_back(to_disc(sobol(i)));
 }
 
-std::span<const Point2> InterleavedDisc::at(int x, int y) const {
+const Point2& InterleavedDisc::at(int x, int y, int k) const {
   // Bayer's matrix: pixels next to each other get parts of the set that are far apart.
-  constexpr std::array<std::uint32_t, 16> k_order{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+  constexpr std::array<std::uint8_t, 16> k_order{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
   const std::size_t pixel = k_order[static_cast<std::size_t>((y % k_tile) * k_tile + x % k_tile)];
-  return {points_.data() + pixel * samples_, samples_};
+  return points_[static_cast<std::size_t>(k) * k_tile * k_tile + pixel];
 }
 
 }  // namespace mallow::render

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "mallow/vec3.h"
@@ -38,12 +37,11 @@ class InterleavedDisc {
  public:
   static constexpr int k_tile = 4;
   explicit InterleavedDisc(int samples_per_pixel);
-  /// The points of the unit disc of a pixel.
-  std::span<const Point2> at(int x, int y) const;
+  /// Point k of a pixel, in the unit disc, below samples_per_pixel.
+  const Point2& at(int x, int y, int k) const;
 
  private:
-  std::size_t samples_;
-  std::vector<Point2> points_;  // pixel of the tile, sample
+  std::vector<Point2> points_;  // sample, pixel of the tile: those of one sample are stratified too
 };
 
 }  // namespace mallow::render

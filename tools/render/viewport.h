@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "render/obstacles.h"
 #include "render/renderer.h"
@@ -30,6 +31,14 @@ struct Viewport {
   /// Through (x, y), in pixels from the upper left corner of the picture.
   Ray ray(float x, float y) const {
     return {eye, (forward + (2 * x / width - 1) * right + (1 - 2 * y / height) * up).normalized()};
+  }
+  /// Where a point is seen, in the same pixels; nothing where it is not in front of the eye.
+  std::optional<Eigen::Vector2f> pixel(const Vec3& point) const {
+    const Vec3 offset = point - eye;
+    const float depth = offset.dot(forward);
+    if (!(depth > 0)) return std::nullopt;
+    return Eigen::Vector2f(width / 2 * (1 + offset.dot(right) / (depth * right.squaredNorm())),
+                           height / 2 * (1 - offset.dot(up) / (depth * up.squaredNorm())));
   }
   /// Side of a pixel's footprint per metre of distance.
   float footprint() const { return 2 * up.norm() / height; }

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "render/bodies.h"
+#include "render/environment.h"
+#include "render/finishes.h"
 #include "render/obstacles.h"
 #include "render/sampling.h"
-#include "render/studio.h"
 
 namespace mallow::render {
 
@@ -24,28 +26,65 @@ struct Surfel {
   bool same_object(const Surfel& other) const { return look == other.look && shape == other.shape; }
 };
 
-/// Bodies, obstacles, floor and studio, and the light between them.
+/// Bodies, obstacles, floor and sky, and the light between them.
 class World {
  public:
-  World(const Bodies& bodies, std::span<const Collider> colliders, const Camera& camera);
+  World(const Bodies& bodies, const Obstacles& obstacles, const Environment& environment,
+        const Camera& camera);
 
+  /// What holds everything but the floor; left out where a wall has no bounds, empty where nothing is there.
+  const std::optional<Aabb>& contents() const { return contents_; }
   Surfel look(const Ray& ray) const;
-  /// One ray to the key light and one into the hemisphere for every pair of points of the unit disc.
-  Light gather(const Surfel& at, std::span<const Point2> key, std::span<const Point2> hemisphere) const;
+  /// The same for up to k_batch rays that go about the same way.
+  void look(std::span<const Ray> rays, std::span<Surfel* const> seen) const;
+  /// The same where a ray passes the contents.
+  Surfel look_past(const Ray& ray) const;
+  /// Takes a sample of the key light, and of what comes from all around less Environment::ambient(), at up
+  /// to k_batch surfels, each through its own point of the unit disc.
+  void sample_key(std::span<const Surfel* const> at, std::span<const Point2> points,
+                  std::span<float> key) const;
+  void sample_ambient(std::span<const Surfel* const> at, std::span<const Point2> points,
+                      std::span<Vec3> ambient) const;
+  /// What is mirrored and let through at up to k_batch surfels, seen along rays of the camera.
+  void look_beyond(std::span<const Surfel* const> at, std::span<const Ray> rays,
+                   std::span<Light* const> light) const;
+  static constexpr std::size_t k_batch = 64;
+  /// What all of the key light makes of a white surface there, at most one.
+  float key_share(const Surfel& at) const;
   /// Light from `at` towards the eye that sent `ray`.
   Vec3 color(const Ray& ray, const Surfel& at, const Light& light) const;
+  /// The same of floor and backdrop where nothing is near.
+  Vec3 open_color(const Ray& ray, const Surfel& at) const;
 
  private:
-  float key_seen(const Surfel& at, const Vec3& to_light) const;
-  Vec3 incoming(const Ray& ray) const;
+  float key_from_behind(const Surfel& at, const Vec3& to_light) const;
+  /// Sets seen[i] to whether nothing is on ray i, which goes to the light.
+  void unshaded(std::span<const Ray> rays, std::span<std::uint8_t> seen, Rays kind) const;
+  bool misses_contents(const Ray& ray) const;
+  /// Light that comes back along up to k_batch rays. shade: share of the key light that is left in shadows.
+  void incoming(std::span<const Ray> rays, float shade, std::span<Vec3> light) const;
+  /// A ray inside a clear body; later the one that leaves it, and how far it was on the way [m].
+  struct Passage {
+    Ray ray;
+    float way;
+  };
+  /// Follows rays through the clear bodies that were entered at up to k_batch surfels.
+  void pass_through(std::span<const Surfel* const> at, std::span<Passage> passages) const;
+  void add_hit(const Ray& ray, const std::optional<Bodies::Hit>& hit, Surfel& seen) const;
+  Surfel look_at_obstacles(const Ray& ray) const;
+  float floor_fade(const Vec3& position) const;
   std::optional<float> floor_hit(const Ray& ray) const;
   Vec3 to_key(const Point2& disc) const;
 
   const Bodies& bodies_;
-  Obstacles obstacles_;
-  Studio studio_;
+  const Obstacles& obstacles_;
+  const Environment& environment_;
+  Vec3 center_;
+  float view_size_;
   Tangents key_tangents_;
   float epsilon_;  // distance from a surface at which rays start [m]
+  std::optional<Aabb> contents_;
+  Vec3 floor_ambient_;
 };
 
 }  // namespace mallow::render

@@ -150,11 +150,18 @@ struct RunConfig {
 struct RenderConfig {
   int width = 960;               ///< pixels, in [16, 8192]
   int height = 540;              ///< pixels, in [16, 8192]
-  int samples = 4;               ///< rays per pixel, in [1, 256]
+  int samples = 4;               ///< most rays per pixel to each light, in [1, 256]
+  /// Pixels whose light is known this well after one ray take no more; of white, in [0, 1]. 0: all take
+  /// `samples`.
+  float noise = 0.004f;
   std::optional<Vec3> eye = {};  ///< left out: chosen so that the scene is in view
   std::optional<Vec3> target = {};
   float field_of_view = 35.0f;  ///< vertical, degrees, in [1, 120]
   int frames_per_second = 30;   ///< of the film, in [1, 120]
+  /// Share of a frame's time that the shutter is open, in [0, 1]: what moves is blurred. 0: nothing is.
+  float shutter = 0;
+  /// A Radiance picture (.hdr) of all around to light by, z up, relative to the scene; empty: a studio.
+  std::filesystem::path environment = {};
 };
 
 /// All that a scene file says.
