@@ -47,7 +47,7 @@ for length in list(range(0, end + 40)) + [random.randrange(len(whole)) for _ in 
     before = refused
     try_it(surface, whole[:length], read_surface)
     assert refused == before + 1, length
-for _ in range(1500):
+for _ in range(500):
     damaged = bytearray(whole)
     for _ in range(random.randint(1, 4)):
         damaged[random.randrange(end if random.random() < 0.6 else len(damaged))] = random.randrange(256)
@@ -71,7 +71,7 @@ def open_run():
 for name in ("report.json", "scene.toml"):
     file = os.path.join(copy, name)
     text = open(file, "rb").read()
-    for trial in range(600):
+    for trial in range(200):
         damaged = bytearray(text[: random.randrange(len(text))] if trial % 2 else text)
         for _ in range(random.randint(0, 5)):
             if damaged:
@@ -97,5 +97,5 @@ for bad in (b"f 1/7 2/2 3/3", b"f 1/-9 2/2 3/3", b"f 1/99999999999999999999999 2
         assert False, bad
     except (run_files.ImportFailure, ValueError, IndexError, OverflowError):
         pass
-assert read > 100 and refused > 1000, (read, refused)
+assert read > 100 and refused > 500, (read, refused)
 print(f'{{"read": {read}, "refused": {refused}}}')

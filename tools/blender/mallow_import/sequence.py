@@ -38,7 +38,7 @@ def fill(mesh, places, triangles, velocities, texture):
     mesh.vertices.add(n)
     mesh.vertices.foreach_set("co", places.ravel())
     mesh.loops.add(3 * m)
-    mesh.loops.foreach_set("vertex_index", triangles.astype(np.int32).ravel())
+    mesh.loops.foreach_set("vertex_index", triangles.ravel())
     mesh.polygons.add(m)
     mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * m, 3, dtype=np.int32))
     mesh.polygons.foreach_set("loop_total", np.full(m, 3, np.int32))
@@ -63,9 +63,11 @@ def show(run, objects, frame):
     owners = bodies_of_triangles(triangles, bodies)
     for o in objects:
         own = triangles[owners == o[BODY]]
-        rows, corners = np.unique(own, return_inverse=True)
+        used = np.zeros(len(places), bool)
+        used[own] = True
+        rows, corners = np.flatnonzero(used), (np.cumsum(used, dtype=np.int32) - 1)[own]
         texture = run.texture_coordinates(o[BODY])
-        fill(o.data, places[rows], corners.reshape(-1, 3),
+        fill(o.data, places[rows], corners,
              None if velocities is None else velocities[rows] * np.float32(run.speed()),
              texture if texture is not None and len(texture) == 3 * len(own) else None)
         o.data[FRAME] = number
