@@ -2,9 +2,11 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "files/byte_reader.h"
