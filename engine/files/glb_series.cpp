@@ -48,7 +48,7 @@ std::size_t push(Json& list, Json value) {
 
 struct GlbSeries::Work {
   NamedBodies named;
-  std::size_t bodies = 0;
+  std::vector<MeshBody> bodies;
   bool compress = false;
   std::vector<double> times;
   std::vector<std::size_t> frame_nodes;  ///< of each frame that has triangles
@@ -219,7 +219,7 @@ GlbSeries::GlbSeries(std::span<const MeshBody> bodies, GlbPacking packing) : wor
                       "meshopt is not allowed: this build is without meshoptimizer; install "
                       "libmeshoptimizer-dev and configure again");
   work_->named = name_bodies(bodies, [](const std::string& name) { return name; });
-  work_->bodies = bodies.size();
+  work_->bodies.assign(bodies.begin(), bodies.end());
 }
 GlbSeries::~GlbSeries() = default;
 GlbSeries::GlbSeries(GlbSeries&&) noexcept = default;
@@ -228,10 +228,7 @@ GlbSeries& GlbSeries::operator=(GlbSeries&&) noexcept = default;
 void GlbSeries::add(const Mesh& mesh, double time) {
   require_valid(mesh);
   require_finite(mesh);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (const std::uint32_t id = triangle_material(mesh, t); id >= work_->bodies)
-      throw ConfigError("bodies", std::to_string(work_->bodies) + " are not allowed: material id " +
-                                      std::to_string(id) + " needs one too");
+  require_bodies(mesh, work_->bodies);
   const double before = work_->times.empty() ? -1 : work_->times.back();
   // Times are floats in the file, and must ascend there too.
   if (!std::isfinite(time) || time < 0 || static_cast<float>(time) <= static_cast<float>(before))

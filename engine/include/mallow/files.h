@@ -162,8 +162,9 @@ MALLOW_EXPORT bool can_compress_glb();
 /// "frame 0" for each frame, and in it one with the name of each body that has triangles there, with its
 /// material. The animation "frames" shows one frame at a time by steps of scales between 0 and 1, each until
 /// the next begins and the last as long as the one before it; programs that play nothing show the first.
-/// Places are rounded to a grid of 2^13 to 2^14 steps along the longest side of the frame's box, normals to a
-/// degree; velocities are left out. y is up, as in write_mesh_glb(). Holds the packed frames in memory.
+/// Places are rounded to a grid of 2^13 to 2^14 steps along the longest side of the frame's box, normals to
+/// about a degree; velocities are left out. y is up, as in write_mesh_glb(). Holds the packed frames in
+/// memory.
 class MALLOW_EXPORT GlbSeries {
  public:
   /// bodies: one for each material id. Throws ConfigError where a colour is out of range, a name is not
