@@ -135,6 +135,7 @@ class Run:
         try:
             self.report = json.loads(read_bytes(report))
             groups = [(str(g["name"]), str(g["material"]), g.get("color")) for g in self.report["groups"]]
+            self.spacings = [g.get("spacing") for g in self.report["groups"]]
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             raise ImportFailure(f"{report}: is not the report of a run") from error
         self.scene = read_scene(os.path.join(self.folder, "scene.toml"))
@@ -177,6 +178,11 @@ class Run:
         """Simulated seconds in a second of the film, by which velocities lead from one frame to the next."""
         time = self.report.get("frame_time")
         return time * self.render("frames_per_second", 30) if is_number(time) and time > 0 else 1.0
+
+    def spacing(self, body):
+        """Of a body's particles [m]."""
+        spacing = self.spacings[body]
+        return spacing if is_number(spacing) and spacing > 0 else 1.0
 
     def texture_coordinates(self, body):
         """Of each corner of a body's skin, or None."""

@@ -41,7 +41,8 @@ def fill(mesh, places, triangles, velocities, texture):
     mesh.loops.foreach_set("vertex_index", triangles.ravel())
     mesh.polygons.add(m)
     mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * m, 3, dtype=np.int32))
-    mesh.polygons.foreach_set("loop_total", np.full(m, 3, np.int32))
+    if bpy.app.version < (3, 6, 0):  # newer ones know it from where the next begins
+        mesh.polygons.foreach_set("loop_total", np.full(m, 3, np.int32))
     mesh.polygons.foreach_set("use_smooth", np.ones(m, bool))
     if velocities is not None:
         # Cycles blurs motion by an attribute of this name, per second of the film.
@@ -105,9 +106,17 @@ def material_of(run, body):
     material[LOOK] = look
     material.diffuse_color = (*color, 1.0)
     material.use_nodes = True
-    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
-    settings = {("Base Color",): (*color, 1.0), ("Subsurface Color",): (*color, 1.0),
-                **FINISHES.get(finish, FINISHES["jelly"])}
+    shader = next((node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED"), None)
+    if shader is None:  # the user built another material
+        return material
+    depth = 2 * run.spacing(body)  # how far light goes below the surface
+    settings = {
+        ("Base Color",): (*color, 1.0),
+        ("Subsurface Color",): (*color, 1.0),
+        ("Subsurface Radius",): (depth, depth, depth),
+        ("Subsurface Scale",): 1.0,
+        **FINISHES.get(finish, FINISHES["jelly"]),
+    }
     for names, value in settings.items():
         for name in names:
             if name in shader.inputs:
