@@ -10,6 +10,7 @@
 #include "files/byte_reader.h"
 #include "files/byte_writer.h"
 #include "files/mesh_materials.h"
+#include "files/mesh_part.h"
 #include "files/tiny_gltf.h"
 #include "files/valid_columns.h"
 #include "mallow/errors.h"
@@ -77,33 +78,6 @@ class GltfColumns {
   std::string bytes_;
 };
 
-/// Those vertices of a mesh that some of its triangles have, and the triangles' corners among them.
-struct Part {
-  std::vector<std::uint32_t> vertices;  ///< ascending
-  std::vector<std::uint32_t> corners;
-};
-
-Part part_of(const Mesh& mesh, const std::vector<std::size_t>& triangles) {
-  Part part;
-  for (const std::size_t t : triangles)
-    part.corners.insert(part.corners.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
-  part.vertices = part.corners;
-  std::sort(part.vertices.begin(), part.vertices.end());
-  part.vertices.erase(std::unique(part.vertices.begin(), part.vertices.end()), part.vertices.end());
-  for (std::uint32_t& corner : part.corners) {
-    const auto at = std::lower_bound(part.vertices.begin(), part.vertices.end(), corner);
-    corner = static_cast<std::uint32_t>(at - part.vertices.begin());
-  }
-  return part;
-}
-
-std::vector<Vec3> picked(const std::vector<Vec3>& vectors, const std::vector<std::uint32_t>& rows) {
-  std::vector<Vec3> result;
-  if (vectors.empty()) return result;
-  for (const std::uint32_t row : rows) result.push_back(vectors[row]);
-  return result;
-}
-
 gltf::Material material_of(const NamedMaterial& named) {
   const Appearance& appearance = named.appearance;
   gltf::Material material;
@@ -115,7 +89,7 @@ gltf::Material material_of(const NamedMaterial& named) {
   return material;
 }
 
-gltf::Primitive primitive_of(const Mesh& mesh, const Part& part, GltfColumns& columns) {
+gltf::Primitive primitive_of(const Mesh& mesh, const MeshPart& part, GltfColumns& columns) {
   gltf::Primitive primitive;
   primitive.mode = TINYGLTF_MODE_TRIANGLES;
   primitive.attributes["POSITION"] = columns.add_places(picked(mesh.vertices, part.vertices));
@@ -137,8 +111,8 @@ std::vector<Vec3> differences(const std::vector<Vec3>& to, const std::vector<Vec
 }
 
 /// mesh: at the first of the poses.
-void add_targets(const Mesh& mesh, std::span<const MeshPose> poses, const Part& part, GltfColumns& columns,
-                 gltf::Primitive& primitive) {
+void add_targets(const Mesh& mesh, std::span<const MeshPose> poses, const MeshPart& part,
+                 GltfColumns& columns, gltf::Primitive& primitive) {
   for (std::size_t p = 1; p < poses.size(); ++p)
     primitive.targets.push_back(
         {{"POSITION", columns.add_places(differences(poses[p].vertices, mesh.vertices, part.vertices))},
@@ -186,7 +160,7 @@ void add_bodies(const Mesh& mesh, std::span<const MeshPose> poses, std::span<con
     }
     gltf::Mesh body;
     body.name = named.names[id];
-    const Part part = part_of(mesh, triangles);
+    const MeshPart part = part_of(mesh, triangles);
     gltf::Primitive& primitive = body.primitives.emplace_back(primitive_of(mesh, part, columns));
     primitive.material = material_index[material];
     add_targets(mesh, poses, part, columns, primitive);

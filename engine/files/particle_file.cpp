@@ -115,13 +115,19 @@ ParticleFrame read_particles(const std::filesystem::path& file) {
 
 void write_state_csv(const std::filesystem::path& file, const ParticleFrame& frame) {
   require_valid(frame);
-  std::string text = "id,x,y,z,vx,vy,vz,body\n";
+  std::string text = "id,x,y,z,vx,vy,vz,body";
+  if (!frame.alphas.empty()) text += ",alpha";
+  if (!frame.temperatures.empty()) text += ",temperature";
+  text += '\n';
   for (std::size_t i = 0; i < frame.positions.size(); ++i) {
     text += std::to_string(frame.ids.empty() ? i : frame.ids[i]);
     for (const Vec3* vector : {&frame.positions[i], &frame.velocities[i]}) {
       for (const float value : *vector) append_number(text += ',', value, k_float_digits);
     }
-    text += ',' + std::to_string(frame.bodies[i]) + '\n';
+    text += ',' + std::to_string(frame.bodies[i]);
+    for (const std::vector<float>* column : {&frame.alphas, &frame.temperatures})
+      if (!column->empty()) append_number(text += ',', (*column)[i], k_float_digits);
+    text += '\n';
   }
   require_readable_size(file, text.size());
   write_whole(file, text);

@@ -63,6 +63,35 @@ TEST_F(cli_cache, settings_of_surface_and_render_can_change_and_are_kept) {
   EXPECT_NE(scene.find("width = 32"), std::string::npos);
 }
 
+TEST_F(cli_cache, each_surfacing_changes_what_the_run_drew_and_not_what_the_last_one_did) {
+  ASSERT_EQ(run({"--out", at("out")}).exit_code, 0);
+  const auto draw = [&](const std::vector<std::string>& settings) {
+    std::vector<std::string> arguments = {"surface", at("out"), "--threads", "1"};
+    for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
+    const Outcome outcome = run_mallow(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return read_text(at("out/surface/frame_000002.ply"));
+  };
+  const std::string as_run = read_text(at("out/surface/frame_000002.ply"));
+  const std::string fine = draw({"surface.voxel_size=0.3"});
+  EXPECT_NE(fine, as_run);
+  EXPECT_NE(read_text(at("out/scene.toml")).find("voxel_size = 0.3"), std::string::npos);
+  // The scene says voxels; voxel_size would count before it.
+  const std::string coarse = draw({"surface.voxels=12"});
+  EXPECT_NE(coarse, fine);
+  EXPECT_EQ(read_text(at("out/scene.toml")).find("voxel_size = 0.3"), std::string::npos);
+  EXPECT_EQ(draw({"surface.voxels=12"}), coarse);
+  // Pictures in between change nothing of it.
+  ASSERT_EQ(run_mallow({"render", at("out"), "--no-film", "--set", "render.width=32"}).exit_code, 0);
+  EXPECT_EQ(draw({}), as_run);
+  EXPECT_NE(read_text(at("out/scene.toml")).find("width = 32"), std::string::npos);
+  // What a user writes into the scene by hand is as good as run.
+  std::string scene = read_text(at("out/scene.toml"));
+  scene.replace(scene.find("voxels = 16"), 11, "voxels = 12");
+  write("out/scene.toml", scene);
+  EXPECT_EQ(draw({}), coarse);
+}
+
 TEST_F(cli_cache, motion_cannot_be_changed_afterwards) {
   ASSERT_EQ(run({"--out", at("out"), "--no-surface"}).exit_code, 0);
   const Outcome outcome = run_mallow({"surface", at("out"), "--set", "solver.time_step=0.1"});

@@ -74,6 +74,12 @@ TEST_F(cli_export, collections_name_files_that_are_there_at_the_time_of_their_fr
   }
 }
 
+nlohmann::json json_of_glb(const std::string& glb) {
+  std::uint32_t length = 0;  // of the JSON, which stands first
+  if (glb.size() >= 20) std::memcpy(&length, glb.data() + 12, sizeof length);
+  return nlohmann::json::parse(glb.substr(std::min<std::size_t>(glb.size(), 20), length));
+}
+
 /// A second body, of a second material, whose names no format takes as they are.
 constexpr const char* k_second_body = R"(
 [[material]]
@@ -96,11 +102,7 @@ TEST_F(cli_export, groups_and_materials_have_the_names_and_looks_of_the_scene) {
     const std::string content = read_text(folder_ / "out/export/surface" / file);
     for (const char* text : texts) EXPECT_NE(content.find(text), std::string::npos) << file << ": " << text;
   };
-  const std::string glb = read_text(at("out/export/surface/frame_000000.glb"));
-  std::uint32_t length = 0;  // of the JSON, which stands first
-  ASSERT_GE(glb.size(), 20u);
-  std::memcpy(&length, glb.data() + 12, sizeof length);
-  const auto json = nlohmann::json::parse(glb.substr(20, length));
+  const auto json = json_of_glb(read_text(at("out/export/surface/frame_000000.glb")));
   std::vector<std::string> nodes, materials;
   for (const auto& node : json.at("nodes")) nodes.push_back(node.at("name"));
   for (const auto& material : json.at("materials")) materials.push_back(material.at("name"));
@@ -234,6 +236,47 @@ TEST_F(cli_export, usd_has_the_frames_of_the_film_and_velocities_per_second_of_i
   }
 }
 
+TEST_F(cli_export, an_animation_is_one_file_of_all_frames_with_the_bodies_names) {
+  write("cube.toml", read_text(scene_) + k_second_body);
+  ASSERT_EQ(run({"--out", at("out")}).exit_code, 0);
+  std::string formats = "glb";
+  if (can_compress_glb()) formats += ",meshopt";
+  const Outcome outcome = run_mallow({"export", at("out"), "--animation", formats, "--surface", "vtp"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "surface 3\nanimation 3\n");
+  for (const std::string file : {"surface.glb", "surface.meshopt.glb"}) {
+    if (file == "surface.meshopt.glb" && !can_compress_glb()) continue;
+    const nlohmann::json json = json_of_glb(read_text(at("out/export/" + file)));
+    std::vector<std::string> names;
+    for (const auto& node : json.at("nodes")) names.push_back(node.at("name"));
+    EXPECT_EQ(names, (std::vector<std::string>{"cube", "2nd", "frame 0", "cube", "2nd", "frame 1", "cube",
+                                               "2nd", "frame 2", "surface"}));
+    // A frame is one of the film, which has 30 a second.
+    EXPECT_EQ(json.at("animations")[0].at("channels").size(), 3u);
+    float last = 0;
+    for (const auto& accessor : json.at("accessors"))
+      if (accessor.at("type") == "SCALAR" && accessor.contains("max"))
+        last = std::max(last, accessor["max"][0].get<float>());
+    EXPECT_FLOAT_EQ(last, 3.0f / 30);
+  }
+  // Another run removes it with the rest of the old one.
+  ASSERT_EQ(run({"--out", at("out"), "--overwrite"}).exit_code, 0);
+  EXPECT_TRUE(names_in(at("out/export")).empty());
+}
+
+TEST_F(cli_export, tables_have_temperatures_where_the_scene_has_heat) {
+  std::string text = read_text(scene_);
+  const std::size_t material = text.find("[[material]]\n") + 13;
+  write("cube.toml", text.insert(material, "temperature = 350.5\n"));
+  ASSERT_EQ(run({"--out", at("out"), "--no-surface"}).exit_code, 0);
+  ASSERT_EQ(run_mallow({"export", at("out"), "--particles", "csv,vtp"}).exit_code, 0);
+  const std::string csv = read_text(at("out/export/particles/frame_000000.csv"));
+  EXPECT_TRUE(csv.starts_with("id,x,y,z,vx,vy,vz,body,temperature\n")) << csv.substr(0, 100);
+  EXPECT_NE(csv.find(",350.5\n"), std::string::npos);
+  EXPECT_NE(read_text(at("out/export/particles/frame_000000.vtp")).find("Name=\"Temperature\""),
+            std::string::npos);
+}
+
 TEST_F(cli_export, out_names_another_folder) {
   ASSERT_EQ(run({"--out", at("out"), "--no-surface"}).exit_code, 0);
   const Outcome outcome = run_mallow({"export", at("out"), "--particles", "csv", "--out", at("some/where")});
@@ -253,9 +296,11 @@ TEST_F(cli_export, a_frame_without_its_surface_is_passed_over) {
 TEST_F(cli_export, wrong_use_is_refused_with_what_is_allowed) {
   ASSERT_EQ(run({"--out", at("out"), "--no-surface"}).exit_code, 0);
   expect_refused(run_mallow({"export"}), {"DIR"});
-  expect_refused(run_mallow({"export", at("out")}), {"--surface", "--particles"});
+  expect_refused(run_mallow({"export", at("out")}), {"--surface", "--particles", "--animation"});
   expect_refused(run_mallow({"export", at("out"), "--surface", "fbx"}), {"fbx", "obj", "glb", "vtp", "usda"});
   expect_refused(run_mallow({"export", at("out"), "--particles", "csv,obj"}), {"obj", "vdb", "vtp", "csv"});
+  expect_refused(run_mallow({"export", at("out"), "--animation", "obj"}), {"obj", "glb", "meshopt"});
+  expect_refused(run_mallow({"export", at("out"), "--animation", "glb"}), {"no surfaces", "mallow surface"});
   expect_refused(run_mallow({"export", at("out"), "--particles", "csv", "--up", "x"}),
                  {"--up", "x", "y", "z"});
   expect_refused(run_mallow({"export", at("none"), "--particles", "csv"}), {"no scene.toml"});

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "files/file_fixture.h"
+#include "files/other_reader.h"
 #include "files/tiny_gltf.h"
 
 namespace mallow {
@@ -292,6 +293,18 @@ TEST(glb, an_animation_needs_poses_of_the_mesh_in_the_order_of_time) {
   refused(
       poses, [](auto& all) { all[1].normals.clear(); }, "poses[1]: has 8 vertices and 0 normals");
   EXPECT_FALSE(std::filesystem::exists(folder / "a.glb"));
+}
+
+TEST(glb, khronos_validator_finds_nothing_wrong) {
+  const TemporaryFolder folder;
+  const Mesh mesh = two_tetrahedra();
+  write_mesh_glb(folder / "a.glb", mesh, k_bodies);
+  write_animation_glb(folder / "b.glb", mesh, poses_of(mesh), k_bodies);
+  for (const char* file : {"a.glb", "b.glb"}) {
+    READ_WITH_GLTF_VALIDATOR(read, folder / file);
+    EXPECT_EQ(read.at("errors"), 0) << file << read.at("messages");
+    EXPECT_EQ(read.at("warnings"), 0) << file << read.at("messages");
+  }
 }
 
 }  // namespace glb_test

@@ -40,4 +40,11 @@ inline std::optional<nlohmann::json> read_with(const std::string& command,
   if (!name##_or_none) GTEST_SKIP() << "SKIPPED: there is no TinyUSDZ; tools/setup --usd installs it"; \
   const nlohmann::json& name = *name##_or_none
 
+#define READ_WITH_GLTF_VALIDATOR(name, file)                                                        \
+  const auto name##_or_none = read_with(                                                            \
+      "'" MALLOW_NODE "' '" MALLOW_READ_WITH_GLTF_VALIDATOR "' '" MALLOW_GLTF_VALIDATOR "'", file); \
+  if (!name##_or_none)                                                                              \
+    GTEST_SKIP() << "SKIPPED: there is no glTF validator; tools/setup --gltf installs it";          \
+  const nlohmann::json& name = *name##_or_none
+
 }  // namespace mallow

@@ -77,6 +77,24 @@ TEST(particle_file, state_csv_is_what_printf_would_write) {
   EXPECT_EQ(content_of(folder / "a.csv"), expected);
 }
 
+TEST(particle_file, state_csv_has_alphas_and_temperatures_where_the_frame_has_them) {
+  const TemporaryFolder folder;
+  ParticleFrame frame = three_particles();
+  frame.temperatures = {293.15f, 400, 1e-3f};
+  write_state_csv(folder / "a.csv", frame);
+  std::string text = content_of(folder / "a.csv");
+  EXPECT_TRUE(text.starts_with("id,x,y,z,vx,vy,vz,body,temperature\n")) << text;
+  EXPECT_NE(text.find(",293.149994\n"), std::string::npos) << text;
+  frame.alphas = {0.25f, 0.5f, 1};
+  write_state_csv(folder / "a.csv", frame);
+  text = content_of(folder / "a.csv");
+  EXPECT_TRUE(text.starts_with("id,x,y,z,vx,vy,vz,body,alpha,temperature\n")) << text;
+  EXPECT_NE(text.find(",0.25,293.149994\n"), std::string::npos) << text;
+  EXPECT_EQ(read_points(folder / "a.csv", 1).positions, frame.positions);
+  frame.temperatures.pop_back();
+  EXPECT_THROW(write_state_csv(folder / "a.csv", frame), ConfigError);
+}
+
 TEST(particle_file, columns_of_the_wrong_length_are_not_written) {
   const TemporaryFolder folder;
   ParticleFrame frame = three_particles();

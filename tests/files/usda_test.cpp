@@ -329,6 +329,65 @@ TEST(usda, a_manifest_names_what_has_samples_in_frames_of_a_full_mesh_and_of_not
   }
 }
 
+/// Frames of other triangles each, one of nothing, played by a reader that knows value clips.
+TEST(usda, a_series_plays_every_frame_with_all_that_changes) {
+  const TemporaryFolder folder;
+  for (const std::vector<MeshBody>& bodies : {k_bodies, k_body})
+    for (const UpAxis up : {UpAxis::z, UpAxis::y}) {
+      std::vector<Mesh> meshes = {full_mesh(), {}, full_mesh()};
+      meshes[2].triangles.pop_back();
+      meshes[2].vertices.emplace_back(5, 6, 7);
+      meshes[2].normals.emplace_back(0, 1, 0);
+      meshes[2].velocities.emplace_back(1, 2, 3);
+      meshes[2].material_ids.push_back(0);
+      const UsdOptions options{.up = up, .frames_per_second = 24, .speed = 2};
+      std::filesystem::create_directories(folder / "s");
+      std::vector<UsdFrame> frames;
+      for (std::size_t f = 0; f < 3; ++f) {
+        if (bodies.size() == 1) meshes[f].material_ids.clear();
+        const int number = static_cast<int>(5 * f + 2);
+        frames.push_back({"s/" + std::to_string(f) + ".usda", number});
+        write_mesh_usda(folder / ("s/" + std::to_string(f) + ".usda"), meshes[f], bodies, options, number);
+      }
+      write_usda_series(folder / "a.usda", frames, bodies, options);
+      const auto played = read_with("'" MALLOW_PYTHON "' '" MALLOW_PLAY_USDA "'", folder / "a.usda");
+      ASSERT_TRUE(played.has_value()) << "tests need python3";
+      ASSERT_FALSE(played->contains("error")) << played->at("error");
+      const nlohmann::json& metadata = played->at("metadata");
+      EXPECT_EQ(metadata.at("upAxis"), up == UpAxis::y ? "Y" : "Z");
+      EXPECT_EQ(metadata.at("startTimeCode"), 2);
+      EXPECT_EQ(metadata.at("endTimeCode"), 12);
+      EXPECT_EQ(metadata.at("timeCodesPerSecond"), 24);
+      EXPECT_EQ(metadata.at("metersPerUnit"), 1);
+      EXPECT_EQ(played->at("bindings").size(), bodies.size());
+      ASSERT_EQ(played->at("frames").size(), 3u);
+      for (std::size_t f = 0; f < 3; ++f) {
+        const nlohmann::json& shown = played->at("frames").at(std::to_string(frames[f].number)).at(k_mesh);
+        const auto expect_vectors = [&](const char* name, const std::vector<Vec3>& vectors, float factor) {
+          ASSERT_EQ(shown.at(name).size(), vectors.size()) << name;
+          for (std::size_t v = 0; v < vectors.size(); ++v) {
+            const Vec3 expected = up == UpAxis::y ? with_y_up(vectors[v]) : vectors[v];
+            for (std::size_t k = 0; k < 3; ++k)
+              EXPECT_EQ(shown.at(name)[v][k].get<float>(), factor * expected[static_cast<int>(k)]) << name;
+          }
+        };
+        expect_vectors("points", meshes[f].vertices, 1);
+        expect_vectors("normals", meshes[f].normals, 1);
+        expect_vectors("velocities", meshes[f].velocities, 2);
+        EXPECT_EQ(shown.at("faceVertexCounts").size(), meshes[f].triangles.size());
+        for (std::size_t t = 0; t < meshes[f].triangles.size(); ++t) {
+          for (std::size_t k = 0; k < 3; ++k)
+            EXPECT_EQ(shown.at("faceVertexIndices")[3 * t + k], meshes[f].triangles[t][k]);
+          if (bodies.size() == 1) continue;
+          const std::size_t body = shown.at("primvars:group")[t];
+          for (std::size_t k = 0; k < 3; ++k)
+            EXPECT_EQ(shown.at("primvars:displayColor")[t][k].get<float>(),
+                      k_colors[body][static_cast<int>(k)]);
+        }
+      }
+    }
+}
+
 TEST(usda, tinyusdz_reads_the_mesh_that_was_written) {
   const TemporaryFolder folder;
   const Mesh mesh = full_mesh();

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/export_animations.h"
 #include "cli/frame_loop.h"
 #include "cli/messages.h"
 #include "mallow/errors.h"
@@ -20,7 +21,6 @@
 #include "program/body_appearances.h"
 #include "program/cached_run.h"
 #include "program/failure.h"
-#include "program/frame_surface.h"
 #include "program/input_files.h"
 #include "program/output_files.h"
 #include "program/run_mark.h"
@@ -34,6 +34,7 @@ namespace fs = std::filesystem;
 struct ExportOptions : program::CachedRunOptions {
   std::vector<std::string> surface;    ///< formats
   std::vector<std::string> particles;  ///< formats
+  std::vector<std::string> animation;  ///< formats
   std::vector<std::string> skins;      ///< formats
   std::string up = "z";
   std::string out;
@@ -114,8 +115,10 @@ class Series {
 };
 
 void check_formats(const ExportOptions& options) {
-  if (options.surface.empty() && options.particles.empty() && options.skins.empty()) {
-    throw ConfigError("--surface, --particles, --skins", "at least one is needed, with the formats to write");
+  if (options.surface.empty() && options.particles.empty() && options.animation.empty() &&
+      options.skins.empty()) {
+    throw ConfigError("--surface, --particles, --animation, --skins",
+                      "at least one is needed, with the formats to write");
   }
 }
 
@@ -137,6 +140,7 @@ void refuse_inputs(const ExportOptions& options, const program::CachedRun& run, 
   };
   check("surface", options.surface);
   check("particles", options.particles);
+  for (const std::string& format : options.animation) inputs.refuse(out / animation_name(format), "--out");
   if (!options.skins.empty()) inputs.refuse(out / "skins.glb", "--out");
 }
 
@@ -207,43 +211,13 @@ class FrameWriter {
   float voxel_size_;
 };
 
-/// The skins of all frames, which become one animation that plays as the film does.
-class SkinAnimation {
- public:
-  /// Throws IoError where no body has a skin.
-  explicit SkinAnimation(const program::CachedRun& run) : run_(run), skinned_(skinned_bodies(run.scene)) {
-    if (std::find(skinned_.begin(), skinned_.end(), true) == skinned_.end())
-      throw IoError({run.cache.folder().string(), 0, 0, "--skins", "no body of the run's scene has a skin"});
-  }
-  /// mesh: as the cache has it.
-  void add(const Mesh& mesh, int number) {
-    Mesh part = program::part_of(mesh, skinned_);
-    if (poses_.empty()) first_ = part;
-    if (part.triangles != first_.triangles || part.normals.size() != first_.vertices.size())
-      throw IoError({run_.cache.surface_file(number).string(), 0, 0, "--skins",
-                     "has other skins than the frames before it; run the scene again"});
-    poses_.push_back({static_cast<double>(number) / run_.scene.render.frames_per_second,
-                      std::move(part.vertices), std::move(part.normals)});
-  }
-  void write(const fs::path& file, std::span<const MeshBody> bodies) const {
-    if (poses_.empty()) return;
-    write_animation_glb(file, first_, poses_, bodies);
-    std::printf("skins %zu\n", poses_.size());
-  }
-
- private:
-  const program::CachedRun& run_;
-  std::vector<bool> skinned_;
-  Mesh first_;
-  std::vector<MeshPose> poses_;
-};
-
 void export_frames(const ExportOptions& options) {
   check_formats(options);
   const program::CachedRun run = program::open_cached_run(options, "");
   print_warning(run.cache.lock_warning());
   const program::Cache& cache = run.cache;
-  if (!options.surface.empty() || !options.skins.empty()) require_surfaces(cache);
+  if (!options.surface.empty() || !options.animation.empty() || !options.skins.empty())
+    require_surfaces(cache);
   std::optional<SkinAnimation> skins;
   if (!options.skins.empty()) skins.emplace(run);
   const fs::path out = options.out.empty() ? cache.export_folder() : fs::path(options.out);
@@ -253,6 +227,7 @@ void export_frames(const ExportOptions& options) {
   Series surfaces(out, "surface", options.surface);
   Series particles(out, "particles", options.particles);
   FrameWriter writer(run, options.up == "y" ? UpAxis::y : UpAxis::z);
+  SurfaceAnimation animation(options.animation, writer.bodies(), run.scene.render.frames_per_second);
   try {
     for_each_frame(cache.particle_frames(), "exporting", [&](int number) {
       const ParticleFrame frame = writer.read_particles(number);  // tells the time of surfaces too
@@ -261,8 +236,10 @@ void export_frames(const ExportOptions& options) {
           writer.write_particles(frame, format, file);
         });
       }
-      if ((options.surface.empty() && !skins) || !fs::exists(cache.surface_file(number))) return;
+      if (options.surface.empty() && !animation.any() && !skins) return;
+      if (!fs::exists(cache.surface_file(number))) return;
       const Mesh mesh = read_mesh(cache.surface_file(number));
+      animation.add(mesh, number);
       if (skins) skins->add(mesh, number);
       if (options.surface.empty()) return;
       surfaces.add(number, frame.time, [&](const std::string& format, const fs::path& file) {
@@ -274,6 +251,7 @@ void export_frames(const ExportOptions& options) {
     });
     surfaces.finish(writer.bodies(), writer.usd());
     particles.finish(writer.bodies(), writer.usd());
+    animation.write(out);
     if (skins) skins->write(out / "skins.glb", writer.bodies());
   } catch (const std::exception& error) {
     throw program::RunFailure(error.what());
@@ -301,6 +279,15 @@ void add_export_command(CLI::App& app) {
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"vdb", "vtp", "csv"}));
   command
+      ->add_option(
+          "--animation", options->animation,
+          "Formats of the surfaces of all frames as one file that plays them: glb (glTF; Blender, web), "
+          "surface.glb; meshopt (glTF compressed with EXT_meshopt_compression; web, not Blender), "
+          "surface.meshopt.glb")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"glb", "meshopt"}));
+  command
       ->add_option("--skins", options->skins,
                    "Formats of the skins of all frames as one animation: glb (glTF; Blender, web), skins.glb")
       ->delimiter(',')
@@ -317,7 +304,8 @@ void add_export_command(CLI::App& app) {
       ->check(CLI::Range(0, 1024));
   command->footer(
       "Velocities: _VELOCITY in glb, Velocity in vtp, velocities in usda, v in vdb, vx vy vz in csv; "
-      "an OBJ has none.\n"
+      "an OBJ and an animation have none.\n"
+      "Temperatures [K] where the scene has heat: temperature in csv, Temperature in vtp.\n"
       "Bodies of particles, counted from 0 as in report.json: Group in vtp, body in csv.\n"
       "Groups and materials have the names of the scene in obj (materials.mtl), glb and usda.\n"
       "surface.pvd plays the frames at their simulated times; surface.usda plays them as the film does: a\n"

@@ -20,6 +20,7 @@
 #include "mallow/errors.h"
 #include "mallow/files.h"
 #include "mallow/scene.h"
+#include "program/body_appearances.h"
 #include "program/cache.h"
 #include "program/checkpoint.h"
 #include "program/end_warnings.h"
@@ -121,6 +122,7 @@ program::CheckpointInterval checkpoint_interval(const RunOptions& options,
 void describe(const Scene& scene, int threads, Simulation& simulation, program::RunReport& report) {
   report.threads = threads;
   report.info = simulation.info();
+  report.appearances = program::body_appearances(scene);
   report.frame_time = frame_time(scene, report.info);
 }
 

@@ -68,7 +68,10 @@ void add_surface_command(CLI::App& app) {
       app.add_subcommand("surface", "Draw the surfaces of an earlier run again, from its particles");
   command->add_option("DIR", options->folder, "The --out folder of a run")->required();
   command
-      ->add_option("--set", options->overrides, "Change how surfaces are drawn: --set surface.kind=spheres")
+      ->add_option(
+          "--set", options->overrides,
+          "Change how surfaces are drawn, against how the run drew them: --set surface.kind=spheres; what "
+          "an earlier call set is forgotten")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
   command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")

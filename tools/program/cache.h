@@ -34,6 +34,8 @@ class Cache {
                                                 "film.mp4",
                                                 "export/surface.pvd",
                                                 "export/skins.glb",
+                                                "export/surface.glb",
+                                                "export/surface.meshopt.glb",
                                                 "export/surface.usda",
                                                 "export/particles.pvd",
                                                 "export/surface.manifest.usda",

@@ -31,6 +31,10 @@ nlohmann::ordered_json groups_json(const RunReport& report) {
                       {"average_neighbors", body.average_neighbors},
                       {"regions", body.regions},
                       {"shape_matching", body.shape_matching}});
+  for (std::size_t b = 0; b < std::min(groups.size(), report.appearances.size()); ++b) {
+    const Vec3& color = report.appearances[b].color;
+    groups[b]["color"] = {color.x(), color.y(), color.z()};
+  }
   return groups;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "mallow/appearance.h"
 #include "mallow/report.h"
 #include "mallow/scene.h"
 #include "mallow/simulation.h"
@@ -42,6 +43,7 @@ struct RunReport {
   std::string quality;  ///< empty: as the scene says
   int threads = 0;
   SimulationInfo info;
+  std::vector<Appearance> appearances;  ///< of each body of `info`, for other programs; or none
 
   bool complete = false;
   std::string error;      ///< why the run ended early; empty where it did not

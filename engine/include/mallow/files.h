@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -88,7 +89,7 @@ MALLOW_EXPORT void write_particles(const std::filesystem::path& file, const Part
 MALLOW_EXPORT ParticleFrame read_particles(const std::filesystem::path& file);
 
 /// `id,x,y,z,vx,vy,vz,body` with nine significant digits, which give back the same floats; body is the slot
-/// of the body, as in write_particles().
+/// of the body, as in write_particles(). Behind them `alpha` and `temperature` [K] where the frame has them.
 MALLOW_EXPORT void write_state_csv(const std::filesystem::path& file, const ParticleFrame& frame);
 
 /// Binary PLY with normals, velocities and material ids where the mesh has them; ids are `uchar` where all
@@ -148,6 +149,46 @@ struct MeshPose {
 /// poses are not as said, and as write_mesh_glb() does.
 MALLOW_EXPORT void write_animation_glb(const std::filesystem::path& file, const Mesh& mesh,
                                        std::span<const MeshPose> poses, std::span<const MeshBody> bodies);
+
+/// How a GlbSeries is packed.
+enum class GlbPacking : std::uint8_t {
+  quantized,  ///< KHR_mesh_quantization, which most programs read, Blender from 3.0 on
+  meshopt,    ///< EXT_meshopt_compression too, a fifth of the size: three.js, Babylon.js; not Blender
+};
+/// Whether this build has meshoptimizer, which GlbPacking::meshopt needs.
+MALLOW_EXPORT bool can_compress_glb();
+
+/// glTF 2.0 binary that plays frames of a surface, whose vertices and triangles are others in each: a node
+/// "frame 0" for each frame, and in it one with the name of each body that has triangles there, with its
+/// material. The animation "frames" shows one frame at a time by steps of scales between 0 and 1, each until
+/// the next begins and the last as long as the one before it; programs that play nothing show the first.
+/// Places are rounded to a grid of 2^13 to 2^14 steps along the longest side of the frame's box, normals to
+/// about a degree; velocities are left out. y is up, as in write_mesh_glb(). Holds the packed frames in
+/// memory.
+class MALLOW_EXPORT GlbSeries {
+ public:
+  /// bodies: one for each material id. Throws ConfigError where a colour is out of range, a name is not
+  /// UTF-8, or the build cannot pack like that.
+  explicit GlbSeries(std::span<const MeshBody> bodies, GlbPacking packing = GlbPacking::quantized);
+  ~GlbSeries();
+  /// Moves, with its frames.
+  GlbSeries(GlbSeries&&) noexcept;
+  /// @copydoc GlbSeries(GlbSeries&&)
+  GlbSeries& operator=(GlbSeries&&) noexcept;
+
+  /// time: [s], >= 0, above that of the frame before. A mesh without triangles is a frame that shows nothing.
+  /// Throws ConfigError, and adds nothing, where a body is missing, a number is not finite, or the time is
+  /// not as said.
+  void add(const Mesh& mesh, double time);
+  /// How many were added.
+  std::size_t frames() const;
+  /// Writes the file, whole or not at all, and is empty then. Throws IoError.
+  void write(const std::filesystem::path& file) &&;
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
 
 /// How meshes stand in the space and time of USD, where a time code is a frame.
 struct UsdOptions {
