@@ -28,7 +28,7 @@ const VectorColumn& find_contacted(Simulation::State& state, float time_step, bo
 }
 
 /// Share of the compression that an iteration may take at most: all of it gains energy.
-constexpr double k_most_relaxation = 0.5;
+constexpr double k_most_relaxation = 0.70;
 /// A correction is a spring beside that of shape matching, as pressure is (motion/time_step.cpp): as stiff as
 /// one with k = σ²/(α Δt²) where nothing else acts. With a = (1 − α) Δt²/(Δt0 Δt_SM) and all of ½ whatever a
 /// is, an elastic cube of σ 2.6 spacings dropped on a floor gained 13 times its energy at a 1.5 and 85 times

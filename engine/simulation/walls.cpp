@@ -31,7 +31,7 @@ void find_walls(Simulation::State& state) {
   place_colliders(state.colliders, state.origin, state.base_step(), state.execution.level,
                   state.placed_colliders);
   find_walls(state.store.position, state.store.velocity, state.placed_colliders, state.support_radius(),
-             state.execution, walls);
+             state.keeps_volume(), state.execution, walls);
 }
 
 void press_walls(Simulation::State& state) {

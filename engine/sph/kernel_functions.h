@@ -17,13 +17,16 @@ KernelFactors kernel_factors(double support_radius);
 /// σ |∇| of the spiky kernel's, which is σ times the integral of W over the plane. [Koschier & Bender 2017]
 float half_space_share(float q);
 float half_space_gradient(float q);
-/// σ |∇| of poly6's: minus the slope of half_space_share(). [Koschier & Bender 2017]
-float half_space_slope(float q);
+/// The same of Wendland's C2 kernel, W = 21/(2 π σ³) (1 − q)⁴ (1 + 4 q), and minus its slope. [Wendland 1995]
+float wendland_half_space_share(float q);
+float wendland_half_space_slope(float q);
 
 /// Σ W over an infinite cubic lattice of the given spacing, a point at the origin included [1/m³]: a full
 /// interior of unit masses has this density, which is what rest density follows from.
 double lattice_density(double support_radius, double spacing);
-/// Σ |∇W|² of poly6 there, in units of KernelFactors::poly6_gradient² [m²].
-double lattice_gradient_squares(double support_radius, double spacing);
+/// Of Wendland's C2 kernel there: Σ (1 − q)⁴ (1 + 4 q), and Σ r² (1 − q)⁶, of the squares of its gradients
+/// [m²].
+double wendland_lattice_sum(double support_radius, double spacing);
+double wendland_lattice_squares(double support_radius, double spacing);
 
 }  // namespace mallow

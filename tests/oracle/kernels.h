@@ -6,7 +6,7 @@ namespace mallow::oracle {
 
 /// [TK eq. 3]
 double poly6(double r, double sigma);
-/// ∇ with respect to x_i, of d = x_i − x_j.
-Eigen::Vector3d poly6_gradient(const Eigen::Vector3d& d, double sigma);
+/// Of the volume constraint's kernel: S of a half space at distance d. [Wendland 1995]
+double wendland_half_space_share(double d, double sigma);
 
 }  // namespace mallow::oracle

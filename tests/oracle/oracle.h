@@ -45,7 +45,8 @@ struct Particle {
     double push = 0;  ///< what it has given across in this step [m/s]
   };
   std::vector<Wall> walls = {};
-  double wall_share = 0;  ///< of the kernel's volume, of all walls
+  double wall_share = 0;         ///< of the kernel's volume, of all walls
+  double wall_volume_share = 0;  ///< the same, of the volume constraint's kernel
   double density = 0;
   double pressure = 0;
   Vec sph{0, 0, 0};                     ///< a^SPH of the same group [m/s²]
@@ -87,7 +88,8 @@ struct Step {
 /// Acceleration of a particle by the user, from time, id, position and velocity.
 using Force = std::function<Vec(double, std::size_t, const Vec&, const Vec&)>;
 
-Vec pushed_along(const Particle::Wall& wall, double alpha, double all, const Vec& by_neighbors,
+/// share, all: S of the wall, and of all walls.
+Vec pushed_along(const Vec& normal, double share, double all, double alpha, const Vec& by_neighbors,
                  const Vec& weight);
 
 class Oracle {

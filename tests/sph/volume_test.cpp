@@ -46,18 +46,21 @@ Vec momentum(const Simulation& s) {
   return sum;
 }
 
-TEST(lattice, sums_the_squares_of_gradients_up_to_their_integral) {
+TEST(lattice, sums_wendlands_kernel_and_the_squares_of_its_gradients_up_to_their_integrals) {
   for (const double sigma : {2.0, 2.9, 17.0}) {
-    double sum = 0;
+    double sum = 0, squares = 0;
     for (int x = -17; x <= 17; ++x)
       for (int y = -17; y <= 17; ++y)
         for (int z = -17; z <= 17; ++z) {
-          const double r2 = x * x + y * y + z * z, t = 1 - r2 / (sigma * sigma);
-          if (t > 0) sum += r2 * std::pow(t, 4);
+          const double r = std::sqrt(x * x + y * y + z * z), t = 1 - r / sigma;
+          if (t > 0) sum += std::pow(t, 4) * (1 + 4 * r / sigma);
+          if (t > 0) squares += r * r * std::pow(t, 6);
         }
-    EXPECT_NEAR(lattice_gradient_squares(sigma, 1) / sum, 1, 1e-12);
+    EXPECT_NEAR(wendland_lattice_sum(sigma, 1) / sum, 1, 1e-12);
+    EXPECT_NEAR(wendland_lattice_squares(sigma, 1) / squares, 1, 1e-12);
   }
-  EXPECT_NEAR(lattice_gradient_squares(65, 1) / lattice_gradient_squares(63.9, 1), std::pow(65 / 63.9, 5),
+  EXPECT_NEAR(wendland_lattice_sum(65, 1) / wendland_lattice_sum(63.9, 1), std::pow(65 / 63.9, 3), 1e-4);
+  EXPECT_NEAR(wendland_lattice_squares(65, 1) / wendland_lattice_squares(63.9, 1), std::pow(65 / 63.9, 5),
               1e-4);
 }
 
