@@ -191,7 +191,7 @@ void correct_volume(const SolverConfig& config, const std::vector<Group>& groups
     const double response =
         std::max(of_groups[i.group].least_response, sum.squaredNorm() / group.mass + others);
     const double s = std::max(0.0, density - 1 + time_step * rate);
-    multipliers.push_back(i.pinned ? 0 : 0.75 * share[i.group] * s / (time_step * response));
+    multipliers.push_back(i.pinned ? 0 : 0.6 * share[i.group] * s / (time_step * response));
   }
   for (std::size_t k = 0; k < particles.size(); ++k) {
     Particle& i = particles[k];

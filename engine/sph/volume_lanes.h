@@ -16,11 +16,10 @@ struct VolumeGroup {
 };
 
 /// Sums over all particles within σ, by cluster as those of sph_lanes.h. In sorted order unless they say row.
-/// The kernel is W ~ (1 − q)⁴ (1 + 4 q), q = r/σ, [Wendland 1995] and its factor such that ρ^v is ρ in the
-/// lattice of a body. With poly6 the particles of what flows sat down in pairs and then in heaps, the more
-/// the more iterations: a half of a pool of 1,200 at 0.16 spacings from another after 8. That is as it must
-/// be for a kernel whose Fourier transform goes below 0, and not for this one [Dehnen & Aly 2012]; 0.92
-/// spacings.
+/// The kernel is W ~ (1 − q)⁴ (1 + 4 q), q = r/σ [Wendland 1995], its factor such that ρ^v is ρ in the
+/// lattice of a body. With poly6, particles of what flows gathered in pairs and then in heaps, the more the
+/// more iterations: with 8, half of a pool was within 0.16 spacings of another, here 0.92. So does any kernel
+/// whose Fourier transform goes below 0 [Dehnen & Aly 2012].
 ///
 /// symbol | column        | unit       | what
 /// x_i    | position      | m          |

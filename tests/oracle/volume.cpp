@@ -98,7 +98,7 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       const double share =
           wide * wide * wide *
           std::clamp((2.8 - group.most_elasticity * stiffness(group) * dt * dt) / 2, 0.0, 1.0);
-      lambda[k] = i.pinned ? 0 : 0.75 * share * s / (dt * response);
+      lambda[k] = i.pinned ? 0 : 0.6 * share * s / (dt * response);
     }
     for (std::size_t k = 0; k < n; ++k) {
       Particle& i = particles_[k];

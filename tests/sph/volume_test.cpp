@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -102,7 +103,9 @@ TEST(volume, of_a_dropped_cube_stays_as_the_prototype_says) {
     float alpha;
     double impact[3], rest[3], to_tolerance, rest_to_tolerance;
   };
-  // Of model 2, section 2.
+  // Of model 2, section 2, where the constraint has the kernel of densities, poly6. That of a kernel which
+  // keeps particles apart takes a little less of poly6's excess: up to 0.022 with one iteration, 0.009 to the
+  // tolerance, and 6.4 to 7.8 iterations a step for that.
   const Row rows[] = {{0.0f, {1.21, 1.19, 1.17}, {1.06, 1.04, 1.03}, 1.06, 1.03},
                       {0.3f, {1.28, 1.22, 1.21}, {1.06, 1.03, 1.02}, 1.04, 1.02},
                       {0.7f, {1.23, 1.19, 1.18}, {1.04, 1.02, 1.02}, 1.04, 1.02},
@@ -111,16 +114,15 @@ TEST(volume, of_a_dropped_cube_stays_as_the_prototype_says) {
   for (const Row& row : rows) {
     for (const int iterations : {1, 3}) {
       const Dropped one = drop(row.alpha, iterations);
-      // The share that stiff bodies do without, 0.1 at alpha 0, costs 0.006 there.
-      const double stiff = row.alpha == 0 && iterations == 1 ? 0.005 : 0;
-      EXPECT_LE(one.impact, row.impact[iterations - 1] + k_room + stiff) << row.alpha << ' ' << iterations;
+      const double kernel = iterations == 1 ? 0.025 : 0;
+      EXPECT_LE(one.impact, row.impact[iterations - 1] + k_room + kernel) << row.alpha << ' ' << iterations;
       EXPECT_LE(one.rest, row.rest[iterations - 1] + k_room) << row.alpha << ' ' << iterations;
       EXPECT_GE(one.volume, 0.98) << row.alpha << ' ' << iterations;
     }
     const Dropped all = drop(row.alpha, 50, 1e-3f);
-    EXPECT_LE(all.impact, row.to_tolerance + k_room) << row.alpha;
+    EXPECT_LE(all.impact, row.to_tolerance + k_room + 0.01) << row.alpha;
     EXPECT_LE(all.rest, row.rest_to_tolerance + k_room) << row.alpha;
-    EXPECT_LE(all.iterations, 4) << row.alpha;
+    EXPECT_LE(all.iterations, 8) << row.alpha;
   }
   // What it cures.
   EXPECT_NEAR(drop(0.3f, 0, 0, 16.0f).impact, 2.16, 0.1);
@@ -207,6 +209,39 @@ TEST(volume, iterations_keep_momentum_and_spin) {
   }
 }
 
+/// Distance of each particle to the one that is nearest, ascending.
+std::vector<float> nearest_distances(const Simulation& s) {
+  const std::vector<Vec3> x = s.positions_by_id();
+  std::vector<float> nearest;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    float least = std::numeric_limits<float>::max();
+    for (std::size_t j = 0; j < x.size(); ++j)
+      if (j != i) least = std::min(least, (x[i] - x[j]).squaredNorm());
+    nearest.push_back(std::sqrt(least));
+  }
+  std::ranges::sort(nearest);
+  return nearest;
+}
+
+// With the kernel of densities half of the pool was within 0.16 spacings of another particle after 8
+// iterations a step, and a tenth of the paste within 0.3.
+TEST(volume, iterations_keep_the_particles_of_what_flows_apart_however_many_they_are) {
+  const Material pool{.alpha = 1.0f};
+  Material paste{.alpha = 0.7f, .youngs_modulus = 2.0f, .damping_time = 0.05f};
+  paste.plastic_yield = 0.1f;
+  paste.plastic_creep = 1.0f;
+  for (const Material& material : {pool, paste})
+    for (const int iterations : {1, 2, 8}) {
+      Simulation s(config(iterations));
+      s.add_collider({.shape = Box{{-7.5, -5, 0}, {7.5, 5, 99}, true}, .friction = 0.3f});
+      s.add_body(sample(Lattice{.count = {10, 10, 12}, .corner = {-7.5, -5, 0.5}, .jitter = 0.1f}), material);
+      s.advance(400 * 0.15);
+      const std::vector<float> nearest = nearest_distances(s);
+      EXPECT_GT(nearest[nearest.size() / 2], 0.75f) << iterations;
+      EXPECT_GT(nearest[nearest.size() / 100], 0.5f) << iterations;
+    }
+}
+
 TEST(volume, of_a_poured_pool_is_kept_with_the_share_of_walls) {
   for (const float alpha : {1.0f, 0.7f})
     for (const int iterations : {1, 2}) {
@@ -218,7 +253,7 @@ TEST(volume, of_a_poured_pool_is_kept_with_the_share_of_walls) {
       const std::span<const float> z = s.positions().z();
       const double depth = 2 * std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size());
       EXPECT_GT(depth, 0.95 * 12) << alpha << ' ' << iterations;
-      EXPECT_LT(depth, 1.015 * 12) << alpha << ' ' << iterations;
+      EXPECT_LT(depth, 1.03 * 12) << alpha << ' ' << iterations;
       EXPECT_LT(s.energy().kinetic, 1e-3 * 1200 * 0.3 * 4) << alpha << ' ' << iterations;
     }
 }
