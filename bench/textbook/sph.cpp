@@ -178,7 +178,7 @@ void correct_volume(const SolverConfig& config, const std::vector<Group>& groups
   for (std::size_t k = 0; k < particles.size(); ++k) {
     const Particle& i = particles[k];
     const Group& group = groups[i.group];
-    double density = 0, rate = 0, others = 0;
+    double density = volume(i) * kernels.wendland(0), rate = 0, others = 0;
     Vec sum = Vec::Zero();
     for (const std::size_t id : i.neighbors) {
       const Particle& j = particles[id];
