@@ -81,17 +81,54 @@ void find_neighbors(const SolverConfig& config, std::vector<Particle>& particles
   }
 }
 
+namespace {
+
+/// Σ term(r) over the points of an infinite cubic lattice that are nearer than the support radius.
+template <class Term>
+double sum_lattice(double spacing, double support_radius, const Term& term) {
+  const int reach = static_cast<int>(support_radius / spacing) + 1;
+  double sum = 0;
+  for (int x = -reach; x <= reach; ++x)
+    for (int y = -reach; y <= reach; ++y)
+      for (int z = -reach; z <= reach; ++z) {
+        const double r = spacing * std::sqrt(x * x + y * y + z * z);
+        if (r < support_radius) sum += term(r);
+      }
+  return sum;
+}
+
+/// Of one group, for the volume constraint.
+struct VolumeGroup {
+  double volume;  ///< of a particle, such that its lattice is as dense as poly6 says [m³]
+  double least_response;
+};
+VolumeGroup volume_group(const Group& group, const Kernels& kernels) {
+  const double sum = sum_lattice(group.spacing, kernels.sigma, [&](double r) { return kernels.wendland(r); });
+  const double squares = sum_lattice(group.spacing, kernels.sigma, [&](double r) {
+    return r * r * std::pow(kernels.wendland_gradient(r), 2);
+  });
+  const double volume = group.mass / group.rest_density * lattice_sum(group.spacing, kernels.sigma) / sum;
+  return {volume, volume * volume * squares / group.mass / 2};
+}
+
+}  // namespace
+
 void sum_densities(const SolverConfig& config, const std::vector<Group>& groups,
                    std::vector<Particle>& particles) {
   const Kernels kernels(*config.support_radius);
+  std::vector<VolumeGroup> volumes;  // where volume is kept
+  if (config.volume_iterations > 0)
+    for (const Group& group : groups) volumes.push_back(volume_group(group, kernels));
   for (Particle& i : particles) {
     const Group& group = groups[i.group];
-    double sum = group.mass / group.rest_density * kernels.poly6(0);
-    for (const std::size_t id : i.neighbors) {
-      const Particle& j = particles[id];
+    const auto counts = [&](const Particle& j) {
+      const double r2 = (i.position - j.position).squaredNorm();
       const Group& other = groups[j.group];
-      sum += other.mass / other.rest_density * kernels.poly6((i.position - j.position).squaredNorm());
-    }
+      return volumes.empty() ? other.mass / other.rest_density * kernels.poly6(r2)
+                             : volumes[j.group].volume * kernels.wendland(std::sqrt(r2));
+    };
+    double sum = counts(i);
+    for (const std::size_t id : i.neighbors) sum += counts(particles[id]);
     i.density = group.rest_density * sum;
     i.pressure = group.pressure_coefficient * (i.density - group.rest_density);
     if (i.pressure < 0) i.pressure *= group.cohesion;
@@ -131,38 +168,6 @@ void sum_accelerations(const SolverConfig& config, const std::vector<Group>& gro
   }
 }
 
-namespace {
-
-/// Σ term(r) over the points of an infinite cubic lattice that are nearer than the support radius.
-template <class Term>
-double sum_lattice(double spacing, double support_radius, const Term& term) {
-  const int reach = static_cast<int>(support_radius / spacing) + 1;
-  double sum = 0;
-  for (int x = -reach; x <= reach; ++x)
-    for (int y = -reach; y <= reach; ++y)
-      for (int z = -reach; z <= reach; ++z) {
-        const double r = spacing * std::sqrt(x * x + y * y + z * z);
-        if (r < support_radius) sum += term(r);
-      }
-  return sum;
-}
-
-/// Of one group, for the volume constraint.
-struct VolumeGroup {
-  double volume;  ///< of a particle, such that its lattice is as dense as poly6 says [m³]
-  double least_response;
-};
-VolumeGroup volume_group(const Group& group, const Kernels& kernels) {
-  const double sum = sum_lattice(group.spacing, kernels.sigma, [&](double r) { return kernels.wendland(r); });
-  const double squares = sum_lattice(group.spacing, kernels.sigma, [&](double r) {
-    return r * r * std::pow(kernels.wendland_gradient(r), 2);
-  });
-  const double volume = group.mass / group.rest_density * lattice_sum(group.spacing, kernels.sigma) / sum;
-  return {volume, volume * volume * squares / group.mass / 2};
-}
-
-}  // namespace
-
 void correct_volume(const SolverConfig& config, const std::vector<Group>& groups, double time_step,
                     const std::vector<double>& share, const std::vector<Vec>& contacted,
                     std::vector<Particle>& particles) {
@@ -178,19 +183,18 @@ void correct_volume(const SolverConfig& config, const std::vector<Group>& groups
   for (std::size_t k = 0; k < particles.size(); ++k) {
     const Particle& i = particles[k];
     const Group& group = groups[i.group];
-    double density = volume(i) * kernels.wendland(0), rate = 0, others = 0;
+    double rate = 0, others = 0;
     Vec sum = Vec::Zero();
     for (const std::size_t id : i.neighbors) {
       const Particle& j = particles[id];
       const Vec g = volume(j) * gradient(i, j);
-      density += volume(j) * kernels.wendland((i.position - j.position).norm());
       rate += (contacted[k] - contacted[id]).dot(g);
       sum += g;
       if (!j.pinned) others += g.squaredNorm() / groups[j.group].mass;
     }
     const double response =
         std::max(of_groups[i.group].least_response, sum.squaredNorm() / group.mass + others);
-    const double s = std::max(0.0, density - 1 + time_step * rate);
+    const double s = std::max(0.0, i.density / group.rest_density - 1 + time_step * rate);
     multipliers.push_back(i.pinned ? 0 : 0.6 * share[i.group] * s / (time_step * response));
   }
   for (std::size_t k = 0; k < particles.size(); ++k) {

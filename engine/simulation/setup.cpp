@@ -31,6 +31,16 @@ const BodyState* first_like(const BodyState& body, std::vector<const BodyState*>
   return nullptr;
 }
 
+/// Of a particle in densities: its lattice has the same by either kernel.
+float kernel_volume(const Sph& sph, const BodyState& body) {
+  const float volume = body.mass / body.rest_density;
+  if (sph.kernel == DensityKernel::poly6) return volume;
+  const double radius = static_cast<double>(sph.support_radius), h = static_cast<double>(body.spacing);
+  const double factor = static_cast<double>(sph.factors.density);
+  return static_cast<float>(static_cast<double>(volume) * lattice_density(radius, h) /
+                            (factor * wendland_lattice_sum(radius, h)));
+}
+
 }  // namespace
 
 ParticleDensity particle_density(const SolverConfig& config, const Material& material, float spacing) {
@@ -77,6 +87,7 @@ void describe_bodies(Simulation::State& state) {
   sph.bodies.clear();
   sph.viscous = false;
   sph.apart = state.config.contact == BodyContact::constraint;
+  sph.kernel = state.volume_iterations() > 0 ? DensityKernel::wendland : DensityKernel::poly6;
   double volume = 0;
   std::vector<const BodyState*> merging, flowing;  // the first of each group
   std::uint32_t merge_groups = 0;
@@ -94,6 +105,7 @@ void describe_bodies(Simulation::State& state) {
           {.mass = body.mass,
            .rest_density = body.rest_density,
            .rest_volume = body.mass / body.rest_density,
+           .kernel_volume = kernel_volume(sph, body),
            .pressure_coefficient = 0,  // this and the two of pressure follow alpha: resolve_pressures()
            .contact_share = 1,
            .viscosity = body.viscosity,

@@ -36,20 +36,28 @@ KernelFactors kernel_factors(double support_radius) {
   };
 }
 
-float half_space_share(float q) {
+namespace {
+
+float poly6_half_space_share(float q) {
   // W over a plane at z is 315/(256 σ) (1 − z²)⁴, z in σ; its integral from q to 1.
   const float q2 = q * q;
   return 0.5f - 315.0f / 256 * q * (1 - q2 * (4.0f / 3 - q2 * (6.0f / 5 - q2 * (4.0f / 7 - q2 / 9))));
 }
 
-float half_space_gradient(float q) {
-  const float t = 1 - q;
-  return t * t * t * t * (7.5f - 6 * t);
-}
-
 float wendland_half_space_share(float q) {
   const float t = 1 - q, t2 = t * t;
   return t2 * t2 * t2 * (3.5f - t * (4.5f - 1.5f * t));
+}
+
+}  // namespace
+
+float half_space_share(DensityKernel kernel, float q) {
+  return kernel == DensityKernel::wendland ? wendland_half_space_share(q) : poly6_half_space_share(q);
+}
+
+float half_space_gradient(float q) {
+  const float t = 1 - q;
+  return t * t * t * t * (7.5f - 6 * t);
 }
 
 float wendland_half_space_slope(float q) {

@@ -1,6 +1,7 @@
 #include "sph/volume.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "core/parallel.h"
 
@@ -21,11 +22,12 @@ VolumeInput input(const Sph& sph, const Volume& volume, float time_step) {
       .groups = volume.groups.data(),
       .apart = sph.apart,
       .mobile = volume.mobile.empty() ? nullptr : volume.mobile.data(),
+      .density = sph.density.data(),
       .position = raw(sph.grid.sorted),
       .velocity = raw(volume.velocity),
       .wall_gradient = walls ? raw(volume.wall_gradient) : ConstVectors{},
       .wall_rate = walls ? volume.wall_rate.data() : nullptr,
-      .wall_share = walls ? sph.walls.volume_share.data() : nullptr,
+      .wall_share = walls ? sph.walls.share.data() : nullptr,
       .inverse_radius = 1.0f / sph.support_radius,
       .time_step = time_step,
   };
@@ -76,9 +78,8 @@ void push_by_walls(const VolumeStep& step, Sph& sph, const Execution& execution,
     const std::uint32_t row = wall.row;
     if (step.pin && step.pin[row] != 0) return;
     const float across = k_mirrored * volume.multiplier_by_row[row] * wall.slope / body.mass;
-    const Vec3 along = pushed_along(wall.normal, {wall.volume_share, sph.walls.volume_share[row]},
-                                    step.alpha ? step.alpha[row] : body.alpha, volume.changes.get(row),
-                                    step.time_step * step.gravity);
+    const Vec3 along = pushed_along(wall, step.alpha ? step.alpha[row] : body.alpha, sph.walls.share[row],
+                                    volume.changes.get(row), step.time_step * step.gravity);
     const Vec3 change = across * wall.normal + along;
     wall.across += across / step.time_step;
     velocity.set(row, velocity.get(row) + change);
@@ -91,29 +92,26 @@ void push_by_walls(const VolumeStep& step, Sph& sph, const Execution& execution,
 }  // namespace
 
 std::size_t Volume::bytes() const {
-  return velocity.bytes() + density.bytes() + response.bytes() + multiplier.bytes() + mobile.bytes() +
-         wall_gradient.bytes() + wall_rate.bytes() + multiplier_by_row.bytes() + changes.bytes() +
-         contacted.bytes();
+  return velocity.bytes() + response.bytes() + multiplier.bytes() + mobile.bytes() + wall_gradient.bytes() +
+         wall_rate.bytes() + multiplier_by_row.bytes() + changes.bytes() + contacted.bytes();
 }
 
 VolumeGroup volume_group(const SphGroup& group, float spacing, float support_radius) {
-  const double radius = static_cast<double>(support_radius), h = static_cast<double>(spacing);
-  // Its lattice has the same density for either kernel.
-  const double weight =
-      lattice_density(radius, h) / wendland_lattice_sum(radius, h) * static_cast<double>(group.rest_volume);
-  const double slope = 20 * weight / (radius * radius);
-  return {.weight = static_cast<float>(weight),
-          .slope = static_cast<float>(slope),
+  const double radius = static_cast<double>(support_radius), square = radius * radius;
+  // Powers of σ are taken out in double, as those of KernelFactors.
+  const double weight = 315 / (64 * std::numbers::pi * square * radius);
+  const double slope = 20 * weight / square * static_cast<double>(group.kernel_volume);
+  const double squares = wendland_lattice_squares(radius, static_cast<double>(spacing));
+  return {.slope = static_cast<float>(slope),
           .inverse_mass = 1 / group.mass,
+          .inverse_rest_density = 1 / group.rest_density,
           .relaxation = 0,
-          .least_response =
-              static_cast<float>(k_least_response * slope * slope * wendland_lattice_squares(radius, h) /
-                                 static_cast<double>(group.mass))};
+          .least_response = static_cast<float>(k_least_response * slope * slope * squares /
+                                               static_cast<double>(group.mass))};
 }
 
 void begin_volume(const VolumeStep& step, const Sph& sph, const Execution& execution, Volume& volume) {
   const std::size_t n = sph.grid.order.size();
-  volume.density.resize(n);
   volume.response.resize(n);
   volume.multiplier.resize(n);
   volume.mobile.resize(step.pin ? n : 0);
@@ -136,8 +134,8 @@ Compression find_compression(const VolumeStep& step, const VectorColumn& velocit
   parallel_for(
       execution.threads, clusters,
       [&](std::size_t begin, std::size_t end) {
-        volume.partial[begin / k_cluster_block] = lanes.compressions(
-            in, begin, end, first, volume.density.data(), volume.response.data(), volume.multiplier.data());
+        volume.partial[begin / k_cluster_block] =
+            lanes.compressions(in, begin, end, first, volume.response.data(), volume.multiplier.data());
       },
       k_cluster_block);
   Compression all;

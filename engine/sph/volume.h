@@ -11,12 +11,11 @@
 namespace mallow {
 
 /// What the volume constraint owns; empty in a scene without it. It keeps densities from rising above those
-/// at rest by what it does to velocities, over the lists of the step. [model 2, section 2]
+/// at rest by what it does to velocities, over the lists and densities of the step. [model 2, section 2]
 struct Volume {
   std::vector<VolumeGroup> groups;  ///< of Sph::groups
   // Sorted order of Sph.
   VectorColumn velocity;     ///< w
-  Column<float> density;     ///< ρ^v/ρ0 [1]
   Column<float> response;    ///< D [1/(m² kg)]
   Column<float> multiplier;  ///< λ [m² kg/s]
   Column<float> mobile;      ///< 0 where it is pinned, else 1; empty where nothing is

@@ -40,7 +40,7 @@ struct ClusterPairs {
     for (std::size_t l = 0; l < count; ++l) own[l] = static_cast<int>(in.group[first + l]);
   }
 
-  /// Calls body(j, x_j − x_i, q, 1 − q where that is above 0).
+  /// Calls body(j, x_j − x_i, (1 − q)³).
   template <class Body>
   MALLOW_INLINE void for_each(const ClusterPairs& of, const Body& body) {
     const VolumeInput& in = of.in;
@@ -48,10 +48,9 @@ struct ClusterPairs {
     for (std::uint32_t k = 0; k < of.list_count; ++k) {
       const std::uint32_t j = of.list[k];
       const ClusterVec3 d = difference(in.position, j, of.x);
-      const Floats q = square_root(dot_from_left(d, d) * inverse_square);
-      Floats t = not_negative(1.0f - q);
+      Floats t = not_negative(1.0f - square_root(dot_from_left(d, d) * inverse_square));
       if (Kind::grouped && in.apart) t = where(is_equal(of.own, static_cast<int>(in.group[j])), t);
-      body(j, d, q, t);
+      body(j, d, t * t * t);
     }
   }
   const VolumeGroup& group(std::size_t j) const { return in.groups[Kind::grouped ? in.group[j] : 0]; }
@@ -59,7 +58,6 @@ struct ClusterPairs {
 };
 
 struct Sums {
-  Floats density = {};        ///< Σ ψ W
   Floats rate = {};           ///< Σ ψ (w_i − w_j)·∇W
   ClusterVec3 gradient = {};  ///< Σ ψ ∇W
   Floats square = {};         ///< Σ ψ² |∇W|²/m_j
@@ -70,24 +68,18 @@ template <class Kind, bool responds>
 Sums sum_rates(const VolumeInput& in, const ClusterPairs<Kind>& pairs) {
   const ClusterVec3 w = load(in.velocity, pairs.first);
   Sums sums;
-  ClusterPairs<Kind>::for_each(pairs,
-                               [&](std::uint32_t j, const ClusterVec3& d, const Floats& q, const Floats& t) {
-                                 Floats t3 = t * t * t;
-                                 if (responds) {
-                                   const Floats kernel = (t3 * t) * (1.0f + 4.0f * q);
-                                   sums.density += Kind::grouped ? pairs.group(j).weight * kernel : kernel;
-                                 }
-                                 if (Kind::grouped) t3 = pairs.group(j).slope * t3;
-                                 sums.rate -= t3 * dot_from_left(difference(in.velocity, j, w), d);
-                                 if (!responds) return;
-                                 const ClusterVec3 gradient = t3 * d;
-                                 sums.gradient += gradient;
-                                 const Floats square = dot_from_left(gradient, gradient);
-                                 if (Kind::grouped)
-                                   sums.square += pairs.mobility(j) * pairs.group(j).inverse_mass * square;
-                                 else
-                                   sums.square += Kind::pinned ? in.mobile[j] * square : square;
-                               });
+  ClusterPairs<Kind>::for_each(pairs, [&](std::uint32_t j, const ClusterVec3& d, Floats t3) {
+    if (Kind::grouped) t3 = pairs.group(j).slope * t3;
+    sums.rate -= t3 * dot_from_left(difference(in.velocity, j, w), d);
+    if (!responds) return;
+    const ClusterVec3 gradient = t3 * d;
+    sums.gradient += gradient;
+    const Floats square = dot_from_left(gradient, gradient);
+    if (Kind::grouped)
+      sums.square += pairs.mobility(j) * pairs.group(j).inverse_mass * square;
+    else
+      sums.square += Kind::pinned ? in.mobile[j] * square : square;
+  });
   return sums;
 }
 
@@ -116,21 +108,17 @@ float response_of(const VolumeInput& in, const VolumeGroup& own, const Sums& sum
 }
 
 template <class Kind, bool responds>
-void find_multipliers(const VolumeInput& in, std::size_t cluster, float* density, float* response,
-                      float* multiplier, CompressionSum& total) {
+void find_multipliers(const VolumeInput& in, std::size_t cluster, float* response, float* multiplier,
+                      CompressionSum& total) {
   const ClusterPairs<Kind> pairs(in, cluster);
   const Sums sums = sum_rates<Kind, responds>(in, pairs);
   for (std::size_t l = 0; l < pairs.count; ++l) {
     const std::size_t i = pairs.first + l, row = in.lists.row_of[i];
     const VolumeGroup& own = pairs.group(i);
-    if (responds) {
-      density[i] = (Kind::grouped ? 1.0f : own.weight) * sums.density[l];
-      if (in.wall_share) density[i] += in.wall_share[row];
-      response[i] = response_of<Kind>(in, own, sums, l, row);
-    }
+    if (responds) response[i] = response_of<Kind>(in, own, sums, l, row);
     float rate = Kind::grouped ? sums.rate[l] : own.slope * sums.rate[l];
     if (in.wall_rate) rate += in.wall_rate[row];
-    const float excess = density[i] - 1.0f + in.time_step * rate;
+    const float excess = in.density[i] * own.inverse_rest_density - 1.0f + in.time_step * rate;
     const float s = (excess > 0 ? excess : 0.0f) * pairs.mobility(i);
     multiplier[i] = own.relaxation * s / (in.time_step * response[i]);
     total.sum += static_cast<double>(s);
@@ -140,22 +128,22 @@ void find_multipliers(const VolumeInput& in, std::size_t cluster, float* density
 
 template <class Kind>
 CompressionSum all_compressions(const VolumeInput& in, std::size_t begin, std::size_t end, bool first,
-                                float* density, float* response, float* multiplier) {
+                                float* response, float* multiplier) {
   CompressionSum total{};
   for (std::size_t cluster = begin; cluster < end; ++cluster)
     if (first)
-      find_multipliers<Kind, true>(in, cluster, density, response, multiplier, total);
+      find_multipliers<Kind, true>(in, cluster, response, multiplier, total);
     else
-      find_multipliers<Kind, false>(in, cluster, density, response, multiplier, total);
+      find_multipliers<Kind, false>(in, cluster, response, multiplier, total);
   return total;
 }
 
 CompressionSum compressions(const VolumeInput& in, std::size_t begin, std::size_t end, bool first,
-                            float* density, float* response, float* multiplier) noexcept {
+                            float* response, float* multiplier) noexcept {
   const auto sum =
       in.group ? (in.mobile ? all_compressions<Kinds<true, true>> : all_compressions<Kinds<true, false>>)
                : (in.mobile ? all_compressions<Kinds<false, true>> : all_compressions<Kinds<false, false>>);
-  return sum(in, begin, end, first, density, response, multiplier);
+  return sum(in, begin, end, first, response, multiplier);
 }
 
 template <class Kind>
@@ -166,14 +154,12 @@ void push_cluster(const VolumeInput& in, std::size_t cluster, const float* multi
   Floats own_slope = {};
   for (std::size_t l = 0; l < pairs.count; ++l) own_slope[l] = pairs.group(pairs.first + l).slope;
   ClusterVec3 sum = {};
-  ClusterPairs<Kind>::for_each(pairs,
-                               [&](std::uint32_t j, const ClusterVec3& d, const Floats&, const Floats& t) {
-                                 const Floats t3 = t * t * t;
-                                 if (Kind::grouped)
-                                   sum += (t3 * (own * pairs.group(j).slope + multiplier[j] * own_slope)) * d;
-                                 else
-                                   sum += (t3 * (own + multiplier[j])) * d;
-                               });
+  ClusterPairs<Kind>::for_each(pairs, [&](std::uint32_t j, const ClusterVec3& d, const Floats& t3) {
+    if (Kind::grouped)
+      sum += (t3 * (own * pairs.group(j).slope + multiplier[j] * own_slope)) * d;
+    else
+      sum += (t3 * (own + multiplier[j])) * d;
+  });
   for (std::size_t l = 0; l < pairs.count; ++l) {
     const std::size_t i = pairs.first + l, row = in.lists.row_of[i];
     const VolumeGroup& group = pairs.group(i);

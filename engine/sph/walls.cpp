@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "sph/kernel_functions.h"
-
 namespace mallow {
 namespace {
 
@@ -17,51 +15,38 @@ constexpr float k_least_seen = 0.5f;
 /// Takes in the walls around the particles of a block, one by one.
 class WalledBlock {
  public:
-  WalledBlock(const WalledBody& body, std::size_t begin, float support_radius, Walls& all,
-              std::vector<Walls::Wall>& walls)
-      : inward_(support_radius - body.reach),
+  WalledBlock(const WalledBody& body, std::size_t begin, DensityKernel kernel, float support_radius,
+              std::span<float> share, std::vector<Walls::Wall>& walls)
+      : kernel_(kernel),
+        inward_(support_radius - body.reach),
         radius_(support_radius),
         begin_(begin),
-        share_(all.share.span()),
-        volume_share_(all.volume_share.span()),
+        share_(share),
         walls_(walls) {}
 
   void add(const NearWall& near) {
     const float q = std::max(near.distance + inward_, 0.0f) / radius_;
     if (!(q < 1)) return;
-    const float share = half_space_share(q);
+    const float share = half_space_share(kernel_, q);
     float& sum = share_[near.row];
     std::uint32_t& last = last_[near.row - begin_];
-    float covered = 0, across = 0, alike = 0;
+    float covered = 0;
     if (last != 0) {
       // Planes across each other cut off a part of one another's half space; of those that look the same way
       // the nearer counts; those that look at each other add up.
-      const float along = direction(last).dot(near.normal);
-      alike = std::max(along, 0.0f);
-      across = 1 - std::abs(along);
+      const float along = direction(last).dot(near.normal), alike = std::max(along, 0.0f);
+      const float across = 1 - std::abs(along);
       const bool farther = share <= sum;
       covered = across * sum + (farther ? alike : 0.0f);
       cover(last, across * share + (farther ? 0.0f : alike));
+      sum += share - (across * share * sum + alike * std::min(share, sum));
+    } else {
+      sum = share;
     }
-    const auto add_share = [&](float of_this, float& of_all) {
-      of_all += of_this - (across * of_this * of_all + alike * std::min(of_this, of_all));
-    };
-    add_share(share, sum);
     const float left = 1 - covered;
-    Walls::Wall wall{.row = near.row,
-                     .collider = near.collider,
-                     .before = last,
-                     .share = left * share,
-                     .gradient = left * half_space_gradient(q) / radius_,
-                     .distance = near.distance,
-                     .normal = near.normal};
-    if (!volume_share_.empty()) {
-      const float of_volume = wendland_half_space_share(q);
-      add_share(of_volume, volume_share_[near.row]);
-      wall.volume_share = left * of_volume;
-      wall.slope = left * wendland_half_space_slope(q) / radius_;
-    }
-    walls_.push_back(wall);
+    walls_.push_back({near.row, near.collider, last, left * share, left * half_space_gradient(q) / radius_,
+                      kernel_ == DensityKernel::wendland ? left * wendland_half_space_slope(q) / radius_ : 0,
+                      near.distance, near.normal});
     last = static_cast<std::uint32_t>(walls_.size());
   }
 
@@ -77,14 +62,14 @@ class WalledBlock {
     for (std::uint32_t w = last; w != 0; w = walls_[w - 1].before) {
       walls_[w - 1].share *= 1 - part;
       walls_[w - 1].gradient *= 1 - part;
-      walls_[w - 1].volume_share *= 1 - part;
       walls_[w - 1].slope *= 1 - part;
     }
   }
 
+  const DensityKernel kernel_;
   const float inward_, radius_;  ///< how far behind a surface the matter begins [m], and σ
   const std::size_t begin_;
-  const std::span<float> share_, volume_share_;
+  const std::span<float> share_;
   std::vector<Walls::Wall>& walls_;
   std::array<std::uint32_t, k_block> last_{};  ///< of each row, counted from 1; 0: none
 };
@@ -95,7 +80,6 @@ void clear(Walls& walls) {
   for (const std::vector<Walls::Wall>& block : walls.walls) {
     for (const Walls::Wall& wall : block) {
       walls.share[wall.row] = 0;
-      if (!walls.volume_share.empty()) walls.volume_share[wall.row] = 0;
       walls.acceleration.set(wall.row, Vec3(0, 0, 0));
     }
   }
@@ -108,14 +92,14 @@ void Walls::release() {
 }
 
 std::size_t Walls::bytes() const {
-  std::size_t sum = share.bytes() + volume_share.bytes() + acceleration.bytes();
+  std::size_t sum = share.bytes() + acceleration.bytes();
   for (const auto& block : near) sum += block.capacity() * sizeof(NearWall);
   for (const auto& block : walls) sum += block.capacity() * sizeof(Wall);
   return sum;
 }
 
 void find_walls(const VectorColumn& position, const VectorColumn& velocity,
-                std::span<const PlacedCollider> colliders, float support_radius, bool keeps_volume,
+                std::span<const PlacedCollider> colliders, DensityKernel kernel, float support_radius,
                 const Execution& execution, Walls& walls) {
   clear(walls);
   walls.blocks.clear();
@@ -130,25 +114,25 @@ void find_walls(const VectorColumn& position, const VectorColumn& velocity,
   walls.any = std::ranges::any_of(walls.near, [](const auto& block) { return !block.empty(); });
   if (!walls.any) return;
   walls.share.resize(position.size());
-  walls.volume_share.resize(keeps_volume ? position.size() : 0);
   walls.acceleration.resize(position.size());
   walls.walls.resize(walls.near.size());
   parallel_for(execution.threads, walls.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     const WalledBody& body = walls.bodies[block.range];
     walls.walls[number].clear();
     if (walls.near[number].empty()) return;
-    WalledBlock walled(body, body.begin + block.begin, support_radius, walls, walls.walls[number]);
+    WalledBlock walled(body, body.begin + block.begin, kernel, support_radius, walls.share.span(),
+                       walls.walls[number]);
     for (const NearWall& wall : walls.near[number]) walled.add(wall);
   });
 }
 
-Vec3 pushed_along(const Vec3& normal, const Unseen& unseen, float alpha, const Vec3& by_neighbors,
+Vec3 pushed_along(const Walls::Wall& wall, float alpha, float share, const Vec3& by_neighbors,
                   const Vec3& weight) {
-  const auto tangential = [&](const Vec3& v) { return Vec3(v - v.dot(normal) * normal); };
-  const Vec3 push = unseen.wall / std::max(1 - unseen.all, k_least_seen) * tangential(by_neighbors);
+  const auto tangential = [&](const Vec3& v) { return Vec3(v - v.dot(wall.normal) * wall.normal); };
+  const Vec3 push = wall.share / std::max(1 - share, k_least_seen) * tangential(by_neighbors);
   if (alpha >= 1) return push;
   // A share may be below 0 by rounding.
-  const float most = std::max(unseen.wall, 0.0f) * tangential(weight).norm(), size = push.norm();
+  const float most = std::max(wall.share, 0.0f) * tangential(weight).norm(), size = push.norm();
   return size > most ? Vec3(most / size * push) : push;
 }
 
@@ -183,8 +167,8 @@ void press_walls(const WallInput& in, std::span<const PlacedCollider> colliders,
       const Vec3& a = in.sph_acceleration.get(row);
       const Vec3 acts = in.alpha ? Vec3(a) : Vec3(body.alpha * a);
       const float alpha = in.alpha ? in.alpha[row] : body.alpha;
-      const Vec3 push = alpha * across * wall.normal +
-                        pushed_along(wall.normal, {wall.share, walls.share[row]}, alpha, acts, in.gravity);
+      const Vec3 push =
+          alpha * across * wall.normal + pushed_along(wall, alpha, walls.share[row], acts, in.gravity);
       walls.acceleration.set(row, walls.acceleration.get(row) + push);
       wall.across = alpha * across;
       if ((in.all_loads || colliders[wall.collider].measures_load) && !(in.pin && in.pin[row] != 0))

@@ -8,6 +8,7 @@
 #include "core/column.h"
 #include "core/execution.h"
 #include "core/range_blocks.h"
+#include "sph/kernel_functions.h"
 #include "sph/sph_lanes.h"
 
 namespace mallow {
@@ -28,7 +29,6 @@ struct WalledBody {
 /// S      | share      | 1    | ∫ W over the half space                           | Koschier & Bender 2017
 /// B      | gradient   | 1/m  | |∫ ∇W| of it, along its normal n                  |
 /// a^wall | acceleration | m/s² | α (p_i/ρ_i B n + S/(1 − S) (a^SPH − (a^SPH·n) n)) |
-/// S^v    | volume_share | 1    | S of the volume constraint's kernel, see sph/volume_lanes.h |
 ///
 /// Across, what is behind a wall has the particle's own pressure (Akinci et al. 2012). Along, it has the
 /// gradient that the particle's neighbours show, 1 − S of all there would be: without, the fluid beside a
@@ -37,20 +37,18 @@ struct Walls {
   bool any = false;  ///< some are near some particle
   /// By row of the particle store, 0 where no wall is near; read only where there is any.
   Column<float> share;              ///< S of all that are near
-  Column<float> volume_share;       ///< S^v, likewise; empty where no volume is kept
   VectorColumn acceleration;        ///< a^wall, part of a_ext [m/s²]
   std::vector<ColliderLoad> loads;  ///< what they get of it a second [N, N m]; empty where nobody asks
 
   // Scratch, by block of `bodies`.
   struct Wall {
     std::uint32_t row, collider;
-    std::uint32_t before;    ///< the one before it of this row, counted from 1; 0: none
-    float share, gradient;   ///< S and B, what other walls cover left out
-    float volume_share = 0;  ///< S^v of it
-    float slope = 0;         ///< −dS^v/dd of it [1/m]
-    float distance;          ///< of the particle from it [m]
-    Vec3 normal;             ///< n
-    float across = 0;        ///< with what it has pushed the particle across in this step [m/s²]
+    std::uint32_t before;   ///< the one before it of this row, counted from 1; 0: none
+    float share, gradient;  ///< S and B, what other walls cover left out
+    float slope;            ///< −dS/dd of it [1/m]; 0 with poly6
+    float distance;         ///< of the particle from it [m]
+    Vec3 normal;            ///< n
+    float across = 0;       ///< with what it has pushed the particle across in this step [m/s²]
   };
   std::vector<WalledBody> bodies;
   RangeBlocks blocks;
@@ -63,10 +61,9 @@ struct Walls {
   std::size_t bytes() const;
 };
 
-/// positions, colliders -> walls of `bodies`, S of every row, and S^v where volume is kept. The velocities
-/// are not used.
+/// positions, colliders -> walls of `bodies`, S of every row. The velocities are not used.
 void find_walls(const VectorColumn& position, const VectorColumn& velocity,
-                std::span<const PlacedCollider> colliders, float support_radius, bool keeps_volume,
+                std::span<const PlacedCollider> colliders, DensityKernel kernel, float support_radius,
                 const Execution& execution, Walls& walls);
 
 /// What the pressure of walls follows from, by row of the store.
@@ -79,17 +76,12 @@ struct WallInput {
   const std::uint16_t* pin;              ///< rows whose pin is not 0 give no load; null: all do
   bool all_loads;                        ///< of colliders that do not measure theirs too
 };
-/// What a particle does not see of its kernel, be it S or S^v.
-struct Unseen {
-  float wall;  ///< behind one wall
-  float all;   ///< behind all
-};
-/// Beside a push across of a wall with normal n, what its matter would add along it to what a particle gets
-/// from its neighbours, of which it sees too little.
+/// Beside a push across of a wall, what its matter would add along it to what a particle gets from its
+/// neighbours, of which it sees `share`, the S of all walls, too little.
 /// Where its alpha is below 1 it gets at most what gravity would take along the wall, `weight` in units of
 /// the same [m/s², or m/s of a step], as at rest it needs no more: a solid's stresses along a floor have a
 /// sum that is not 0, and drove it.
-Vec3 pushed_along(const Vec3& normal, const Unseen& unseen, float alpha, const Vec3& by_neighbors,
+Vec3 pushed_along(const Walls::Wall& wall, float alpha, float share, const Vec3& by_neighbors,
                   const Vec3& weight);
 /// Velocity of the point of a collider that is at x, with what it carries along [m/s].
 Vec3 velocity_at(const ContactSurface& surface, const Vec3& x);

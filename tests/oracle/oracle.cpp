@@ -24,6 +24,12 @@ double poly6(double r, double sigma) {
   return 315 / (64 * k_pi * std::pow(sigma, 9)) * std::pow(sigma * sigma - r * r, 3);
 }
 
+double wendland(double r, double sigma) {
+  if (r > sigma) return 0;
+  const double q = r / sigma;
+  return 21 / (2 * k_pi * std::pow(sigma, 3)) * std::pow(1 - q, 4) * (1 + 4 * q);
+}
+
 namespace {
 
 Vec poly6_gradient(const Vec& d, double sigma) {
@@ -70,6 +76,7 @@ void set_mass_and_rest_density(Group& group, double sigma) {
                : material.rest_density ? *material.rest_density / sum
                                        : 1.0;
   group.rest_density = material.rest_density ? *material.rest_density : group.mass * sum;
+  group.wendland_volume = group.mass / group.rest_density * sum / lattice_sum(group.spacing, sigma, wendland);
 }
 
 }  // namespace
@@ -85,12 +92,12 @@ double alpha_at(const AlphaSchedule& schedule, double time) {
   return keys.back().value;
 }
 
-double lattice_sum(double spacing, double support_radius) {
+double lattice_sum(double spacing, double support_radius, double (*kernel)(double, double)) {
   const int n = static_cast<int>(support_radius / spacing) + 1;
   double sum = 0;
   for (int x = -n; x <= n; ++x)
     for (int y = -n; y <= n; ++y)
-      for (int z = -n; z <= n; ++z) sum += poly6(spacing * Vec(x, y, z).norm(), support_radius);
+      for (int z = -n; z <= n; ++z) sum += kernel(spacing * Vec(x, y, z).norm(), support_radius);
   return sum;
 }
 
@@ -373,7 +380,11 @@ std::vector<std::size_t> Oracle::update_references() {
   return updated;
 }
 
-/// S of poly6 and B of the spiky kernel, of a half space at distance d.
+/// S of poly6 and of Wendland's kernel, and B of the spiky one, of a half space at distance d.
+double wendland_half_space_share(double d, double sigma) {
+  const double t = 1 - d / sigma;
+  return 3.5 * std::pow(t, 6) - 4.5 * std::pow(t, 7) + 1.5 * std::pow(t, 8);
+}
 double half_space_share(double d, double sigma) {
   const double q = d / sigma;
   return 0.5 - 315.0 / 256 *
@@ -385,16 +396,10 @@ double half_space_gradient(double d, double sigma) {
   return (7.5 * std::pow(t, 4) - 6 * std::pow(t, 5)) / sigma;
 }
 
-/// S of the volume constraint's kernel.
-double wendland_half_space_share(double d, double sigma) {
-  const double t = 1 - d / sigma;
-  return 3.5 * std::pow(t, 6) - 4.5 * std::pow(t, 7) + 1.5 * std::pow(t, 8);
-}
-
 // Colliders as filled with the matter that meets them: engine/sph/walls.h.
 void Oracle::find_walls(Particle& p) const {
   p.walls.clear();
-  p.wall_share = p.wall_volume_share = 0;
+  p.wall_share = 0;
   const Group& group = groups_[p.group];
   if (!config_.wall_pressure || config_.formulation == Formulation::printed || group.most_alpha == 0) return;
   const double sigma = *config_.support_radius;
@@ -404,7 +409,8 @@ void Oracle::find_walls(Particle& p) const {
       const auto [phi, n] = distance(part, p.x - obstacle.moved);
       const double d = std::max(0.0, phi - offset + group.spacing / 2);
       if (d >= sigma) continue;
-      const double share = half_space_share(d, sigma), of_volume = wendland_half_space_share(d, sigma);
+      const double share =
+          volume_iterations() > 0 ? wendland_half_space_share(d, sigma) : half_space_share(d, sigma);
       Vec pushed = Vec::Zero();
       for (const Particle::Wall& wall : p.walls) pushed += wall.gradient * wall.normal;
       const double along = pushed.norm() > 0 ? pushed.normalized().dot(n) : 0, alike = std::max(along, 0.0);
@@ -419,19 +425,17 @@ void Oracle::find_walls(Particle& p) const {
       p.walls.push_back({left * share, left * half_space_gradient(d, sigma), n, d, left,
                          obstacle.collider.velocity.cast<double>(), obstacle.collider.friction});
       p.wall_share += share - across * share * p.wall_share - alike * std::min(share, p.wall_share);
-      p.wall_volume_share += of_volume - across * of_volume * p.wall_volume_share -
-                             alike * std::min(of_volume, p.wall_volume_share);
     }
   }
 }
 
 /// What a wall adds along it to what neighbours do, of which a particle sees S of all walls too little: at
 /// most what gravity would take along it.
-Vec pushed_along(const Vec& normal, double share, double all, double alpha, const Vec& by_neighbors,
+Vec pushed_along(const Particle::Wall& wall, double alpha, double all, const Vec& by_neighbors,
                  const Vec& weight) {
-  const auto tangential = [&](const Vec& v) { return Vec(v - v.dot(normal) * normal); };
-  const Vec push = share / std::max(0.5, 1 - all) * tangential(by_neighbors);
-  const double most = share * tangential(weight).norm();
+  const auto tangential = [&](const Vec& v) { return Vec(v - v.dot(wall.normal) * wall.normal); };
+  const Vec push = wall.share / std::max(0.5, 1 - all) * tangential(by_neighbors);
+  const double most = wall.share * tangential(weight).norm();
   return alpha < 1 && push.norm() > most ? Vec(most * push.normalized()) : push;
 }
 
@@ -441,8 +445,7 @@ Vec Oracle::wall_acceleration(const Particle& p) const {
   Vec sum = Vec::Zero();
   for (const Particle::Wall& wall : p.walls)
     sum += alpha_of(p) * pressure / p.density * wall.gradient * wall.normal +
-           pushed_along(wall.normal, wall.share, p.wall_share, alpha_of(p), p.blended,
-                        config_.gravity.cast<double>());
+           pushed_along(wall, alpha_of(p), p.wall_share, p.blended, config_.gravity.cast<double>());
   return sum;
 }
 
@@ -454,7 +457,9 @@ void Oracle::sum_densities() {
     double sum = i.wall_share;
     for (const Particle& j : particles_) {
       const Group& other = groups_[j.group];
-      sum += other.mass / other.rest_density * poly6((i.x - j.x).norm(), *config_.support_radius);
+      const double r = (i.x - j.x).norm(), sigma = *config_.support_radius;
+      sum += volume_iterations() > 0 ? other.wendland_volume * wendland(r, sigma)
+                                     : other.mass / other.rest_density * poly6(r, sigma);
     }
     i.density = group.rest_density * sum;
     i.pressure = group.pressure_coefficient * (i.density - group.rest_density);

@@ -9,6 +9,7 @@
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 #include "mallow/vec3.h"
+#include "oracle/kernels.h"
 
 /// The model read literally: double precision, every pair looked at, one struct per particle, an SVD for
 /// every rotation. Nothing is shared with the engine but the structs that configure it, so that a mistake in
@@ -45,8 +46,7 @@ struct Particle {
     double push = 0;  ///< what it has given across in this step [m/s]
   };
   std::vector<Wall> walls = {};
-  double wall_share = 0;         ///< of the kernel's volume, of all walls
-  double wall_volume_share = 0;  ///< the same, of the volume constraint's kernel
+  double wall_share = 0;  ///< of the kernel's volume, of all walls
   double density = 0;
   double pressure = 0;
   Vec sph{0, 0, 0};                     ///< a^SPH of the same group [m/s²]
@@ -65,6 +65,7 @@ struct Group {
   double spacing = 0;
   double mass = 0;
   double rest_density = 0;
+  double wendland_volume = 0;                  ///< m/ρ0, such that its lattice is as dense by that kernel
   double update_threshold = 0;                 ///< γ_u
   double viscosity = 0;                        ///< μ
   double alpha = 0;                            ///< of the last step
@@ -88,8 +89,7 @@ struct Step {
 /// Acceleration of a particle by the user, from time, id, position and velocity.
 using Force = std::function<Vec(double, std::size_t, const Vec&, const Vec&)>;
 
-/// share, all: S of the wall, and of all walls.
-Vec pushed_along(const Vec& normal, double share, double all, double alpha, const Vec& by_neighbors,
+Vec pushed_along(const Particle::Wall& wall, double alpha, double all, const Vec& by_neighbors,
                  const Vec& weight);
 
 class Oracle {
@@ -177,7 +177,7 @@ class Oracle {
 /// α at a time: linear between keys, constant outside.
 double alpha_at(const AlphaSchedule& schedule, double time);
 /// Σ W over an infinite cubic lattice, the point itself included.
-double lattice_sum(double spacing, double support_radius);
+double lattice_sum(double spacing, double support_radius, double (*kernel)(double, double) = poly6);
 /// The rotation of the polar decomposition of `a`. `last` decides where `a` says nothing, that is about
 /// directions in which it is smaller than 1e-12 `scale`.
 Matrix polar_rotation(const Matrix& a, const Matrix& last, double scale);

@@ -2,7 +2,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "oracle/kernels.h"
@@ -11,25 +10,19 @@
 namespace mallow::oracle {
 namespace {
 
-/// Wendland's C2 kernel, its integral 1.
-double wendland(double r, double sigma) {
-  if (r > sigma) return 0;
-  const double q = r / sigma;
-  return 21 / (2 * std::numbers::pi * std::pow(sigma, 3)) * std::pow(1 - q, 4) * (1 + 4 * q);
-}
 Vec wendland_gradient(const Vec& d, double sigma) {
   const double r = d.norm();
   if (r > sigma) return Vec::Zero();
   return -210 / (std::numbers::pi * std::pow(sigma, 5)) * std::pow(1 - r / sigma, 3) * d;
 }
 
-/// Over an infinite cubic lattice.
-double sum_lattice(double spacing, double sigma, const std::function<double(const Vec&)>& term) {
+/// Σ |∇W|² over an infinite cubic lattice.
+double lattice_squares(double spacing, double sigma) {
   const int n = static_cast<int>(sigma / spacing) + 1;
   double sum = 0;
   for (int x = -n; x <= n; ++x)
     for (int y = -n; y <= n; ++y)
-      for (int z = -n; z <= n; ++z) sum += term(spacing * Vec(x, y, z));
+      for (int z = -n; z <= n; ++z) sum += wendland_gradient(spacing * Vec(x, y, z), sigma).squaredNorm();
   return sum;
 }
 
@@ -48,17 +41,11 @@ int Oracle::volume_iterations() const {
   return config_.volume_iterations.value_or(flows ? 2 : 0);
 }
 
-// Reads x, v' and walls; writes v'.
+// Reads x, ρ, v' and walls; writes v'.
 void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
   const double sigma = *config_.support_radius;
   const std::size_t n = particles_.size();
-  // m/ρ0, such that a lattice of the group is as dense as poly6 says.
-  std::vector<double> volumes;
-  for (const Group& group : groups_)
-    volumes.push_back(
-        group.mass / group.rest_density * lattice_sum(group.spacing, sigma) /
-        sum_lattice(group.spacing, sigma, [&](const Vec& x) { return wendland(x.norm(), sigma); }));
-  const auto volume = [&](const Particle& p) { return volumes[p.group]; };
+  const auto volume = [&](const Particle& p) { return groups_[p.group].wendland_volume; };
   const auto mass = [&](const Particle& p) { return groups_[p.group].mass; };
   const auto wall_gradient = [&](const Particle::Wall& wall) {
     return Vec(-wall.left * half_space_slope(wall.distance, sigma) * wall.normal);
@@ -74,12 +61,11 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
     for (std::size_t k = 0; k < n; ++k) {
       const Particle& i = particles_[k];
       const Group& group = groups_[i.group];
-      double density = i.wall_volume_share, rate = 0, others = 0;
+      double rate = 0, others = 0;
       Vec gradient = Vec::Zero();
       for (std::size_t l = 0; l < n; ++l) {
         const Particle& j = particles_[l];
         const Vec g = volume(j) * wendland_gradient(i.x - j.x, sigma);
-        density += volume(j) * wendland((i.x - j.x).norm(), sigma);
         rate += (w[k] - w[l]).dot(g);
         gradient += g;
         if (!j.pinned) others += g.squaredNorm() / mass(j);
@@ -88,12 +74,10 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
         gradient += wall_gradient(wall);
         rate += (w[k] - wall.velocity).dot(wall_gradient(wall));
       }
-      const double squares = sum_lattice(
-          group.spacing, sigma, [&](const Vec& x) { return wendland_gradient(x, sigma).squaredNorm(); });
-      const double floor = squares * volume(i) * volume(i) / mass(i) / 2;
-      others /= std::max(0.5, 1 - i.wall_volume_share);
+      const double floor = lattice_squares(group.spacing, sigma) * volume(i) * volume(i) / mass(i) / 2;
+      others /= std::max(0.5, 1 - i.wall_share);
       const double response = std::max(floor, gradient.squaredNorm() / mass(i) + others);
-      const double s = std::max(0.0, density - 1 + dt * rate);
+      const double s = std::max(0.0, i.density / group.rest_density - 1 + dt * rate);
       const double wide = std::min(1.0, 2.5 * group.spacing / sigma);
       const double share =
           wide * wide * wide *
@@ -113,9 +97,7 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       for (Particle::Wall& wall : i.walls) {
         wall.push -= 2 * lambda[k] * wall_gradient(wall).dot(wall.normal) / mass(i);
         // What is behind a wall has the particle's own λ, and moves with its neighbours along it.
-        const double share = wall.left * wendland_half_space_share(wall.distance, sigma);
-        i.v += pushed_along(wall.normal, share, i.wall_volume_share, alpha_of(i), pushed,
-                            dt * config_.gravity.cast<double>()) -
+        i.v += pushed_along(wall, alpha_of(i), i.wall_share, pushed, dt * config_.gravity.cast<double>()) -
                2 * lambda[k] * wall_gradient(wall) / mass(i);
       }
     }

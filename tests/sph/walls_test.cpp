@@ -52,22 +52,22 @@ TEST(half_space, holds_the_integrals_of_the_kernels_beyond_its_plane) {
       const double slope = 45 / (pi * std::pow(sigma, 6)) * std::pow(sigma - r, 2);
       return pi * (r * r - d * d) * slope;  // its shadow
     });
-    EXPECT_NEAR(static_cast<double>(half_space_share(static_cast<float>(q))), share, 1e-6) << q;
-    EXPECT_NEAR(static_cast<double>(half_space_gradient(static_cast<float>(q))), sigma * gradient, 1e-6) << q;
+    const auto at = static_cast<float>(q);
+    EXPECT_NEAR(static_cast<double>(half_space_share(DensityKernel::poly6, at)), share, 1e-6) << q;
+    EXPECT_NEAR(static_cast<double>(half_space_gradient(at)), sigma * gradient, 1e-6) << q;
     const auto wendland = [&](double r) {
       return 21 / (2 * pi * std::pow(sigma, 3)) * std::pow(1 - r / sigma, 4) * (1 + 4 * r / sigma);
     };
-    const double of_volume = beyond(d, sigma, [&](double r) { return 2 * pi * r * (r - d) * wendland(r); });
+    const double of_other = beyond(d, sigma, [&](double r) { return 2 * pi * r * (r - d) * wendland(r); });
     const double slope = beyond(d, sigma, [&](double r) { return 2 * pi * r * wendland(r); });
-    EXPECT_NEAR(static_cast<double>(wendland_half_space_share(static_cast<float>(q))), of_volume, 1e-6) << q;
-    EXPECT_NEAR(static_cast<double>(wendland_half_space_slope(static_cast<float>(q))), sigma * slope, 1e-6)
-        << q;
+    EXPECT_NEAR(static_cast<double>(half_space_share(DensityKernel::wendland, at)), of_other, 1e-6) << q;
+    EXPECT_NEAR(static_cast<double>(wendland_half_space_slope(at)), sigma * slope, 1e-6) << q;
   }
 }
 
 /// One particle at the origin, h 1, and S and the sum of B n of the walls around it.
 struct Seen {
-  float share = 0, volume_share = 0;
+  float share = 0;
   Vec3 gradient{0, 0, 0};
 };
 Seen seen_from_origin(const std::vector<Collider>& colliders, float sigma = 2.0f) {
@@ -78,9 +78,9 @@ Seen seen_from_origin(const std::vector<Collider>& colliders, float sigma = 2.0f
   Walls walls;
   walls.bodies = {{.begin = 0, .end = 1, .reach = sigma, .alpha = 1, .mass = 1, .group = &group}};
   const Execution execution{1, best_instruction_level()};
-  find_walls(x, x, placed, sigma, true, execution, walls);
+  find_walls(x, x, placed, DensityKernel::poly6, sigma, execution, walls);
   if (!walls.any) return {};
-  Seen seen{walls.share[0], walls.volume_share[0]};
+  Seen seen{walls.share[0]};
   for (const Walls::Wall& wall : walls.walls[0]) seen.gradient += wall.gradient * wall.normal;
   return seen;
 }
@@ -106,8 +106,7 @@ TEST(walls, every_shape_is_the_half_space_behind_its_nearest_plane_however_it_is
             const Eigen::AngleAxisd turn(angle, Vec(1, 2, 0.5).normalized());
             collider.pose.rotation = Eigen::Quaterniond(turn).coeffs();
             const Seen seen = seen_from_origin({collider});
-            EXPECT_NEAR(seen.share, half_space_share(d / 2), 1e-5f) << k;
-            EXPECT_NEAR(seen.volume_share, wendland_half_space_share(d / 2), 1e-5f) << k;
+            EXPECT_NEAR(seen.share, half_space_share(DensityKernel::poly6, d / 2), 1e-5f) << k;
             const Vec up = turn * Vec::UnitZ();
             EXPECT_NEAR((seen.gradient.cast<double>() - half_space_gradient(d / 2) / 2.0 * up).norm(), 0,
                         1e-5)
@@ -119,8 +118,7 @@ TEST(walls, every_shape_is_the_half_space_behind_its_nearest_plane_however_it_is
 }
 
 TEST(walls, what_two_of_them_cover_counts_once) {
-  const float d = 0.6f, s = half_space_share(d / 2), b = half_space_gradient(d / 2) / 2;
-  const float v = wendland_half_space_share(d / 2);
+  const float d = 0.6f, s = half_space_share(DensityKernel::poly6, d / 2), b = half_space_gradient(d / 2) / 2;
   const Collider floor{.shape = Plane{{0, 0, 1}, -d}}, wall{.shape = Plane{{1, 0, 0}, -d}};
   // A floor of two tiles, one under the other, or side by side with the particle above the joint.
   for (const Seen& seen :
@@ -128,18 +126,15 @@ TEST(walls, what_two_of_them_cover_counts_once) {
         seen_from_origin(
             {{.shape = Box{{-9, -9, -9}, {0, 9, -d}}}, {.shape = Box{{0, -9, -9}, {9, 9, -d}}}})}) {
     EXPECT_NEAR(seen.share, s, 1e-6f);
-    EXPECT_NEAR(seen.volume_share, v, 1e-6f);
     EXPECT_NEAR((seen.gradient - Vec3(0, 0, b)).norm(), 0, 1e-6f);
   }
   // In an edge each wall stands on what the other leaves free.
   const Seen edge = seen_from_origin({floor, wall});
   EXPECT_NEAR(edge.share, 1 - (1 - s) * (1 - s), 1e-6f);
-  EXPECT_NEAR(edge.volume_share, 1 - (1 - v) * (1 - v), 1e-6f);
   EXPECT_NEAR((edge.gradient - (1 - s) * b * Vec3(1, 0, 1)).norm(), 0, 1e-6f);
   // Between two that look at each other both count, and their pushes cancel.
   const Seen gap = seen_from_origin({floor, {.shape = Plane{{0, 0, -1}, -d}}});
   EXPECT_NEAR(gap.share, 2 * s, 1e-6f);
-  EXPECT_NEAR(gap.volume_share, 2 * v, 1e-6f);
   EXPECT_NEAR(gap.gradient.norm(), 0, 1e-6f);
 }
 
