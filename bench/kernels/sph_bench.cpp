@@ -29,6 +29,7 @@ struct SphScene {
     const SphGroup group{.mass = 1,
                          .rest_density = static_cast<float>(density),
                          .rest_volume = static_cast<float>(1 / density),
+                         .kernel_volume = static_cast<float>(1 / density),
                          .pressure_coefficient = 16,
                          .contact_share = 1,
                          .viscosity = kind == Pairs::pressure ? 0.0f : 0.5f,

@@ -15,7 +15,8 @@ struct Kernels {
   explicit Kernels(double support_radius)
       : sigma(support_radius),
         poly6_factor(315 / (64 * std::numbers::pi * std::pow(sigma, 9))),
-        spiky_factor(45 / (std::numbers::pi * std::pow(sigma, 6))) {}
+        spiky_factor(45 / (std::numbers::pi * std::pow(sigma, 6))),
+        wendland_factor(21 / (2 * std::numbers::pi * std::pow(sigma, 3))) {}
 
   double poly6(double r2) const {
     const double s = sigma * sigma - r2;
@@ -32,10 +33,18 @@ struct Kernels {
   /// Coincident particles have no direction.
   double spiky_gradient(double r) const { return r > 0 ? -spiky_factor * (sigma - r) * (sigma - r) / r : 0; }
   double viscosity_laplacian(double r) const { return spiky_factor * (sigma - r); }
+  /// C2, of the volume constraint. [Wendland 1995]
+  double wendland(double r) const {
+    return wendland_factor * std::pow(1 - r / sigma, 4) * (1 + 4 * r / sigma);
+  }
+  double wendland_gradient(double r) const {
+    return -20 * wendland_factor / (sigma * sigma) * std::pow(1 - r / sigma, 3);
+  }
 
   double sigma;
   double poly6_factor;
   double spiky_factor;
+  double wendland_factor;
 };
 
 /// What j adds to the force density at i, but for the volume of j [N/m³].
@@ -72,17 +81,54 @@ void find_neighbors(const SolverConfig& config, std::vector<Particle>& particles
   }
 }
 
+namespace {
+
+/// Σ term(r) over the points of an infinite cubic lattice that are nearer than the support radius.
+template <class Term>
+double sum_lattice(double spacing, double support_radius, const Term& term) {
+  const int reach = static_cast<int>(support_radius / spacing) + 1;
+  double sum = 0;
+  for (int x = -reach; x <= reach; ++x)
+    for (int y = -reach; y <= reach; ++y)
+      for (int z = -reach; z <= reach; ++z) {
+        const double r = spacing * std::sqrt(x * x + y * y + z * z);
+        if (r < support_radius) sum += term(r);
+      }
+  return sum;
+}
+
+/// Of one group, for the volume constraint.
+struct VolumeGroup {
+  double volume;  ///< of a particle, such that its lattice is as dense as poly6 says [m³]
+  double least_response;
+};
+VolumeGroup volume_group(const Group& group, const Kernels& kernels) {
+  const double sum = sum_lattice(group.spacing, kernels.sigma, [&](double r) { return kernels.wendland(r); });
+  const double squares = sum_lattice(group.spacing, kernels.sigma, [&](double r) {
+    return r * r * std::pow(kernels.wendland_gradient(r), 2);
+  });
+  const double volume = group.mass / group.rest_density * lattice_sum(group.spacing, kernels.sigma) / sum;
+  return {volume, volume * volume * squares / group.mass / 2};
+}
+
+}  // namespace
+
 void sum_densities(const SolverConfig& config, const std::vector<Group>& groups,
                    std::vector<Particle>& particles) {
   const Kernels kernels(*config.support_radius);
+  std::vector<VolumeGroup> volumes;  // where volume is kept
+  if (config.volume_iterations > 0)
+    for (const Group& group : groups) volumes.push_back(volume_group(group, kernels));
   for (Particle& i : particles) {
     const Group& group = groups[i.group];
-    double sum = group.mass / group.rest_density * kernels.poly6(0);
-    for (const std::size_t id : i.neighbors) {
-      const Particle& j = particles[id];
+    const auto counts = [&](const Particle& j) {
+      const double r2 = (i.position - j.position).squaredNorm();
       const Group& other = groups[j.group];
-      sum += other.mass / other.rest_density * kernels.poly6((i.position - j.position).squaredNorm());
-    }
+      return volumes.empty() ? other.mass / other.rest_density * kernels.poly6(r2)
+                             : volumes[j.group].volume * kernels.wendland(std::sqrt(r2));
+    };
+    double sum = counts(i);
+    for (const std::size_t id : i.neighbors) sum += counts(particles[id]);
     i.density = group.rest_density * sum;
     i.pressure = group.pressure_coefficient * (i.density - group.rest_density);
     if (i.pressure < 0) i.pressure *= group.cohesion;
@@ -122,37 +168,18 @@ void sum_accelerations(const SolverConfig& config, const std::vector<Group>& gro
   }
 }
 
-namespace {
-
-/// Σ |∇W|² over an infinite cubic lattice [1/m⁸].
-double lattice_gradients(double spacing, double support_radius) {
-  const Kernels kernels(support_radius);
-  const int reach = static_cast<int>(support_radius / spacing) + 1;
-  double sum = 0;
-  for (int x = -reach; x <= reach; ++x)
-    for (int y = -reach; y <= reach; ++y)
-      for (int z = -reach; z <= reach; ++z) {
-        const double r2 = spacing * spacing * (x * x + y * y + z * z);
-        if (r2 < support_radius * support_radius) sum += r2 * std::pow(kernels.poly6_gradient(r2), 2);
-      }
-  return sum;
-}
-
-}  // namespace
-
 void correct_volume(const SolverConfig& config, const std::vector<Group>& groups, double time_step,
                     const std::vector<double>& share, const std::vector<Vec>& contacted,
                     std::vector<Particle>& particles) {
   const Kernels kernels(*config.support_radius);
   const auto gradient = [&](const Particle& i, const Particle& j) {
     const Vec d = i.position - j.position;
-    return Vec(kernels.poly6_gradient(d.squaredNorm()) * d);
+    return Vec(kernels.wendland_gradient(d.norm()) * d);
   };
-  const auto volume = [&](const Particle& p) { return groups[p.group].mass / groups[p.group].rest_density; };
-  std::vector<double> floors, multipliers;
-  for (const Group& group : groups)
-    floors.push_back(lattice_gradients(group.spacing, kernels.sigma) * group.mass /
-                     (group.rest_density * group.rest_density) / 2);
+  std::vector<VolumeGroup> of_groups;
+  for (const Group& group : groups) of_groups.push_back(volume_group(group, kernels));
+  const auto volume = [&](const Particle& p) { return of_groups[p.group].volume; };
+  std::vector<double> multipliers;
   for (std::size_t k = 0; k < particles.size(); ++k) {
     const Particle& i = particles[k];
     const Group& group = groups[i.group];
@@ -165,9 +192,10 @@ void correct_volume(const SolverConfig& config, const std::vector<Group>& groups
       sum += g;
       if (!j.pinned) others += g.squaredNorm() / groups[j.group].mass;
     }
-    const double response = std::max(floors[i.group], sum.squaredNorm() / group.mass + others);
+    const double response =
+        std::max(of_groups[i.group].least_response, sum.squaredNorm() / group.mass + others);
     const double s = std::max(0.0, i.density / group.rest_density - 1 + time_step * rate);
-    multipliers.push_back(i.pinned ? 0 : share[i.group] * s / (2 * time_step * response));
+    multipliers.push_back(i.pinned ? 0 : 0.6 * share[i.group] * s / (time_step * response));
   }
   for (std::size_t k = 0; k < particles.size(); ++k) {
     Particle& i = particles[k];
@@ -182,17 +210,7 @@ void correct_volume(const SolverConfig& config, const std::vector<Group>& groups
 
 double lattice_sum(double spacing, double support_radius) {
   const Kernels kernels(support_radius);
-  const int reach = static_cast<int>(support_radius / spacing) + 1;
-  double sum = 0;
-  for (int x = -reach; x <= reach; ++x) {
-    for (int y = -reach; y <= reach; ++y) {
-      for (int z = -reach; z <= reach; ++z) {
-        const double r2 = spacing * spacing * (x * x + y * y + z * z);
-        if (r2 < support_radius * support_radius) sum += kernels.poly6(r2);
-      }
-    }
-  }
-  return sum;
+  return sum_lattice(spacing, support_radius, [&](double r) { return kernels.poly6(r * r); });
 }
 
 }  // namespace mallow::textbook

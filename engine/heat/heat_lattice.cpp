@@ -11,16 +11,17 @@ namespace {
 struct Layers {
   std::vector<double> conducts;  ///< Σ w
   std::vector<double> along;     ///< Σ w x²
-  std::vector<double> density;   ///< Σ of the poly6 kernel, up to a factor
+  std::vector<double> density;   ///< Σ of the kernel of densities, up to a factor
 
-  explicit Layers(double sigma) {
+  Layers(DensityKernel of_densities, double sigma) {
     const int reach = static_cast<int>(std::ceil(sigma));
     for (int s = 0; s <= reach; ++s) {
       double w = 0, moment = 0, kernel = 0;
       for (int y = -reach; y <= reach; ++y)
         for (int x = -reach; x <= reach; ++x) {
-          const double t = std::max(0.0, 1 - (x * x + y * y + s * s) / (sigma * sigma));
-          kernel += t * t * t;
+          const double q2 = (x * x + y * y + s * s) / (sigma * sigma), q = std::min(std::sqrt(q2), 1.0);
+          const double t = std::max(0.0, 1 - q2);
+          kernel += of_densities == DensityKernel::poly6 ? t * t * t : std::pow(1 - q, 4) * (1 + 4 * q);
           if (x == 0 && y == 0 && s == 0) continue;
           w += t * t;
           moment += t * t * x * x;
@@ -41,9 +42,9 @@ struct Layers {
 
 }  // namespace
 
-HeatLattice heat_lattice(double support_radius, double spacing) {
+HeatLattice heat_lattice(DensityKernel of_densities, double support_radius, double spacing) {
   constexpr double k_dense = 64;  // spacings: beyond, a lattice is as good as a continuum
-  const Layers layers(std::min(support_radius / spacing, k_dense));
+  const Layers layers(of_densities, std::min(support_radius / spacing, k_dense));
   const std::size_t reach = layers.conducts.size();
   double moment = 0;
   for (std::size_t s = 1; s < reach; ++s) moment += static_cast<double>(s * s) * layers.conducts[s];

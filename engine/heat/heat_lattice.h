@@ -1,5 +1,7 @@
 #pragma once
 
+#include "sph/kernel_functions.h"
+
 namespace mallow {
 
 /// What sums over pairs make of a cubic lattice, by which they are corrected: then heat flows through it as
@@ -17,7 +19,7 @@ struct HeatLattice {
   /// Between a flat face and the layers below it heat goes through as much more matter, or less [h].
   float resistance = 0;
 };
-HeatLattice heat_lattice(double support_radius, double spacing);
+HeatLattice heat_lattice(DensityKernel of_densities, double support_radius, double spacing);
 
 /// How much more pairs of a particle count. density: over that at rest.
 inline float openness(const HeatLattice& lattice, float density) {

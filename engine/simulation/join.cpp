@@ -23,7 +23,7 @@ void list_bodies(const Simulation::State& s, Pressed& pressed) {
   for (std::uint32_t b = 0; b < s.bodies.size(); ++b)
     if (may_join(s.bodies[b])) pressed.bodies.push_back(b);
   std::ranges::sort(pressed.bodies, [&](std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t group = s.bodies[a].sph_group, other = s.bodies[b].sph_group;
+    const std::uint32_t group = s.bodies[a].merge_group, other = s.bodies[b].merge_group;
     return group != other ? group < other : a < b;
   });
 }
@@ -52,25 +52,27 @@ bool is_near_another(const Pressed& pressed, const Pressed::Part& part, float re
   });
 }
 
-/// Joins the sets of those bodies of a group whose particles are nearer than a spacing where both have
-/// flowed.
+/// In spacings: contact holds two sides a spacing apart, but for what its iterations leave.
+constexpr float k_pressed = 1.1f;
+
+/// Joins the sets of those bodies of a group whose particles are nearer than that where both have flowed.
 void find_pressed(Simulation::State& s, std::span<const std::uint32_t> bodies) {
   Pressed& pressed = s.pressed;
   FlowScratch& flow = s.region_scratch.flow;
   list_parts(s, bodies, flow.which, pressed);
-  const float spacing = s.bodies[bodies.front()].spacing;
+  const float reach = k_pressed * s.bodies[bodies.front()].spacing;
   pressed.owner.clear();
   flow.here.resize_unset(pressed.rows.size());
   for (const Pressed::Part& part : pressed.parts) {
-    if (!is_near_another(pressed, part, spacing)) continue;
+    if (!is_near_another(pressed, part, reach)) continue;
     for (std::size_t k = part.begin; k < part.end; ++k) {
       flow.here.set(pressed.owner.size(), s.store.position.get(pressed.rows[k]));
       pressed.owner.push_back(part.body);
     }
   }
   if (pressed.owner.empty()) return;
-  build_cell_grid(flow.here, 0, pressed.owner.size(), spacing, s.execution, flow.grid);
-  build_neighbor_lists(flow.grid, spacing, s.execution, flow.lists);
+  build_cell_grid(flow.here, 0, pressed.owner.size(), reach, s.execution, flow.grid);
+  build_neighbor_lists(flow.grid, reach, s.execution, flow.lists);
   for (std::size_t k = 0; k < pressed.owner.size(); ++k)
     for (const std::uint32_t other : flow.lists.of(k))
       pressed.sets.join(pressed.owner[flow.grid.order[k]], pressed.owner[flow.grid.order[other]]);
@@ -187,8 +189,8 @@ int join_bodies(Simulation::State& s) {
   pressed.sets.reset(s.bodies.size());
   const std::span<const std::uint32_t> bodies = pressed.bodies;
   for (std::size_t begin = 0, end = 0; begin < bodies.size(); begin = end) {
-    const std::uint32_t group = s.bodies[bodies[begin]].sph_group;
-    while (end < bodies.size() && s.bodies[bodies[end]].sph_group == group) ++end;
+    const std::uint32_t group = s.bodies[bodies[begin]].merge_group;
+    while (end < bodies.size() && s.bodies[bodies[end]].merge_group == group) ++end;
     if (end - begin > 1) find_pressed(s, bodies.subspan(begin, end - begin));
   }
   if (pressed.sets.count() == s.bodies.size()) return 0;

@@ -17,10 +17,28 @@ namespace {
 /// The particles of one body share their spacing to this relative difference.
 constexpr float k_same_spacing = 1e-3f;
 
-/// Whether two bodies act on each other as parts of one.
+/// Whether two bodies may be parts of one.
 bool merge(const BodyState& a, const BodyState& b) {
   return a.merges && b.merges && a.material == b.material &&
          std::abs(a.spacing - b.spacing) <= k_same_spacing * a.spacing;
+}
+
+/// One of these that the body may be part of; null: there is none, and the body is one of them now.
+const BodyState* first_like(const BodyState& body, std::vector<const BodyState*>& firsts) {
+  const auto found = std::ranges::find_if(firsts, [&](const BodyState* one) { return merge(*one, body); });
+  if (found != firsts.end()) return *found;
+  if (body.merges) firsts.push_back(&body);
+  return nullptr;
+}
+
+/// Of a particle in densities: its lattice has the same by either kernel.
+float kernel_volume(const Sph& sph, const BodyState& body) {
+  const float volume = body.mass / body.rest_density;
+  if (sph.kernel == DensityKernel::poly6) return volume;
+  const double radius = static_cast<double>(sph.support_radius), h = static_cast<double>(body.spacing);
+  const double factor = static_cast<double>(sph.factors.density);
+  return static_cast<float>(static_cast<double>(volume) * lattice_density(radius, h) /
+                            (factor * wendland_lattice_sum(radius, h)));
 }
 
 }  // namespace
@@ -69,21 +87,25 @@ void describe_bodies(Simulation::State& state) {
   sph.bodies.clear();
   sph.viscous = false;
   sph.apart = state.config.contact == BodyContact::constraint;
+  sph.kernel = state.volume_iterations() > 0 ? DensityKernel::wendland : DensityKernel::poly6;
   double volume = 0;
-  std::vector<const BodyState*> merging;  // the first of each group that merges
+  std::vector<const BodyState*> merging, flowing;  // the first of each group
+  std::uint32_t merge_groups = 0;
   for (BodyState& body : state.bodies) {
     volume += static_cast<double>(body.size()) * std::pow(static_cast<double>(body.spacing), 3);
     sph.viscous = sph.viscous || body.viscosity > 0;
-    const auto known = std::ranges::find_if(merging, [&](const BodyState* one) { return merge(*one, body); });
-    if (known != merging.end()) {
-      body.sph_group = (*known)->sph_group;
+    const BodyState* merges_with = first_like(body, merging);
+    body.merge_group = merges_with ? merges_with->merge_group : merge_groups++;
+    const BodyState* flows_with = body.touches_what_it_merges_with() ? nullptr : first_like(body, flowing);
+    if (flows_with) {
+      body.sph_group = flows_with->sph_group;
     } else {
       body.sph_group = static_cast<std::uint32_t>(sph.groups.size());
-      if (body.merges) merging.push_back(&body);
       sph.groups.push_back(
           {.mass = body.mass,
            .rest_density = body.rest_density,
            .rest_volume = body.mass / body.rest_density,
+           .kernel_volume = kernel_volume(sph, body),
            .pressure_coefficient = 0,  // this and the two of pressure follow alpha: resolve_pressures()
            .contact_share = 1,
            .viscosity = body.viscosity,

@@ -62,7 +62,8 @@ struct BodyState {
   float rest_density = 0;          ///< ρ0 [kg/m³]
   float viscosity = 0;             ///< μ in force [Pa s]
   float elastic_time_step = 0;     ///< Δt_SM in force [s]
-  std::uint32_t sph_group = 0;     ///< that of bodies which merge with this one, and its own
+  std::uint32_t merge_group = 0;   ///< that of bodies which may become one with this one, and its own
+  std::uint32_t sph_group = 0;     ///< that of bodies which act on this one as its own parts do, and its own
   double judged_external = 0;      ///< |a_ext| that the next check judges [m/s²]
   /// Mean |a_ext| of the last steps since the last check: those that a time_step reaches back to.
   struct External {
@@ -99,6 +100,11 @@ struct BodyState {
   bool melts() const {
     const Schedule& alpha = material->settings.alpha_by_temperature.value_or(material->settings.alpha);
     return alpha.highest() > k_all_but_fluid && alpha.lowest() < alpha.highest();
+  }
+  /// It can become one with others and never is a fluid: until then they touch as bodies do, with friction.
+  bool touches_what_it_merges_with() const {
+    const Schedule& alpha = material->settings.alpha_by_temperature.value_or(material->settings.alpha);
+    return material->settings.plastic_yield && !paints_alpha && alpha.highest() <= k_all_but_fluid;
   }
   /// The paper's rule updates its reference shape: where regions flow, only if it is asked for, or what has
   /// melted would set in the shape that it had, far from where it is.

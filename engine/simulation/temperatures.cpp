@@ -87,8 +87,8 @@ void prepare_heat(Simulation::State& s) {
   for (const BodyState& body : s.bodies) {
     if (!body.is_heated) continue;
     constexpr float k_touching = 1.25f;  // spacings
-    const HeatLattice lattice =
-        heat_lattice(static_cast<double>(s.support_radius()), static_cast<double>(body.spacing));
+    const HeatLattice lattice = heat_lattice(s.sph.kernel, static_cast<double>(s.support_radius()),
+                                             static_cast<double>(body.spacing));
     heat.groups[body.sph_group] = {.conductivity = body.material->settings.conductivity,
                                    .factor = lattice.factor * body.spacing,
                                    .touch = k_touching * body.spacing};

@@ -126,6 +126,7 @@ void Simulation::set_alpha(MaterialId id, const AlphaSchedule& alpha) {
   checks.finish();
   material.settings.alpha = alpha;
   for_bodies_of(s, material, [&](BodyState& body) { follow_alpha(s, body); });
+  s.prepared = false;  // which bodies touch follows from it
 }
 
 void Simulation::set_velocity(BodyId id, const Vec3& velocity, const Vec3& angular_velocity) {

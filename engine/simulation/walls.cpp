@@ -30,8 +30,8 @@ void find_walls(Simulation::State& state) {
   // Where they stand is all that is read of them: the velocities of this step are not known yet.
   place_colliders(state.colliders, state.origin, state.base_step(), state.execution.level,
                   state.placed_colliders);
-  find_walls(state.store.position, state.store.velocity, state.placed_colliders, state.support_radius(),
-             state.execution, walls);
+  find_walls(state.store.position, state.store.velocity, state.placed_colliders, state.sph.kernel,
+             state.support_radius(), state.execution, walls);
 }
 
 void press_walls(Simulation::State& state) {

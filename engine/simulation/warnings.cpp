@@ -105,7 +105,8 @@ class Warnings {
     const auto merges_with = [&](const BodyState& other) {
       return &other != &body && other.merges && other.material == body.material;
     };
-    if (!body.merges || body.material->settings.alpha.lowest() > k_all_but_fluid ||
+    if (!body.merges || body.touches_what_it_merges_with() ||
+        body.material->settings.alpha.lowest() > k_all_but_fluid ||
         std::ranges::none_of(state_.bodies, merges_with))
       return;
     add(body, "slides along bodies that it merges with, as friction is between bodies that do not",

@@ -36,10 +36,23 @@ KernelFactors kernel_factors(double support_radius) {
   };
 }
 
-float half_space_share(float q) {
+namespace {
+
+float poly6_half_space_share(float q) {
   // W over a plane at z is 315/(256 σ) (1 − z²)⁴, z in σ; its integral from q to 1.
   const float q2 = q * q;
   return 0.5f - 315.0f / 256 * q * (1 - q2 * (4.0f / 3 - q2 * (6.0f / 5 - q2 * (4.0f / 7 - q2 / 9))));
+}
+
+float wendland_half_space_share(float q) {
+  const float t = 1 - q, t2 = t * t;
+  return t2 * t2 * t2 * (3.5f - t * (4.5f - 1.5f * t));
+}
+
+}  // namespace
+
+float half_space_share(DensityKernel kernel, float q) {
+  return kernel == DensityKernel::wendland ? wendland_half_space_share(q) : poly6_half_space_share(q);
 }
 
 float half_space_gradient(float q) {
@@ -47,9 +60,10 @@ float half_space_gradient(float q) {
   return t * t * t * t * (7.5f - 6 * t);
 }
 
-float half_space_slope(float q) {
-  const float t = 1 - q * q;
-  return 315.0f / 256 * t * t * t * t;
+float wendland_half_space_slope(float q) {
+  // W over a plane at z is 21/σ ∫ (1 − q)⁴ (1 + 4 q) q dq from z to 1.
+  const float t = 1 - q, t2 = t * t;
+  return t2 * t2 * t * (21 - t * (31.5f - 12 * t));
 }
 
 double lattice_density(double support_radius, double spacing) {
@@ -61,12 +75,21 @@ double lattice_density(double support_radius, double spacing) {
   return 315.0 / (64.0 * k_pi * s * s * s) * sum;
 }
 
-double lattice_gradient_squares(double support_radius, double spacing) {
+double wendland_lattice_sum(double support_radius, double spacing) {
+  if (support_radius > k_dense * spacing) return 2 * k_pi / 21 * std::pow(support_radius / spacing, 3);
+  return lattice_sum(support_radius, spacing, [](double q2) {
+    const double q = std::sqrt(q2);
+    return std::pow(1 - q, 4) * (1 + 4 * q);
+  });
+}
+
+double wendland_lattice_squares(double support_radius, double spacing) {
   const double square = support_radius * support_radius;
-  // The integral, 4 π ∫ (1 − q²)⁴ q⁴ dq.
+  // The integral, 4 π ∫ (1 − q)⁶ q⁴ dq.
   if (support_radius > k_dense * spacing)
-    return square * 512 * k_pi / 15015 * std::pow(support_radius / spacing, 3);
-  return square * lattice_sum(support_radius, spacing, [](double q2) { return q2 * std::pow(1 - q2, 4); });
+    return square * 2 * k_pi / 1155 * std::pow(support_radius / spacing, 3);
+  return square *
+         lattice_sum(support_radius, spacing, [](double q2) { return q2 * std::pow(1 - std::sqrt(q2), 6); });
 }
 
 }  // namespace mallow

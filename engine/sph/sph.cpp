@@ -13,6 +13,7 @@ SphInput input(const Sph& sph) {
       .group = sph.group.empty() ? nullptr : sph.group.data(),
       .groups = sph.groups.data(),
       .apart = sph.apart,
+      .kernel = sph.kernel,
       .wall_share = sph.walls.any ? sph.walls.share.data() : nullptr,
       .position = raw(sph.grid.sorted),
       .velocity = sph.viscous ? raw(sph.velocity) : ConstVectors{},

@@ -19,6 +19,7 @@ namespace mallow {
 /// What the SPH phases of a scene own; empty in a scene without SPH.
 struct Sph {
   KernelFactors factors{};
+  DensityKernel kernel = DensityKernel::poly6;
   float support_radius = 0;  ///< σ [m]
   Formulation formulation = Formulation::conservative;
   bool viscous = false;      ///< some group has μ > 0

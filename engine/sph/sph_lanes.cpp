@@ -26,7 +26,7 @@ Ints groups_of(const SphInput& in, std::size_t cluster) {
 
 /// Σ_j of the densities of a cluster. `near`: null, or where to write who of the list is near some particle
 /// of the cluster, which may be the list itself; their number is written to `count`.
-template <bool grouped, bool apart, bool listed>
+template <DensityKernel kernel, bool grouped, bool apart, bool listed>
 Floats sum_density(const SphInput& in, std::size_t cluster, std::uint32_t* near, std::uint32_t& count) {
   const std::uint32_t* const list = in.lists.indices + in.lists.begin[cluster];
   const std::uint32_t n = in.lists.count[cluster];
@@ -38,10 +38,13 @@ Floats sum_density(const SphInput& in, std::size_t cluster, std::uint32_t* near,
   if (apart) own = groups_of(in, cluster);
   for (std::uint32_t k = 0; k < n; ++k) {
     const std::uint32_t j = list[k];
-    Floats t = not_negative(1.0f - squared_length(difference(in.position, j, x)) * inverse_square);
+    constexpr bool smooth = kernel == DensityKernel::poly6;
+    const Floats q2 = squared_length(difference(in.position, j, x)) * inverse_square;
+    const Floats q = smooth ? Floats{} : square_root(q2);
+    Floats t = not_negative(1.0f - (smooth ? q2 : q));
     if (apart) t = where(is_equal(own, static_cast<int>(in.group[j])), t);
-    const Floats w = t * t * t;
-    sum += grouped ? in.groups[in.group[j]].rest_volume * w : w;
+    const Floats w = smooth ? t * t * t : (t * t) * (t * t) * (1.0f + 4.0f * q);
+    sum += grouped ? in.groups[in.group[j]].kernel_volume * w : w;
     if (!listed) continue;
     // Always written, kept only if near: no branch to predict.
     near[found] = j;
@@ -51,15 +54,22 @@ Floats sum_density(const SphInput& in, std::size_t cluster, std::uint32_t* near,
   return sum;
 }
 
+template <DensityKernel kernel>
+auto choose_sum(bool grouped, bool apart, bool listed) {
+  return listed ? (!grouped ? sum_density<kernel, false, false, true>
+                   : apart  ? sum_density<kernel, true, true, true>
+                            : sum_density<kernel, true, false, true>)
+                : (!grouped ? sum_density<kernel, false, false, false>
+                   : apart  ? sum_density<kernel, true, true, false>
+                            : sum_density<kernel, true, false, false>);
+}
+
 void density(const SphInput& in, std::size_t begin, std::size_t end, const NearLists& near, float* rho,
              float* pressure, float* volume, float* rho_by_row) noexcept {
   const bool grouped = in.group != nullptr, listed = near.indices != nullptr;
-  const auto sum = listed ? (!grouped   ? sum_density<false, false, true>
-                             : in.apart ? sum_density<true, true, true>
-                                        : sum_density<true, false, true>)
-                          : (!grouped   ? sum_density<false, false, false>
-                             : in.apart ? sum_density<true, true, false>
-                                        : sum_density<true, false, false>);
+  const auto sum = in.kernel == DensityKernel::wendland
+                       ? choose_sum<DensityKernel::wendland>(grouped, in.apart, listed)
+                       : choose_sum<DensityKernel::poly6>(grouped, in.apart, listed);
   for (std::size_t cluster = begin; cluster < end; ++cluster) {
     std::uint32_t unused = 0;
     const Floats sums = sum(in, cluster, listed ? near.indices + in.lists.begin[cluster] : nullptr,
@@ -67,7 +77,7 @@ void density(const SphInput& in, std::size_t begin, std::size_t end, const NearL
     const std::size_t first = in.lists.first[cluster];
     for (std::size_t i = first; i < in.lists.first[cluster + 1]; ++i) {
       const SphGroup& own = in.groups[grouped ? in.group[i] : 0];
-      const float density = grouped ? sums[i - first] : sums[i - first] * own.rest_volume;
+      const float density = grouped ? sums[i - first] : sums[i - first] * own.kernel_volume;
       rho[i] = own.rest_density * (in.density_factor * density);
       if (in.wall_share) rho[i] += own.rest_density * in.wall_share[in.lists.row_of[i]];
       const float p = own.pressure_coefficient * (rho[i] - own.rest_density);

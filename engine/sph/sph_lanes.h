@@ -3,6 +3,7 @@
 #include "core/isa.h"
 #include "core/raw_columns.h"
 #include "neighbors/cluster_lists.h"
+#include "sph/kernel_functions.h"
 
 namespace mallow {
 
@@ -11,6 +12,7 @@ struct SphGroup {
   float mass;                  ///< m [kg]
   float rest_density;          ///< ρ0 [kg/m³]
   float rest_volume;           ///< m/ρ0 [m³]
+  float kernel_volume;         ///< the same, times what makes its lattice as dense by Wendland's kernel [m³]
   float pressure_coefficient;  ///< k [m²/s²]
   float contact_share;         ///< share of the pressure that acts between groups
   float viscosity;             ///< μ [Pa s]
@@ -33,6 +35,7 @@ struct SphInput {
   const std::uint32_t* group;  ///< null: all in group 0
   const SphGroup* groups;
   bool apart;               ///< pairs of two groups add nothing: contact between bodies is not by pressure
+  DensityKernel kernel;     ///< of densities
   const float* wall_share;  ///< of the volume around a particle, by row; null: no wall is near any
   ConstVectors position;
   ConstVectors velocity;   ///< accelerations only; null without viscosity

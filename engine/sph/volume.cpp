@@ -99,14 +99,14 @@ std::size_t Volume::bytes() const {
 VolumeGroup volume_group(const SphGroup& group, float spacing, float support_radius) {
   const double radius = static_cast<double>(support_radius), square = radius * radius;
   // Powers of σ are taken out in double, as those of KernelFactors.
-  const double gradient = 945.0 / (32.0 * std::numbers::pi * square * square * radius);
-  const double slope = gradient * static_cast<double>(group.rest_volume);
-  const double lattice = lattice_gradient_squares(radius, static_cast<double>(spacing));
+  const double weight = 315 / (64 * std::numbers::pi * square * radius);
+  const double slope = 20 * weight / square * static_cast<double>(group.kernel_volume);
+  const double squares = wendland_lattice_squares(radius, static_cast<double>(spacing));
   return {.slope = static_cast<float>(slope),
           .inverse_mass = 1 / group.mass,
           .inverse_rest_density = 1 / group.rest_density,
           .relaxation = 0,
-          .least_response = static_cast<float>(k_least_response * slope * slope * lattice /
+          .least_response = static_cast<float>(k_least_response * slope * slope * squares /
                                                static_cast<double>(group.mass))};
 }
 

@@ -40,7 +40,7 @@ struct ClusterPairs {
     for (std::size_t l = 0; l < count; ++l) own[l] = static_cast<int>(in.group[first + l]);
   }
 
-  /// Calls body(j, x_j − x_i, (1 − q²)²).
+  /// Calls body(j, x_j − x_i, (1 − q)³).
   template <class Body>
   MALLOW_INLINE void for_each(const ClusterPairs& of, const Body& body) {
     const VolumeInput& in = of.in;
@@ -48,9 +48,9 @@ struct ClusterPairs {
     for (std::uint32_t k = 0; k < of.list_count; ++k) {
       const std::uint32_t j = of.list[k];
       const ClusterVec3 d = difference(in.position, j, of.x);
-      Floats t = not_negative(1.0f - dot_from_left(d, d) * inverse_square);
+      Floats t = not_negative(1.0f - square_root(dot_from_left(d, d) * inverse_square));
       if (Kind::grouped && in.apart) t = where(is_equal(of.own, static_cast<int>(in.group[j])), t);
-      body(j, d, t * t);
+      body(j, d, t * t * t);
     }
   }
   const VolumeGroup& group(std::size_t j) const { return in.groups[Kind::grouped ? in.group[j] : 0]; }
@@ -68,11 +68,11 @@ template <class Kind, bool responds>
 Sums sum_rates(const VolumeInput& in, const ClusterPairs<Kind>& pairs) {
   const ClusterVec3 w = load(in.velocity, pairs.first);
   Sums sums;
-  ClusterPairs<Kind>::for_each(pairs, [&](std::uint32_t j, const ClusterVec3& d, Floats t2) {
-    if (Kind::grouped) t2 = pairs.group(j).slope * t2;
-    sums.rate -= t2 * dot_from_left(difference(in.velocity, j, w), d);
+  ClusterPairs<Kind>::for_each(pairs, [&](std::uint32_t j, const ClusterVec3& d, Floats t3) {
+    if (Kind::grouped) t3 = pairs.group(j).slope * t3;
+    sums.rate -= t3 * dot_from_left(difference(in.velocity, j, w), d);
     if (!responds) return;
-    const ClusterVec3 gradient = t2 * d;
+    const ClusterVec3 gradient = t3 * d;
     sums.gradient += gradient;
     const Floats square = dot_from_left(gradient, gradient);
     if (Kind::grouped)
@@ -154,11 +154,11 @@ void push_cluster(const VolumeInput& in, std::size_t cluster, const float* multi
   Floats own_slope = {};
   for (std::size_t l = 0; l < pairs.count; ++l) own_slope[l] = pairs.group(pairs.first + l).slope;
   ClusterVec3 sum = {};
-  ClusterPairs<Kind>::for_each(pairs, [&](std::uint32_t j, const ClusterVec3& d, const Floats& t2) {
+  ClusterPairs<Kind>::for_each(pairs, [&](std::uint32_t j, const ClusterVec3& d, const Floats& t3) {
     if (Kind::grouped)
-      sum += (t2 * (own * pairs.group(j).slope + multiplier[j] * own_slope)) * d;
+      sum += (t3 * (own * pairs.group(j).slope + multiplier[j] * own_slope)) * d;
     else
-      sum += (t2 * (own + multiplier[j])) * d;
+      sum += (t3 * (own + multiplier[j])) * d;
   });
   for (std::size_t l = 0; l < pairs.count; ++l) {
     const std::size_t i = pairs.first + l, row = in.lists.row_of[i];

@@ -8,7 +8,7 @@ namespace mallow {
 
 /// What pairs read of one group, in units that keep single precision whatever those of the scene are.
 struct VolumeGroup {
-  float slope;                 ///< ψ |∇W/r| at r = 0, with ψ = m/ρ0 [1/m²]
+  float slope;                 ///< ψ |∇W/r| at r = 0, with ψ that of SphGroup::kernel_volume [1/m²]
   float inverse_mass;          ///< 1/m [1/kg]
   float inverse_rest_density;  ///< 1/ρ0 [m³/kg]
   float relaxation;            ///< share of what a particle alone would ask for, of the step
@@ -47,12 +47,13 @@ struct CompressionSum {
   float largest;  ///< max s_i
 };
 
-/// [begin, end): clusters. With ψ of particle j's own group and ∇W of poly6 [Bender & Koschier 2015; model 2,
-/// section 2]:
+/// [begin, end): clusters. With ψ of particle j's own group and ∇W of Wendland's kernel [Bender & Koschier
+/// 2015; model 2, section 2]:
 struct VolumeLanes {
   /// s_i = max(0, ρ_i/ρ0 − 1 + Δt (Σ_j ψ_j (w_i − w_j)·∇W_ij + dS/dt)), λ_i = relaxation s_i/(Δt D_i), 0
-  /// where it is pinned. Where `first`, writes also D_i = |Σ_j ψ_j ∇W_ij + ∇S|²/m_i + Σ_j ψ_j² |∇W_ij|²/((1 −
-  /// S) m_j) over j that are not pinned, with S at most ½; else reads it.
+  /// where it is pinned. Where `first`, writes also D_i = |Σ_j ψ_j ∇W_ij +
+  /// ∇S|²/m_i + Σ_j ψ_j² |∇W_ij|²/((1 − S) m_j) over j that are not pinned, with S at most ½; else reads
+  /// both.
   CompressionSum (*compressions)(const VolumeInput&, std::size_t begin, std::size_t end, bool first,
                                  float* response, float* multiplier) noexcept;
   /// v_i −= (1/m_i) Σ_j (λ_i ψ_j + λ_j ψ_i) ∇W_ij where i is not pinned, by row. changes: the same, by row;

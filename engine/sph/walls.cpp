@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "sph/kernel_functions.h"
-
 namespace mallow {
 namespace {
 
@@ -17,9 +15,10 @@ constexpr float k_least_seen = 0.5f;
 /// Takes in the walls around the particles of a block, one by one.
 class WalledBlock {
  public:
-  WalledBlock(const WalledBody& body, std::size_t begin, float support_radius, std::span<float> share,
-              std::vector<Walls::Wall>& walls)
-      : inward_(support_radius - body.reach),
+  WalledBlock(const WalledBody& body, std::size_t begin, DensityKernel kernel, float support_radius,
+              std::span<float> share, std::vector<Walls::Wall>& walls)
+      : kernel_(kernel),
+        inward_(support_radius - body.reach),
         radius_(support_radius),
         begin_(begin),
         share_(share),
@@ -28,7 +27,7 @@ class WalledBlock {
   void add(const NearWall& near) {
     const float q = std::max(near.distance + inward_, 0.0f) / radius_;
     if (!(q < 1)) return;
-    const float share = half_space_share(q);
+    const float share = half_space_share(kernel_, q);
     float& sum = share_[near.row];
     std::uint32_t& last = last_[near.row - begin_];
     float covered = 0;
@@ -46,7 +45,8 @@ class WalledBlock {
     }
     const float left = 1 - covered;
     walls_.push_back({near.row, near.collider, last, left * share, left * half_space_gradient(q) / radius_,
-                      left * half_space_slope(q) / radius_, near.distance, near.normal});
+                      kernel_ == DensityKernel::wendland ? left * wendland_half_space_slope(q) / radius_ : 0,
+                      near.distance, near.normal});
     last = static_cast<std::uint32_t>(walls_.size());
   }
 
@@ -66,6 +66,7 @@ class WalledBlock {
     }
   }
 
+  const DensityKernel kernel_;
   const float inward_, radius_;  ///< how far behind a surface the matter begins [m], and σ
   const std::size_t begin_;
   const std::span<float> share_;
@@ -98,8 +99,8 @@ std::size_t Walls::bytes() const {
 }
 
 void find_walls(const VectorColumn& position, const VectorColumn& velocity,
-                std::span<const PlacedCollider> colliders, float support_radius, const Execution& execution,
-                Walls& walls) {
+                std::span<const PlacedCollider> colliders, DensityKernel kernel, float support_radius,
+                const Execution& execution, Walls& walls) {
   clear(walls);
   walls.blocks.clear();
   for (const WalledBody& body : walls.bodies) walls.blocks.add(body.end - body.begin);
@@ -119,7 +120,7 @@ void find_walls(const VectorColumn& position, const VectorColumn& velocity,
     const WalledBody& body = walls.bodies[block.range];
     walls.walls[number].clear();
     if (walls.near[number].empty()) return;
-    WalledBlock walled(body, body.begin + block.begin, support_radius, walls.share.span(),
+    WalledBlock walled(body, body.begin + block.begin, kernel, support_radius, walls.share.span(),
                        walls.walls[number]);
     for (const NearWall& wall : walls.near[number]) walled.add(wall);
   });

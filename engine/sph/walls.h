@@ -8,6 +8,7 @@
 #include "core/column.h"
 #include "core/execution.h"
 #include "core/range_blocks.h"
+#include "sph/kernel_functions.h"
 #include "sph/sph_lanes.h"
 
 namespace mallow {
@@ -44,7 +45,7 @@ struct Walls {
     std::uint32_t row, collider;
     std::uint32_t before;   ///< the one before it of this row, counted from 1; 0: none
     float share, gradient;  ///< S and B, what other walls cover left out
-    float slope;            ///< −dS/dd of it [1/m]
+    float slope;            ///< −dS/dd of it [1/m]; 0 with poly6
     float distance;         ///< of the particle from it [m]
     Vec3 normal;            ///< n
     float across = 0;       ///< with what it has pushed the particle across in this step [m/s²]
@@ -62,8 +63,8 @@ struct Walls {
 
 /// positions, colliders -> walls of `bodies`, S of every row. The velocities are not used.
 void find_walls(const VectorColumn& position, const VectorColumn& velocity,
-                std::span<const PlacedCollider> colliders, float support_radius, const Execution& execution,
-                Walls& walls);
+                std::span<const PlacedCollider> colliders, DensityKernel kernel, float support_radius,
+                const Execution& execution, Walls& walls);
 
 /// What the pressure of walls follows from, by row of the store.
 struct WallInput {

@@ -139,7 +139,7 @@ TEST_F(cli_run, warns_at_its_end_of_a_paste_that_was_crushed) {
   const auto scene = [&](const std::string& material) {
     return write(
                "paste.toml",
-               "[solver]\ngravity = [0, 0, -9.81]\n[[material]]\nname = \"paste\"\nalpha = 0.2\n"
+               "[solver]\ngravity = [0, 0, -9.81]\nvolume_iterations = 0\n[[material]]\nname = \"paste\"\nalpha = 0.2\n"
                "plastic_yield = 0.02\nrest_density = 1000\nyoungs_modulus = 5000\n" +
                    material +
                    "[[body]]\nmaterial = \"paste\"\nbox = { count = [10, 10, 6], spacing = 0.005, corner = "

@@ -6,7 +6,7 @@ namespace mallow::oracle {
 
 /// [TK eq. 3]
 double poly6(double r, double sigma);
-/// ∇ with respect to x_i, of d = x_i − x_j.
-Eigen::Vector3d poly6_gradient(const Eigen::Vector3d& d, double sigma);
+/// C2, the kernel of densities where volume is kept. [Wendland 1995]
+double wendland(double r, double sigma);
 
 }  // namespace mallow::oracle

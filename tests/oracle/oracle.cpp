@@ -24,13 +24,19 @@ double poly6(double r, double sigma) {
   return 315 / (64 * k_pi * std::pow(sigma, 9)) * std::pow(sigma * sigma - r * r, 3);
 }
 
+double wendland(double r, double sigma) {
+  if (r > sigma) return 0;
+  const double q = r / sigma;
+  return 21 / (2 * k_pi * std::pow(sigma, 3)) * std::pow(1 - q, 4) * (1 + 4 * q);
+}
+
+namespace {
+
 Vec poly6_gradient(const Vec& d, double sigma) {
   const double r = d.norm();
   if (r > sigma) return Vec::Zero();
   return -6 * 315 / (64 * k_pi * std::pow(sigma, 9)) * std::pow(sigma * sigma - r * r, 2) * d;
 }
-
-namespace {
 
 double poly6_laplacian(double r, double sigma) {
   if (r > sigma) return 0;
@@ -70,6 +76,7 @@ void set_mass_and_rest_density(Group& group, double sigma) {
                : material.rest_density ? *material.rest_density / sum
                                        : 1.0;
   group.rest_density = material.rest_density ? *material.rest_density : group.mass * sum;
+  group.wendland_volume = group.mass / group.rest_density * sum / lattice_sum(group.spacing, sigma, wendland);
 }
 
 }  // namespace
@@ -85,12 +92,12 @@ double alpha_at(const AlphaSchedule& schedule, double time) {
   return keys.back().value;
 }
 
-double lattice_sum(double spacing, double support_radius) {
+double lattice_sum(double spacing, double support_radius, double (*kernel)(double, double)) {
   const int n = static_cast<int>(support_radius / spacing) + 1;
   double sum = 0;
   for (int x = -n; x <= n; ++x)
     for (int y = -n; y <= n; ++y)
-      for (int z = -n; z <= n; ++z) sum += poly6(spacing * Vec(x, y, z).norm(), support_radius);
+      for (int z = -n; z <= n; ++z) sum += kernel(spacing * Vec(x, y, z).norm(), support_radius);
   return sum;
 }
 
@@ -373,7 +380,11 @@ std::vector<std::size_t> Oracle::update_references() {
   return updated;
 }
 
-/// S of poly6 and B of the spiky kernel, of a half space at distance d.
+/// S of poly6 and of Wendland's kernel, and B of the spiky one, of a half space at distance d.
+double wendland_half_space_share(double d, double sigma) {
+  const double t = 1 - d / sigma;
+  return 3.5 * std::pow(t, 6) - 4.5 * std::pow(t, 7) + 1.5 * std::pow(t, 8);
+}
 double half_space_share(double d, double sigma) {
   const double q = d / sigma;
   return 0.5 - 315.0 / 256 *
@@ -398,7 +409,8 @@ void Oracle::find_walls(Particle& p) const {
       const auto [phi, n] = distance(part, p.x - obstacle.moved);
       const double d = std::max(0.0, phi - offset + group.spacing / 2);
       if (d >= sigma) continue;
-      const double share = half_space_share(d, sigma);
+      const double share =
+          volume_iterations() > 0 ? wendland_half_space_share(d, sigma) : half_space_share(d, sigma);
       Vec pushed = Vec::Zero();
       for (const Particle::Wall& wall : p.walls) pushed += wall.gradient * wall.normal;
       const double along = pushed.norm() > 0 ? pushed.normalized().dot(n) : 0, alike = std::max(along, 0.0);
@@ -445,7 +457,9 @@ void Oracle::sum_densities() {
     double sum = i.wall_share;
     for (const Particle& j : particles_) {
       const Group& other = groups_[j.group];
-      sum += other.mass / other.rest_density * poly6((i.x - j.x).norm(), *config_.support_radius);
+      const double r = (i.x - j.x).norm(), sigma = *config_.support_radius;
+      sum += volume_iterations() > 0 ? other.wendland_volume * wendland(r, sigma)
+                                     : other.mass / other.rest_density * poly6(r, sigma);
     }
     i.density = group.rest_density * sum;
     i.pressure = group.pressure_coefficient * (i.density - group.rest_density);

@@ -9,6 +9,7 @@
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 #include "mallow/vec3.h"
+#include "oracle/kernels.h"
 
 /// The model read literally: double precision, every pair looked at, one struct per particle, an SVD for
 /// every rotation. Nothing is shared with the engine but the structs that configure it, so that a mistake in
@@ -64,6 +65,7 @@ struct Group {
   double spacing = 0;
   double mass = 0;
   double rest_density = 0;
+  double wendland_volume = 0;                  ///< m/ρ0, such that its lattice is as dense by that kernel
   double update_threshold = 0;                 ///< γ_u
   double viscosity = 0;                        ///< μ
   double alpha = 0;                            ///< of the last step
@@ -175,7 +177,7 @@ class Oracle {
 /// α at a time: linear between keys, constant outside.
 double alpha_at(const AlphaSchedule& schedule, double time);
 /// Σ W over an infinite cubic lattice, the point itself included.
-double lattice_sum(double spacing, double support_radius);
+double lattice_sum(double spacing, double support_radius, double (*kernel)(double, double) = poly6);
 /// The rotation of the polar decomposition of `a`. `last` decides where `a` says nothing, that is about
 /// directions in which it is smaller than 1e-12 `scale`.
 Matrix polar_rotation(const Matrix& a, const Matrix& last, double scale);

@@ -2,6 +2,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "oracle/kernels.h"
 #include "oracle/oracle.h"
@@ -9,19 +10,26 @@
 namespace mallow::oracle {
 namespace {
 
+Vec wendland_gradient(const Vec& d, double sigma) {
+  const double r = d.norm();
+  if (r > sigma) return Vec::Zero();
+  return -210 / (std::numbers::pi * std::pow(sigma, 5)) * std::pow(1 - r / sigma, 3) * d;
+}
+
 /// Σ |∇W|² over an infinite cubic lattice.
 double lattice_squares(double spacing, double sigma) {
   const int n = static_cast<int>(sigma / spacing) + 1;
   double sum = 0;
   for (int x = -n; x <= n; ++x)
     for (int y = -n; y <= n; ++y)
-      for (int z = -n; z <= n; ++z) sum += poly6_gradient(spacing * Vec(x, y, z), sigma).squaredNorm();
+      for (int z = -n; z <= n; ++z) sum += wendland_gradient(spacing * Vec(x, y, z), sigma).squaredNorm();
   return sum;
 }
 
-/// Of S of a half space at distance d.
+/// Of S of a half space at distance d: W over the plane there.
 double half_space_slope(double d, double sigma) {
-  return 315 / (256 * sigma) * std::pow(1 - d * d / (sigma * sigma), 4);
+  const double t = 1 - d / sigma;
+  return 21 / sigma * (std::pow(t, 5) - 1.5 * std::pow(t, 6) + 4.0 / 7 * std::pow(t, 7));
 }
 
 }  // namespace
@@ -37,9 +45,7 @@ int Oracle::volume_iterations() const {
 void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
   const double sigma = *config_.support_radius;
   const std::size_t n = particles_.size();
-  const auto volume = [&](const Particle& p) {
-    return groups_[p.group].mass / groups_[p.group].rest_density;
-  };
+  const auto volume = [&](const Particle& p) { return groups_[p.group].wendland_volume; };
   const auto mass = [&](const Particle& p) { return groups_[p.group].mass; };
   const auto wall_gradient = [&](const Particle::Wall& wall) {
     return Vec(-wall.left * half_space_slope(wall.distance, sigma) * wall.normal);
@@ -59,7 +65,7 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       Vec gradient = Vec::Zero();
       for (std::size_t l = 0; l < n; ++l) {
         const Particle& j = particles_[l];
-        const Vec g = volume(j) * poly6_gradient(i.x - j.x, sigma);
+        const Vec g = volume(j) * wendland_gradient(i.x - j.x, sigma);
         rate += (w[k] - w[l]).dot(g);
         gradient += g;
         if (!j.pinned) others += g.squaredNorm() / mass(j);
@@ -76,7 +82,7 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       const double share =
           wide * wide * wide *
           std::clamp((2.8 - group.most_elasticity * stiffness(group) * dt * dt) / 2, 0.0, 1.0);
-      lambda[k] = i.pinned ? 0 : share * s / (2 * dt * response);
+      lambda[k] = i.pinned ? 0 : 0.6 * share * s / (dt * response);
     }
     for (std::size_t k = 0; k < n; ++k) {
       Particle& i = particles_[k];
@@ -85,7 +91,7 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       for (std::size_t l = 0; l < n; ++l) {
         const Particle& j = particles_[l];
         pushed -=
-            (lambda[k] * volume(j) + lambda[l] * volume(i)) * poly6_gradient(i.x - j.x, sigma) / mass(i);
+            (lambda[k] * volume(j) + lambda[l] * volume(i)) * wendland_gradient(i.x - j.x, sigma) / mass(i);
       }
       i.v += pushed;
       for (Particle::Wall& wall : i.walls) {

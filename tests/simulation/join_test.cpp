@@ -347,7 +347,7 @@ TEST(join, lets_contacts_go_on_as_those_of_the_body_that_is_there) {
       if (event.kind == Kind::merged) told += "merged, ";
     }
   }
-  EXPECT_EQ(told, "upper touches, merged, lower parts, ");
+  EXPECT_EQ(told, "upper touches, lower touches, merged, lower parts, ");
 }
 
 // Until they are one, nothing but viscosity rubs them: blocks of dough slid down each other at 20 degrees.
@@ -365,11 +365,36 @@ TEST(join, what_slides_until_it_is_one_is_warned_of) {
   };
   const std::string slides = "slides along bodies that it merges with", never = "never becomes one";
   const Material dough{.alpha = 0.3f, .plastic_yield = 0.1f};
-  EXPECT_TRUE(warns(true, dough, slides));
-  EXPECT_FALSE(warns(true, dough, never));
+  const Material melting{.alpha = {{1.0f, 0.3f}, {2.0f, 1.0f}}, .plastic_yield = 0.1f};
+  EXPECT_FALSE(warns(true, dough, slides));
+  EXPECT_TRUE(warns(true, melting, slides));
+  EXPECT_FALSE(warns(true, melting, never));
   EXPECT_FALSE(warns(false, dough, slides));
   EXPECT_TRUE(warns(true, {.alpha = 0.1f}, never));
   EXPECT_FALSE(warns(true, {.alpha = 1.0f}, slides));
+}
+
+TEST(join, bodies_that_may_become_one_touch_and_rub_as_all_others_do_until_they_are) {
+  const auto positions = [](bool merges, bool may_be_fluid) {
+    SolverConfig tilted = solver();
+    tilted.gravity = {0.1f, 0, -0.3f};
+    Simulation s(tilted);
+    s.add_collider({.shape = Plane{}, .friction = 1.0f});
+    Material tough = dough(0.8f);
+    tough.friction = 0.5f;
+    if (may_be_fluid) tough.alpha = {{1e4f, 0.3f}, {2e4f, 1.0f}};
+    const MaterialId id = s.add_material(tough);
+    for (const float up : {0.5f, 5.0f}) {
+      Body slab = sample(Lattice{.count = {8, 8, 4}, .corner = {0, 0, up}, .jitter = 0.1f});
+      slab.merges = merges;
+      s.add_body(slab, id);
+    }
+    for (int k = 0; k < 200; ++k) s.step();
+    return s.positions_by_id();
+  };
+  const std::vector<Vec3> apart = positions(false, false);
+  EXPECT_EQ(positions(true, false), apart);
+  EXPECT_NE(positions(true, true), apart);  // those that melt must flow together
 }
 
 }  // namespace join_test

@@ -34,7 +34,7 @@ Sph sph_with_slack(float slack, std::size_t n) {
   sph.support_radius = k_radius;
   sph.factors = kernel_factors(static_cast<double>(k_radius));
   sph.neighbor_slack = slack;
-  sph.groups = {{1, 1, 1, 16, 1, 0, 0}};
+  sph.groups = {{1, 1, 1, 1, 16, 1, 0, 0}};
   sph.bodies = {{n, 0}};
   return sph;
 }

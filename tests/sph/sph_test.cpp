@@ -68,7 +68,8 @@ struct World {
     sph.factors = kernel_factors(1);
     sph.formulation = formulation;
     sph.viscous = true;
-    sph.groups = {{1.0f, 9.0f, 1.0f / 9, 16, 0.9f, 0.5f, 0.3f}, {3.0f, 40.0f, 3.0f / 40, 4, 1, 0.1f, 0}};
+    sph.groups = {{1.0f, 9.0f, 1.0f / 9, 1.0f / 9, 16, 0.9f, 0.5f, 0.3f},
+                  {3.0f, 40.0f, 3.0f / 40, 3.0f / 40, 4, 1, 0.1f, 0}};
     sph.bodies = {{n / 2, 0}, {n, 1}};
   }
   void run(int threads, InstructionLevel level) {
@@ -89,7 +90,8 @@ TEST(density, of_a_full_lattice_is_the_rest_density) {
   sph.support_radius = 2.9f;
   sph.factors = kernel_factors(2.9);
   const double rho0 = lattice_density(2.9, 1);
-  sph.groups = {{1, static_cast<float>(rho0), static_cast<float>(1 / rho0), 16, 1, 0, 0}};
+  sph.groups = {
+      {1, static_cast<float>(rho0), static_cast<float>(1 / rho0), static_cast<float>(1 / rho0), 16, 1, 0, 0}};
   sph.bodies = {{x.size(), 0}};
   find_neighbors(x, {2, best_instruction_level()}, sph);
   compute_density({2, best_instruction_level()}, sph);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "mallow/mallow.h"
 #include "sph/kernel_functions.h"
+#include "sph/sph.h"
 
 namespace mallow {
 namespace volume_test {
@@ -46,20 +48,56 @@ Vec momentum(const Simulation& s) {
   return sum;
 }
 
-TEST(lattice, sums_the_squares_of_gradients_up_to_their_integral) {
+TEST(lattice, sums_wendlands_kernel_and_the_squares_of_its_gradients_up_to_their_integrals) {
   for (const double sigma : {2.0, 2.9, 17.0}) {
-    double sum = 0;
+    double sum = 0, squares = 0;
     for (int x = -17; x <= 17; ++x)
       for (int y = -17; y <= 17; ++y)
         for (int z = -17; z <= 17; ++z) {
-          const double r2 = x * x + y * y + z * z, t = 1 - r2 / (sigma * sigma);
-          if (t > 0) sum += r2 * std::pow(t, 4);
+          const double r = std::sqrt(x * x + y * y + z * z), t = 1 - r / sigma;
+          if (t > 0) sum += std::pow(t, 4) * (1 + 4 * r / sigma);
+          if (t > 0) squares += r * r * std::pow(t, 6);
         }
-    EXPECT_NEAR(lattice_gradient_squares(sigma, 1) / sum, 1, 1e-12);
+    EXPECT_NEAR(wendland_lattice_sum(sigma, 1) / sum, 1, 1e-12);
+    EXPECT_NEAR(wendland_lattice_squares(sigma, 1) / squares, 1, 1e-12);
   }
-  EXPECT_NEAR(lattice_gradient_squares(65, 1) / lattice_gradient_squares(63.9, 1), std::pow(65 / 63.9, 5),
+  EXPECT_NEAR(wendland_lattice_sum(65, 1) / wendland_lattice_sum(63.9, 1), std::pow(65 / 63.9, 3), 1e-4);
+  EXPECT_NEAR(wendland_lattice_squares(65, 1) / wendland_lattice_squares(63.9, 1), std::pow(65 / 63.9, 5),
               1e-4);
 }
+
+/// ρ/ρ0 as poly6 has it, which is what model 2 measures, of bodies of one spacing and a mass of 1.
+class Poly6Densities {
+ public:
+  Poly6Densities(double radius, double spacing) : rest_(lattice_density(radius, spacing)) {
+    sph_.support_radius = static_cast<float>(radius);
+    sph_.factors = kernel_factors(radius);
+    const auto rest = static_cast<float>(rest_), volume = static_cast<float>(1 / rest_);
+    sph_.groups = {{.mass = 1,
+                    .rest_density = rest,
+                    .rest_volume = volume,
+                    .kernel_volume = volume,
+                    .pressure_coefficient = 0,
+                    .contact_share = 1,
+                    .viscosity = 0,
+                    .cohesion = 0}};
+  }
+  std::span<const float> of(const Simulation& s) {
+    VectorColumn x(s.particle_count());
+    for (std::size_t row = 0; row < x.size(); ++row) x.set(row, s.positions()[row]);
+    sph_.bodies = {{x.size(), 0}};
+    const Execution execution{2, best_instruction_level()};
+    find_neighbors(x, execution, sph_);
+    compute_density(execution, sph_);
+    return sph_.density_by_row.span();
+  }
+  double worst(const Simulation& s) { return static_cast<double>(std::ranges::max(of(s))) / rest_; }
+  double rest() const { return rest_; }
+
+ private:
+  double rest_;
+  Sph sph_;
+};
 
 /// The cube of 15³ of the paper's Table 1, dropped.
 struct Dropped {
@@ -78,18 +116,17 @@ Dropped drop(float alpha, int iterations, float tolerance = 0, std::optional<flo
   s.add_collider({.shape = Plane{}, .friction = 0.3f});
   s.add_body(sample(Lattice{.count = {15, 15, 15}, .spacing = k_spacing, .corner = {0, 0, 10}, .jitter = 0}),
              {.alpha = alpha, .update_threshold = 1.0f, .pressure_coefficient = pressure, .viscosity = 0.5f});
-  s.prepare();
-  const float rest_density = s.info().bodies[0].rest_density;
+  Poly6Densities densities(2.9, static_cast<double>(k_spacing));
   Dropped dropped;
   constexpr int k_steps = 400;
   for (int k = 0; k < k_steps; ++k) {
     dropped.iterations += 1.0 * s.step().volume_iterations / k_steps;
-    const double worst = static_cast<double>(std::ranges::max(s.densities()) / rest_density);
+    const double worst = densities.worst(s);
     dropped.impact = std::max(dropped.impact, worst);
     if (k >= k_steps - 50) dropped.rest = std::max(dropped.rest, worst);
   }
-  for (const float density : s.densities())
-    dropped.volume += 1 / std::max(1.0, static_cast<double>(density / rest_density));
+  for (const float density : densities.of(s))
+    dropped.volume += 1 / std::max(1.0, static_cast<double>(density) / densities.rest());
   dropped.volume /= static_cast<double>(s.particle_count());
   return dropped;
 }
@@ -99,7 +136,9 @@ TEST(volume, of_a_dropped_cube_stays_as_the_prototype_says) {
     float alpha;
     double impact[3], rest[3], to_tolerance, rest_to_tolerance;
   };
-  // Of model 2, section 2.
+  // Of model 2, section 2, where densities are poly6's for the constraint too. By a kernel that keeps
+  // particles apart an impact takes up to 0.024 more with one iteration, 0.008 to the tolerance, and 6.4
+  // to 7.8 iterations a step for that.
   const Row rows[] = {{0.0f, {1.21, 1.19, 1.17}, {1.06, 1.04, 1.03}, 1.06, 1.03},
                       {0.3f, {1.28, 1.22, 1.21}, {1.06, 1.03, 1.02}, 1.04, 1.02},
                       {0.7f, {1.23, 1.19, 1.18}, {1.04, 1.02, 1.02}, 1.04, 1.02},
@@ -108,16 +147,15 @@ TEST(volume, of_a_dropped_cube_stays_as_the_prototype_says) {
   for (const Row& row : rows) {
     for (const int iterations : {1, 3}) {
       const Dropped one = drop(row.alpha, iterations);
-      // The share that stiff bodies do without, 0.1 at alpha 0, costs 0.006 there.
-      const double stiff = row.alpha == 0 && iterations == 1 ? 0.005 : 0;
-      EXPECT_LE(one.impact, row.impact[iterations - 1] + k_room + stiff) << row.alpha << ' ' << iterations;
+      EXPECT_LE(one.impact, row.impact[iterations - 1] + k_room + (iterations == 1 ? 0.025 : 0))
+          << row.alpha << ' ' << iterations;
       EXPECT_LE(one.rest, row.rest[iterations - 1] + k_room) << row.alpha << ' ' << iterations;
       EXPECT_GE(one.volume, 0.98) << row.alpha << ' ' << iterations;
     }
     const Dropped all = drop(row.alpha, 50, 1e-3f);
-    EXPECT_LE(all.impact, row.to_tolerance + k_room) << row.alpha;
+    EXPECT_LE(all.impact, row.to_tolerance + k_room + 0.01) << row.alpha;
     EXPECT_LE(all.rest, row.rest_to_tolerance + k_room) << row.alpha;
-    EXPECT_LE(all.iterations, 4) << row.alpha;
+    EXPECT_LE(all.iterations, 8) << row.alpha;
   }
   // What it cures.
   EXPECT_NEAR(drop(0.3f, 0, 0, 16.0f).impact, 2.16, 0.1);
@@ -154,15 +192,13 @@ Squeezed squeeze(float alpha, int iterations, float tolerance = 0) {
     const std::span<const float> x = s.positions().x();
     return *std::ranges::max_element(x) - *std::ranges::min_element(x) + 1;
   };
-  s.prepare();
-  const float rest_density = s.info().bodies[0].rest_density;
+  Poly6Densities densities(2.1, 1);
   constexpr int k_way = 100;
   for (int k = 0; k < 3 * k_way; ++k) {
     const float speed = k < k_way ? -2.0f : k < 2 * k_way ? 2.0f : 0.0f;
     s.set_twist(top, {0, 0, speed / (k_way * 0.15f)}, {0, 0, 0});
     s.step();
-    squeezed.worst =
-        std::max(squeezed.worst, static_cast<double>(std::ranges::max(s.densities()) / rest_density));
+    squeezed.worst = std::max(squeezed.worst, densities.worst(s));
     if (k == k_way - 1) squeezed.bulge = static_cast<double>(width() / 10);
   }
   const Vec3 shift = (s.motion(id).center_of_mass - Vec(5, 5, 5)).cast<float>();
@@ -204,6 +240,39 @@ TEST(volume, iterations_keep_momentum_and_spin) {
   }
 }
 
+/// Distance of each particle to the one that is nearest, ascending.
+std::vector<float> nearest_distances(const Simulation& s) {
+  const std::vector<Vec3> x = s.positions_by_id();
+  std::vector<float> nearest;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    float least = std::numeric_limits<float>::max();
+    for (std::size_t j = 0; j < x.size(); ++j)
+      if (j != i) least = std::min(least, (x[i] - x[j]).squaredNorm());
+    nearest.push_back(std::sqrt(least));
+  }
+  std::ranges::sort(nearest);
+  return nearest;
+}
+
+// With the kernel of densities half of the pool was within 0.16 spacings of another particle after 8
+// iterations a step, and a tenth of the paste within 0.3.
+TEST(volume, iterations_keep_the_particles_of_what_flows_apart_however_many_they_are) {
+  const Material pool{.alpha = 1.0f};
+  Material paste{.alpha = 0.7f, .youngs_modulus = 2.0f, .damping_time = 0.05f};
+  paste.plastic_yield = 0.1f;
+  paste.plastic_creep = 1.0f;
+  for (const Material& material : {pool, paste})
+    for (const int iterations : {1, 2, 8}) {
+      Simulation s(config(iterations));
+      s.add_collider({.shape = Box{{-7.5, -5, 0}, {7.5, 5, 99}, true}, .friction = 0.3f});
+      s.add_body(sample(Lattice{.count = {10, 10, 12}, .corner = {-7.5, -5, 0.5}, .jitter = 0.1f}), material);
+      s.advance(400 * 0.15);
+      const std::vector<float> nearest = nearest_distances(s);
+      EXPECT_GT(nearest[nearest.size() / 2], 0.75f) << iterations;
+      EXPECT_GT(nearest[nearest.size() / 100], 0.5f) << iterations;
+    }
+}
+
 TEST(volume, of_a_poured_pool_is_kept_with_the_share_of_walls) {
   for (const float alpha : {1.0f, 0.7f})
     for (const int iterations : {1, 2}) {
@@ -215,7 +284,7 @@ TEST(volume, of_a_poured_pool_is_kept_with_the_share_of_walls) {
       const std::span<const float> z = s.positions().z();
       const double depth = 2 * std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size());
       EXPECT_GT(depth, 0.95 * 12) << alpha << ' ' << iterations;
-      EXPECT_LT(depth, 1.015 * 12) << alpha << ' ' << iterations;
+      EXPECT_LT(depth, 1.035 * 12) << alpha << ' ' << iterations;
       EXPECT_LT(s.energy().kinetic, 1e-3 * 1200 * 0.3 * 4) << alpha << ' ' << iterations;
     }
 }

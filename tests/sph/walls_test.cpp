@@ -52,8 +52,16 @@ TEST(half_space, holds_the_integrals_of_the_kernels_beyond_its_plane) {
       const double slope = 45 / (pi * std::pow(sigma, 6)) * std::pow(sigma - r, 2);
       return pi * (r * r - d * d) * slope;  // its shadow
     });
-    EXPECT_NEAR(static_cast<double>(half_space_share(static_cast<float>(q))), share, 1e-6) << q;
-    EXPECT_NEAR(static_cast<double>(half_space_gradient(static_cast<float>(q))), sigma * gradient, 1e-6) << q;
+    const auto at = static_cast<float>(q);
+    EXPECT_NEAR(static_cast<double>(half_space_share(DensityKernel::poly6, at)), share, 1e-6) << q;
+    EXPECT_NEAR(static_cast<double>(half_space_gradient(at)), sigma * gradient, 1e-6) << q;
+    const auto wendland = [&](double r) {
+      return 21 / (2 * pi * std::pow(sigma, 3)) * std::pow(1 - r / sigma, 4) * (1 + 4 * r / sigma);
+    };
+    const double of_other = beyond(d, sigma, [&](double r) { return 2 * pi * r * (r - d) * wendland(r); });
+    const double slope = beyond(d, sigma, [&](double r) { return 2 * pi * r * wendland(r); });
+    EXPECT_NEAR(static_cast<double>(half_space_share(DensityKernel::wendland, at)), of_other, 1e-6) << q;
+    EXPECT_NEAR(static_cast<double>(wendland_half_space_slope(at)), sigma * slope, 1e-6) << q;
   }
 }
 
@@ -70,7 +78,7 @@ Seen seen_from_origin(const std::vector<Collider>& colliders, float sigma = 2.0f
   Walls walls;
   walls.bodies = {{.begin = 0, .end = 1, .reach = sigma, .alpha = 1, .mass = 1, .group = &group}};
   const Execution execution{1, best_instruction_level()};
-  find_walls(x, x, placed, sigma, execution, walls);
+  find_walls(x, x, placed, DensityKernel::poly6, sigma, execution, walls);
   if (!walls.any) return {};
   Seen seen{walls.share[0]};
   for (const Walls::Wall& wall : walls.walls[0]) seen.gradient += wall.gradient * wall.normal;
@@ -98,7 +106,7 @@ TEST(walls, every_shape_is_the_half_space_behind_its_nearest_plane_however_it_is
             const Eigen::AngleAxisd turn(angle, Vec(1, 2, 0.5).normalized());
             collider.pose.rotation = Eigen::Quaterniond(turn).coeffs();
             const Seen seen = seen_from_origin({collider});
-            EXPECT_NEAR(seen.share, half_space_share(d / 2), 1e-5f) << k;
+            EXPECT_NEAR(seen.share, half_space_share(DensityKernel::poly6, d / 2), 1e-5f) << k;
             const Vec up = turn * Vec::UnitZ();
             EXPECT_NEAR((seen.gradient.cast<double>() - half_space_gradient(d / 2) / 2.0 * up).norm(), 0,
                         1e-5)
@@ -110,7 +118,7 @@ TEST(walls, every_shape_is_the_half_space_behind_its_nearest_plane_however_it_is
 }
 
 TEST(walls, what_two_of_them_cover_counts_once) {
-  const float d = 0.6f, s = half_space_share(d / 2), b = half_space_gradient(d / 2) / 2;
+  const float d = 0.6f, s = half_space_share(DensityKernel::poly6, d / 2), b = half_space_gradient(d / 2) / 2;
   const Collider floor{.shape = Plane{{0, 0, 1}, -d}}, wall{.shape = Plane{{1, 0, 0}, -d}};
   // A floor of two tiles, one under the other, or side by side with the particle above the joint.
   for (const Seen& seen :

@@ -301,7 +301,8 @@ class MALLOW_EXPORT Simulation {
   /// it, so that it moves as it would at 0; then this is a copy, in which digits are lost, made once a step.
   VectorView positions() const;
   VectorView velocities() const;  ///< [m/s]
-  /// ρ [kg/m³] of the last step; empty where no SPH ran.
+  /// ρ [kg/m³] of the last step; empty where no SPH ran. By poly6 [TK eq. 3], or by Wendland's kernel where
+  /// volume_iterations run.
   std::span<const float> densities() const;
   /// Alpha of every row as it acts; empty where no body has its own by particle (Body::alpha,
   /// Body::stiffness, set_alpha()). As prepare() and the last step left it.

@@ -63,12 +63,13 @@ struct SolverConfig {
   /// does it, and nothing where alpha is 0. They change velocities so that no density rises above that at
   /// rest, in elastic bodies and fluids alike, and act beside pressure, which lets fluids rest: a
   /// pressure_coefficient of 0 turns that off, and its limit on steps. One keeps the worst density of a hard
-  /// impact within a quarter of that at rest, three within a seventh. Bodies nearly as stiff as their step
+  /// impact within 0.28 of that at rest, three within a sixth. Densities have Wendland's kernel then, so that
+  /// what flows keeps its particles apart. Bodies nearly as stiff as their step
   /// can carry get less of it. Left out: default_volume_iterations(), 2 while there is a body whose material
   /// has plastic_yield, and else none. [model 2, section 2; Bender & Koschier 2015]
   std::optional<int> volume_iterations = {};
   /// Iterations of a step end where the mean of all compressions is at most this, in [0, 1]; 0: all are
-  /// taken. 0.001 keeps impacts near a twentieth.
+  /// taken. 0.001 keeps impacts within a twelfth.
   float volume_tolerance = 0.0f;
   /// A body sleeps whose particles have been slower than this in the mean for sleep_time, with all that it
   /// touches: no phase runs for it until something wakes it [m/s], >= 0; 0: none ever sleeps.
