@@ -23,7 +23,7 @@ void ContactSheet::begin_take(const Scene& scene, const ParticleFrame& first,
 void ContactSheet::add(const ParticleFrame& frame) {
   SurfaceParticles particles = surface_particles(frame, spacings_);
   particles.velocities = {};
-  stills_->take(frame, surfacer_->draw(particles), picture(pictures_));
+  render::write_png(picture(pictures_), stills_->take(frame, surfacer_->draw(particles)));
   ++pictures_;
 }
 

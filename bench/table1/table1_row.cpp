@@ -99,7 +99,7 @@ Frames draw_frames(const Scene& scene, const Table1Settings& settings, int threa
       frames.beside_plain.push_back(frames.surface.back());
     }
     frames.triangles += static_cast<double>(mesh->triangles.size());
-    frames.picture.push_back(milliseconds([&] { stills.take(frame, *mesh, picture); }));
+    frames.picture.push_back(milliseconds([&] { render::write_png(picture, stills.take(frame, *mesh)); }));
   }
   std::filesystem::remove(picture);
   frames.triangles /= static_cast<double>(std::max<std::size_t>(1, frames.surface.size()));

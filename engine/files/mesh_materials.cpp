@@ -109,7 +109,19 @@ NamedBodies name_bodies(std::span<const MeshBody> bodies, const NameRule& allowe
 }
 
 double roughness(Finish finish) {
-  return finish == Finish::clay ? 0.9 : 0.5;
+  switch (finish) {
+    case Finish::clay:
+      return 0.9;
+    case Finish::cream:
+      return 0.6;
+    case Finish::gloss:
+      return 0.2;
+    case Finish::syrup:
+      return 0.1;
+    case Finish::jelly:
+      break;
+  }
+  return 0.5;
 }
 
 }  // namespace mallow
