@@ -408,15 +408,28 @@ TEST(environment, refuses_what_is_no_whole_picture) {
     EXPECT_THROW(read_hdr(HdrFile(bad).path), IoError) << bad.substr(0, 60);
   EXPECT_THROW(read_hdr("/nowhere/at/all.hdr"), IoError);
   EXPECT_THROW(read_hdr(std::filesystem::temp_directory_path()), IoError);
-  // Cut or changed anywhere, it is read or refused, and every value is a number.
-  for (std::size_t i = 0; i < good.size(); ++i) {
-    for (const std::string& bytes : {good.substr(0, i), good.substr(0, i) + '\xff' + good.substr(i + 1)}) {
-      try {
-        for (const Vec3& pixel : read_hdr(HdrFile(bytes).path).radiance) EXPECT_TRUE(pixel.allFinite());
-      } catch (const IoError&) {
-      }
+  // Cut anywhere, it is refused; changed anywhere, it is read or refused, and every value is a number.
+  std::string runs = k_head + "-Y 4 +X 8\n";
+  for (int row = 0; row < 4; ++row)
+    runs += std::string("\2\2\0\x8\x88\x40\x88\x40\4abcd\x84\x50\x88\x80", 17);
+  EXPECT_EQ(read_hdr(HdrFile(runs).path).radiance.size(), 32u);
+  for (const std::string& whole : {good, runs})
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      EXPECT_THROW(read_hdr(HdrFile(whole.substr(0, i)).path), IoError) << i;
+      for (const char other : {'\xff', '\0'}) try {
+          const std::string bytes = whole.substr(0, i) + other + whole.substr(i + 1);
+          for (const Vec3& pixel : read_hdr(HdrFile(bytes).path).radiance) EXPECT_TRUE(pixel.allFinite());
+        } catch (const IoError&) {
+        }
     }
-  }
+}
+
+TEST(environment, lights_as_well_where_it_is_as_bright_as_numbers_go) {
+  const HdrFile file(hdr_file(8, 4, [](int, int) { return std::array<int, 4>{255, 255, 255, 255}; }));
+  RenderConfig config = small();
+  config.environment = file.path;
+  const Image image = Renderer(config, 1).render({}, {}, k_floor, {.eye = {0, -14, 5}, .target = {0, 0, 1}});
+  EXPECT_GT(pixel(image, 80, 80)[1], 150);
 }
 
 TEST(png, reads_back_equal) {

@@ -13,6 +13,7 @@
 #include "program/cached_run.h"
 #include "program/failure.h"
 #include "program/input_files.h"
+#include "program/stills.h"
 
 namespace mallow::cli {
 namespace {
@@ -27,6 +28,7 @@ void render_cache(const RenderOptions& options) {
   print_warning(run.cache.lock_warning());
   const program::Cache& cache = run.cache;
   program::InputFiles(run.scene).refuse(options.film.file, "--film");
+  program::check_environment(run.scene);
   program::StageTimes seconds{};
   std::size_t count = 0;
   try {

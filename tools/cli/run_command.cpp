@@ -35,6 +35,7 @@
 #include "program/run_plan.h"
 #include "program/run_report.h"
 #include "program/shell_word.h"
+#include "program/stills.h"
 
 namespace mallow::cli {
 namespace {
@@ -287,6 +288,7 @@ void run(const RunOptions& options) {
   const int threads = program::resolve_threads(options.threads);
   Run run = options.resume.empty() ? begin(options, threads) : resume(options, threads);
   const program::Cache* out = run.cache ? &*run.cache : nullptr;
+  if (out && run.plan.images) program::check_environment(run.scene);
   print_warnings(run.scene, run.report.info);
 
   // From here on something is computed, so what goes wrong is a failure of the run, and is reported as far as

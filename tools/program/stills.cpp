@@ -4,6 +4,7 @@
 
 #include "program/body_appearances.h"
 #include "program/view_bounds.h"
+#include "render/hdr.h"
 
 namespace mallow::program {
 namespace {
@@ -25,6 +26,10 @@ RenderConfig of_scene(const Scene& scene) {
 }
 
 }  // namespace
+
+void check_environment(const Scene& scene) {
+  if (!scene.render.environment.empty()) render::read_hdr(of_scene(scene).environment);
+}
 
 Stills::Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads)
     : Stills(scene, view_bounds(scene, first), spacings, threads) {}

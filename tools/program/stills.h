@@ -9,6 +9,9 @@
 
 namespace mallow::program {
 
+/// Throws IoError where the light that the scene names cannot be read.
+void check_environment(const Scene& scene);
+
 /// Takes the pictures of a run: camera and looks stay through the film.
 class Stills {
  public:

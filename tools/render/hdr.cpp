@@ -36,6 +36,7 @@ namespace {
 
 constexpr std::size_t k_most_bytes = std::size_t{1} << 29;
 constexpr std::size_t k_most_pixels = std::size_t{1} << 26;
+constexpr float k_brightest = 1e6f;
 constexpr float k_pi = std::numbers::pi_v<float>;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& why) {
@@ -54,6 +55,57 @@ std::vector<unsigned char> read_bytes(const std::filesystem::path& file) {
   std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(stream), {}};
   if (stream.bad()) fail(file, "cannot be read: " + std::generic_category().message(errno));
   return bytes;
+}
+
+/// Where rows begin: behind the empty line and the line of sizes after it.
+std::size_t begin_of_rows(const std::vector<unsigned char>& bytes) {
+  std::size_t at = 0;
+  const auto line = [&] {
+    const std::size_t begin = at;
+    while (at < bytes.size() && bytes[at] != '\n') ++at;
+    const std::size_t length = at - begin;
+    if (at < bytes.size()) ++at;
+    return length;
+  };
+  while (at < bytes.size() && line() > 0) {
+  }
+  line();
+  return at;
+}
+
+/// Throws where a row is cut off or broken: stb_image takes what is missing for black, and a run of nothing
+/// keeps it for ever.
+void require_whole_rows(const std::filesystem::path& file, const std::vector<unsigned char>& bytes, int width,
+                        int height) {
+  std::size_t at = begin_of_rows(bytes);
+  const auto left = [&] { return bytes.size() - at; };
+  const auto require = [&](std::size_t count) {
+    if (left() < count) fail(file, "ends early: it is too short for its pixels");
+  };
+  const auto is_run_length = [&] {
+    return width >= 8 && width < 32768 && left() >= 4 && bytes[at] == 2 && bytes[at + 1] == 2 &&
+           bytes[at + 2] < 128;
+  };
+  if (!is_run_length())
+    return require(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int row = 0; row < height; ++row) {
+    require(4);
+    if (!is_run_length() || bytes[at + 2] * 256 + bytes[at + 3] != width)
+      fail(file, "is no whole Radiance picture: row " + std::to_string(row) + " does not begin as one");
+    at += 4;
+    for (int channel = 0; channel < 4; ++channel)
+      for (int column = 0; column < width;) {
+        require(1);
+        const int code = bytes[at++], count = code > 128 ? code - 128 : code;
+        if (count == 0 || count > width - column)
+          fail(file,
+               "is no whole Radiance picture: row " + std::to_string(row) + " has a run that does not fit");
+        const std::size_t values = code > 128 ? 1 : static_cast<std::size_t>(count);
+        require(values);
+        at += values;
+        column += count;
+      }
+  }
 }
 
 }  // namespace
@@ -116,16 +168,15 @@ HdrPicture read_hdr(const std::filesystem::path& file) {
   int width = 0, height = 0, channels = 0;
   if (stbi_is_hdr_from_memory(data, size) == 0 ||
       stbi_info_from_memory(data, size, &width, &height, &channels) == 0)
-    fail(file, "is no Radiance picture (.hdr)");
+    fail(file,
+         "is no Radiance picture (.hdr) with FORMAT=32-bit_rle_rgbe and rows from top left, -Y HEIGHT +X "
+         "WIDTH");
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   if (width < 2 || height < 2 || width > STBI_MAX_DIMENSIONS || height > STBI_MAX_DIMENSIONS ||
       pixels > k_most_pixels)
     fail(file, "has " + std::to_string(width) + " x " + std::to_string(height) +
                    " pixels: 2 to 16384 a side are allowed, and 67 million in all");
-  // A row takes 4 bytes, and 4 for each run of up to 127 pixels in a channel: a few bytes must not ask for a
-  // gigabyte. Rows that are missing would be read as black.
-  const std::size_t least = static_cast<std::size_t>(height) * (4 + static_cast<std::size_t>(width) / 127);
-  if (bytes.size() < least) fail(file, "ends early: it is too short for its pixels");
+  require_whole_rows(file, bytes, width, height);
   const std::unique_ptr<float, decltype(&stbi_image_free)> read(
       stbi_loadf_from_memory(data, size, &width, &height, &channels, 3), &stbi_image_free);
   if (!read) fail(file, std::string("is no whole Radiance picture: ") + stbi_failure_reason());
@@ -136,6 +187,11 @@ HdrPicture read_hdr(const std::filesystem::path& file) {
       const float value = read.get()[3 * i + c];
       picture.radiance[i][static_cast<Eigen::Index>(c)] = std::isfinite(value) ? std::max(0.0f, value) : 0.0f;
     }
+  // Sums over bright pixels must be finite. How bright all is together is for the exposure to say.
+  float brightest = 0;
+  for (const Vec3& radiance : picture.radiance) brightest = std::max(brightest, radiance.maxCoeff());
+  if (brightest > k_brightest)
+    for (Vec3& radiance : picture.radiance) radiance *= k_brightest / brightest;
   return picture;
 }
 

@@ -32,8 +32,9 @@ struct HdrPicture {
   HdrPicture shrunk(int most_width, int most_height) const;
 };
 
-/// Reads a Radiance picture (.hdr, RGBE) of all around. Throws IoError where the file cannot be read, is
-/// none, or is larger than 16384 pixels along a side or 2^26 in all.
+/// Reads a Radiance picture (.hdr, RGBE) of all around; one with a value above 1e6 is made darker as a whole.
+/// Throws IoError where the file cannot be read, is none or not whole, or is larger than 16384 pixels along a
+/// side or 2^26 in all.
 HdrPicture read_hdr(const std::filesystem::path& file);
 
 }  // namespace mallow::render
