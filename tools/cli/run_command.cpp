@@ -14,6 +14,7 @@
 
 #include "cli/film_options.h"
 #include "cli/messages.h"
+#include "cli/pictures.h"
 #include "cli/scene_changes.h"
 #include "cli/scene_options.h"
 #include "cli/summary.h"
@@ -242,7 +243,7 @@ Run resume(const RunOptions& options, int threads) {
   run.plan.frames = run.scene.run.frames;
   run.plan.surface = run.plan.surface && !options.no_surface;
   run.plan.images = run.plan.images && !options.no_images;
-  if (run.plan.images) check_pictures(options.film, *run.cache, run.report.frames);
+  if (run.plan.images && run.scene.render.eye) check_pictures(options.film, *run.cache, run.report.frames);
   run.plan.threads = threads;
   run.plan.checkpoints = checkpoint_interval(options, run.plan.checkpoints);
   describe(run.scene, threads, *run.simulation, run.report);
@@ -291,6 +292,12 @@ void run_stages(const RunOptions& options, Run& run) {
   simulate(run, cache);
   if (!options.state_out.empty()) write_state_csv(options.state_out, snapshot(*run.simulation));
   if (!cache || !run.plan.images) return;
+  if (!run.scene.render.eye) {
+    std::vector<float> spacings;
+    for (const BodyInfo& body : run.report.info.bodies) spacings.push_back(body.spacing);
+    take_pictures(run.scene, *cache, {spacings, run.report.frame_time, run.plan.threads},
+                  run.report.stage_seconds);
+  }
   const program::StageTimer timer(run.report.stage_seconds, program::Stage::film);
   make_film(options.film, *cache, run.scene.render.frames_per_second, run.plan.threads);
 }

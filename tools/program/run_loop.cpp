@@ -33,7 +33,7 @@ class FrameWriter {
       std::filesystem::create_directories(cache.surface_file(0).parent_path());
       surface_.emplace(scene.surface, skins, plan.threads);
     }
-    if (plan.images) {
+    if (plan.images && scene.render.eye) {  // else the camera waits for what the film will show
       std::filesystem::create_directories(cache.images_folder());
       std::vector<float> spacings;
       for (const BodyInfo& body : report.info.bodies) spacings.push_back(body.spacing);

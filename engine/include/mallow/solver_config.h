@@ -63,7 +63,7 @@ struct SolverConfig {
   /// does it, and nothing where alpha is 0. They change velocities so that no density rises above that at
   /// rest, in elastic bodies and fluids alike, and act beside pressure, which lets fluids rest: a
   /// pressure_coefficient of 0 turns that off, and its limit on steps. One keeps the worst density of a hard
-  /// impact within 0.28 of that at rest, three within a sixth. Densities have Wendland's kernel then, so that
+  /// impact within 0.29 of that at rest, three within 0.19. Densities have Wendland's kernel then, so that
   /// what flows keeps its particles apart. Bodies nearly as stiff as their step
   /// can carry get less of it. Left out: default_volume_iterations(), 2 while there is a body whose material
   /// has plastic_yield, and else none. [model 2, section 2; Bender & Koschier 2015]

@@ -1,0 +1,96 @@
+#include "cli/pictures.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <vector>
+
+#include "cli/frame_loop.h"
+#include "mallow/files.h"
+#include "program/background_writer.h"
+#include "program/stills.h"
+#include "program/view_bounds.h"
+
+namespace mallow::cli {
+namespace {
+
+/// The frames of which pictures can be taken. A run that was ended early may lack the last frame's surface,
+/// which gets no picture then; one without any shows its particles.
+std::vector<int> frames_to_show(const program::Cache& cache) {
+  const std::vector<int> surfaces = cache.surface_frames();
+  return surfaces.empty() ? cache.particle_frames() : surfaces;
+}
+
+/// Reads the frames one after another, each while the picture of the one before is taken.
+class FrameReader {
+ public:
+  struct Frame {
+    ParticleFrame particles;
+    Mesh surface;
+  };
+  FrameReader(const program::Cache& cache, const std::vector<int>& frames)
+      : cache_(cache), frames_(frames), with_surfaces_(!cache.surface_frames().empty()) {
+    start_next();
+  }
+  Frame next() {
+    Frame frame = coming_.get();
+    start_next();
+    return frame;
+  }
+
+ private:
+  void start_next() {
+    if (next_ == frames_.size()) return;
+    coming_ = std::async(std::launch::async, [this, number = frames_[next_++]]() -> Frame {
+      return {read_particles(cache_.particles_file(number)),
+              with_surfaces_ ? read_mesh(cache_.surface_file(number)) : Mesh{}};
+    });
+  }
+  const program::Cache& cache_;
+  const std::vector<int>& frames_;
+  bool with_surfaces_;
+  std::size_t next_ = 0;
+  std::future<Frame> coming_;
+};
+
+/// The camera has what the film shows in view, by up to so many of its frames.
+program::Stills stills_of(const Scene& scene, const program::Cache& cache, const PictureRun& run,
+                          const std::vector<int>& frames) {
+  constexpr std::size_t k_looks = 32;
+  if (scene.render.eye || frames.empty()) {
+    const int first = cache.particle_frames().front();
+    return {scene, read_particles(cache.particles_file(first)), run.spacings, run.threads};
+  }
+  program::FilmBounds bounds;
+  const std::size_t looks = std::min(k_looks, frames.size());
+  for (std::size_t k = 0; k < looks; ++k)
+    bounds.add(
+        read_particles(cache.particles_file(frames[looks > 1 ? k * (frames.size() - 1) / (looks - 1) : 0])));
+  const auto box = bounds.box(scene, *std::ranges::min_element(run.spacings));
+  return {scene, box.value_or(Aabb{{-1, -1, -1}, {1, 1, 1}}), run.spacings, run.threads};
+}
+
+}  // namespace
+
+std::size_t take_pictures(const Scene& scene, const program::Cache& cache, const PictureRun& run,
+                          program::StageTimes& seconds) {
+  const std::vector<int> frames = frames_to_show(cache);
+  program::Stills stills = stills_of(scene, cache, run, frames);
+  stills.set_frame_time(run.frame_time);
+  std::filesystem::create_directories(cache.images_folder());
+  cache.remove_images_but(frames);
+  FrameReader reader(cache, frames);
+  program::BackgroundWriter files;
+  for_each_frame(frames, "rendering", [&](int number) {
+    const program::StageTimer timer(seconds, program::Stage::pictures);
+    const FrameReader::Frame frame = reader.next();
+    auto picture = std::make_shared<const render::Image>(stills.take(frame.particles, frame.surface));
+    files.add([&cache, number, picture] { render::write_png(cache.image_file(number), *picture); });
+  });
+  const program::StageTimer timer(seconds, program::Stage::pictures);
+  files.finish();
+  return frames.size();
+}
+
+}  // namespace mallow::cli

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "mallow/scene.h"
+#include "program/cache.h"
+#include "program/run_report.h"
+
+namespace mallow::cli {
+
+/// What pictures ask of the run that they are of.
+struct PictureRun {
+  std::vector<float> spacings;  ///< h of each body [m]
+  double frame_time;            ///< [s]
+  int threads;
+};
+
+/// Takes the pictures of all frames of a cache, in place of those that are there, and returns how many. A
+/// scene that says from where is seen from there; else the camera has what all frames show in view. Throws
+/// Interrupted at Ctrl-C.
+std::size_t take_pictures(const Scene& scene, const program::Cache& cache, const PictureRun& run,
+                          program::StageTimes& seconds);
+
+}  // namespace mallow::cli
