@@ -21,9 +21,11 @@
 #include "program/body_appearances.h"
 #include "program/cached_run.h"
 #include "program/failure.h"
+#include "program/frame_range.h"
 #include "program/input_files.h"
 #include "program/output_files.h"
 #include "program/run_mark.h"
+#include "program/shared_frames.h"
 #include "program/shell_word.h"
 
 namespace mallow::cli {
@@ -38,6 +40,7 @@ struct ExportOptions : program::CachedRunOptions {
   std::vector<std::string> skins;      ///< formats
   std::string up = "z";
   std::string out;
+  FrameOptions frames;
 };
 
 /// Beside the OBJ files, which all name it.
@@ -91,10 +94,20 @@ class Series {
     program::check_writable(out / kind / "frame");
   }
 
+  /// The files of a frame.
+  std::vector<fs::path> files(int number) const {
+    std::vector<fs::path> files;
+    for (const std::string& format : formats_)
+      files.push_back(out_ / kind_ / program::frame_name(number, format));
+    return files;
+  }
   template <class Write>
-  void add(int number, double time, const Write& write) {
+  void write(int number, const Write& write) const {
     for (const std::string& format : formats_)
       write(format, out_ / kind_ / program::frame_name(number, format));
+  }
+  /// A frame that is there, for what plays them.
+  void add(int number, double time) {
     vtp_frames_.push_back({fs::path(kind_) / program::frame_name(number, "vtp"), time});
     usda_frames_.push_back({fs::path(kind_) / program::frame_name(number, "usda"), number});
   }
@@ -145,11 +158,13 @@ void refuse_inputs(const ExportOptions& options, const program::CachedRun& run, 
 }
 
 /// Two exports into one folder would mix their frames.
-program::RunLock lock_folder(const fs::path& out) {
+program::RunLock lock_folder(const fs::path& out, bool shared) {
   std::error_code error;
   fs::create_directories(out, error);
   if (error) throw IoError({out.string(), 0, 0, "--out", "cannot be made: " + error.message()});
-  return program::RunLock::for_exports(out);
+  program::RunLock lock = program::RunLock::for_exports(out, shared);
+  if (!shared) program::forget_shared_frames(out);
+  return lock;
 }
 
 void turn(std::vector<Vec3>& vectors) {
@@ -211,6 +226,106 @@ class FrameWriter {
   float voxel_size_;
 };
 
+/// All that an export writes.
+class Export {
+ public:
+  Export(const ExportOptions& options, const program::CachedRun& run, const fs::path& out)
+      : options_(options),
+        run_(run),
+        out_(out),
+        surfaces_(out, "surface", options.surface),
+        particles_(out, "particles", options.particles),
+        writer_(run, options.up == "y" ? UpAxis::y : UpAxis::z),
+        animation_(options.animation, writer_.bodies(), run.scene.render.frames_per_second) {
+    if (!options.skins.empty()) skins_.emplace(run);
+  }
+
+  /// The files of a frame.
+  void write_frame(int number) {
+    ParticleFrame frame;
+    if (!options_.particles.empty() || contains(options_.surface, "vdb"))
+      frame = writer_.read_particles(number);
+    if (!options_.particles.empty())
+      particles_.write(number, [&](const std::string& format, const fs::path& file) {
+        writer_.write_particles(frame, format, file);
+      });
+    if (options_.surface.empty() || !has_surface(number)) return;
+    const Mesh mesh = read_mesh(run_.cache.surface_file(number));
+    surfaces_.write(number, [&](const std::string& format, const fs::path& file) {
+      if (format == "vdb")
+        writer_.write_level_set(frame, file);
+      else
+        writer_.write_surface(mesh, number, format, file);
+    });
+  }
+  /// A frame for what plays all of them.
+  void add_frame(int number) {
+    const double time = read_particles(run_.cache.particles_file(number)).time;  // of surfaces too
+    if (!options_.particles.empty()) particles_.add(number, time);
+    if (!has_surface(number)) return;
+    if (!options_.surface.empty()) surfaces_.add(number, time);
+    if (!animation_.any() && !skins_) return;
+    const Mesh mesh = read_mesh(run_.cache.surface_file(number));
+    animation_.add(mesh, number);
+    if (skins_) skins_->add(mesh, number);
+  }
+  /// What plays the frames that were added.
+  void finish() {
+    surfaces_.finish(writer_.bodies(), writer_.usd());
+    particles_.finish(writer_.bodies(), writer_.usd());
+    animation_.write(out_);
+    if (skins_) skins_->write(out_ / "skins.glb", writer_.bodies());
+  }
+
+  program::SharedFrames::Files files(int number) const {
+    std::vector<fs::path> written = particles_.files(number);
+    if (has_surface(number))
+      for (fs::path& file : surfaces_.files(number)) written.push_back(std::move(file));
+    return {{run_.cache.particles_file(number), run_.cache.surface_file(number)}, std::move(written)};
+  }
+
+ private:
+  /// A run that was ended early may lack that of the last frame.
+  bool has_surface(int number) const { return fs::exists(run_.cache.surface_file(number)); }
+
+  const ExportOptions& options_;
+  const program::CachedRun& run_;
+  fs::path out_;
+  Series surfaces_, particles_;
+  FrameWriter writer_;
+  SurfaceAnimation animation_;
+  std::optional<SkinAnimation> skins_;
+};
+
+/// What makes the files what they are, beside the frames that they are made of.
+std::string job_of(const ExportOptions& options, const program::CachedRun& run) {
+  std::string job = print_scene(run.scene) + options.up + run.report.at("groups").dump();
+  for (const auto* formats : {&options.surface, &options.particles, &options.animation, &options.skins})
+    for (const std::string& format : *formats) job += (format == formats->front() ? '\n' : ' ') + format;
+  return job;
+}
+
+/// Beside other processes; the one that finds all frames written adds what plays them.
+void share_export(const ExportOptions& options, const program::CachedRun& run, const fs::path& out,
+                  const std::vector<int>& chosen, Export& all) {
+  const program::SharedFrames shared(out, "export", job_of(options, run),
+                                     [&](int number) { return all.files(number); });
+  for_each_frame(chosen, &shared, options.frames.share, "exporting",
+                 [&](int number, const FrameClaim& claim) {
+                   all.write_frame(number);
+                   claim->done();
+                 });
+  const std::vector<int> frames = run.cache.particle_frames();
+  std::vector<fs::path> made;
+  for (const std::string& format : options.animation) made.push_back(out / animation_name(format));
+  if (!options.skins.empty()) made.push_back(out / "skins.glb");
+  const std::size_t left = shared.join(frames, made, [&] {
+    for (const int number : frames) all.add_frame(number);
+    all.finish();
+  });
+  if (left > 0) std::printf("left %zu\n", left);
+}
+
 void export_frames(const ExportOptions& options) {
   check_formats(options);
   const program::CachedRun run = program::open_cached_run(options, "");
@@ -218,41 +333,20 @@ void export_frames(const ExportOptions& options) {
   const program::Cache& cache = run.cache;
   if (!options.surface.empty() || !options.animation.empty() || !options.skins.empty())
     require_surfaces(cache);
-  std::optional<SkinAnimation> skins;
-  if (!options.skins.empty()) skins.emplace(run);
+  if (!options.skins.empty()) SkinAnimation{run};  // throws where there are none
+  const std::vector<int> chosen = program::choose_frames(options.frames.range, cache.particle_frames());
   const fs::path out = options.out.empty() ? cache.export_folder() : fs::path(options.out);
   refuse_inputs(options, run, out);
-  const program::RunLock lock = lock_folder(out);
+  const program::RunLock lock = lock_folder(out, options.frames.shared());
   print_warning(lock.warning());
-  Series surfaces(out, "surface", options.surface);
-  Series particles(out, "particles", options.particles);
-  FrameWriter writer(run, options.up == "y" ? UpAxis::y : UpAxis::z);
-  SurfaceAnimation animation(options.animation, writer.bodies(), run.scene.render.frames_per_second);
+  Export all(options, run, out);
   try {
-    for_each_frame(cache.particle_frames(), "exporting", [&](int number) {
-      const ParticleFrame frame = writer.read_particles(number);  // tells the time of surfaces too
-      if (!options.particles.empty()) {
-        particles.add(number, frame.time, [&](const std::string& format, const fs::path& file) {
-          writer.write_particles(frame, format, file);
-        });
-      }
-      if (options.surface.empty() && !animation.any() && !skins) return;
-      if (!fs::exists(cache.surface_file(number))) return;
-      const Mesh mesh = read_mesh(cache.surface_file(number));
-      animation.add(mesh, number);
-      if (skins) skins->add(mesh, number);
-      if (options.surface.empty()) return;
-      surfaces.add(number, frame.time, [&](const std::string& format, const fs::path& file) {
-        if (format == "vdb")
-          writer.write_level_set(frame, file);
-        else
-          writer.write_surface(mesh, number, format, file);
-      });
+    if (options.frames.shared()) return share_export(options, run, out, chosen, all);
+    for_each_frame(chosen, "exporting", [&](int number) {
+      all.write_frame(number);
+      all.add_frame(number);
     });
-    surfaces.finish(writer.bodies(), writer.usd());
-    particles.finish(writer.bodies(), writer.usd());
-    animation.write(out);
-    if (skins) skins->write(out / "skins.glb", writer.bodies());
+    all.finish();
   } catch (const std::exception& error) {
     throw program::RunFailure(error.what());
   }
@@ -310,6 +404,7 @@ void add_export_command(CLI::App& app) {
       "Groups and materials have the names of the scene in obj (materials.mtl), glb and usda.\n"
       "surface.pvd plays the frames at their simulated times; surface.usda plays them as the film does: a\n"
       "time code is a frame, and velocities are per second of the film.");
+  add_frame_options(*command, options->frames);
   command->callback([options] { export_frames(*options); });
 }
 

@@ -9,18 +9,11 @@
 #include <utility>
 
 #include "mallow/errors.h"
+#include "program/fnv.h"
 
 namespace mallow::program {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr std::uint64_t k_no_bytes = 14695981039346656037u;  // FNV-1a, 64 bits
-
-std::uint64_t hash_more(std::uint64_t hash, const char* bytes, std::size_t count) {
-  for (std::size_t k = 0; k < count; ++k)
-    hash = (hash ^ static_cast<unsigned char>(bytes[k])) * 1099511628211u;
-  return hash;
-}
 
 [[noreturn]] void fail(const fs::path& file, const std::string& message) {
   throw IoError({file.string(), 0, 0, "--series", message});
@@ -39,17 +32,17 @@ int open_file(const fs::path& file, int flags) {
 GrowingFile::GrowingFile(fs::path file)
     : file_(std::move(file)),
       descriptor_(open_file(file_, O_WRONLY | O_CREAT | O_TRUNC)),
-      hash_(k_no_bytes) {}
+      hash_(k_fnv_of_nothing) {}
 
 GrowingFile::GrowingFile(fs::path file, std::uint64_t size, std::uint64_t hash)
-    : file_(std::move(file)), descriptor_(open_file(file_, O_RDWR)), hash_(k_no_bytes) {
+    : file_(std::move(file)), descriptor_(open_file(file_, O_RDWR)), hash_(k_fnv_of_nothing) {
   try {
     char bytes[1 << 14];
     while (size_ < size) {
       const ssize_t count = ::read(descriptor_, bytes, std::min<std::uint64_t>(sizeof bytes, size - size_));
       if (count < 0 && errno == EINTR) continue;
       if (count <= 0) break;
-      hash_ = hash_more(hash_, bytes, static_cast<std::size_t>(count));
+      hash_ = fnv({bytes, static_cast<std::size_t>(count)}, hash_);
       size_ += static_cast<std::uint64_t>(count);
     }
     if (size_ < size)
@@ -90,7 +83,7 @@ void GrowingFile::add(const std::string& line) {
     written += static_cast<std::size_t>(count);
   }
   size_ += line.size();
-  hash_ = hash_more(hash_, line.data(), line.size());
+  hash_ = fnv(line, hash_);
 }
 
 void GrowingFile::sync() const {
