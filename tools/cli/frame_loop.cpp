@@ -21,9 +21,11 @@ void end_if_interrupted(std::size_t done) {
 
 void add_frame_options(CLI::App& command, FrameOptions& options) {
   command
-      .add_option("--frames", options.range,
-                  "Only frames A to B, B not included, every S-th of them, as in Python: negative numbers "
-                  "count from the end. Many processes may work on one folder; no two write one frame")
+      .add_option(
+          "--frames", options.range,
+          "Only frames A to B, B not included, every S-th of them, as in Python: negative numbers "
+          "count from the end. Many processes may work on one folder; no two write one frame. Who does "
+          "the last frame makes the film, or what plays an export")
       ->option_text("A:B[:S]");
   command.add_flag("--share", options.share,
                    "Take the frames that no other process with --share has taken or done, also those of one "
