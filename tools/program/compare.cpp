@@ -65,14 +65,16 @@ std::optional<double> kinetic_energy(const ParticleFrame& frame, std::span<const
   return sum;
 }
 
-bool all_finite(const Mesh& mesh) {
-  return std::ranges::all_of(mesh.vertices, [](const Vec3& v) { return v.allFinite(); });
+/// Finite, and so that squares of distances are.
+bool can_be_measured(const Mesh& mesh) {
+  return std::ranges::all_of(mesh.vertices,
+                             [](const Vec3& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() < 1e15f; });
 }
 
 SurfaceDistance distance_of(const Mesh& a, const Mesh& b, float spacing, int threads) {
   SurfaceDistance distance{.same_bits = same_bits(a, b)};
   if (distance.same_bits || (a.vertices.empty() && b.vertices.empty())) return distance;
-  if (a.vertices.empty() || b.vertices.empty() || !all_finite(a) || !all_finite(b))
+  if (a.vertices.empty() || b.vertices.empty() || !can_be_measured(a) || !can_be_measured(b))
     return {.same_bits = false, .rms = k_infinity, .largest = k_infinity};
   double squares = 0;
   for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)})
