@@ -2,12 +2,40 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
+#include <string>
 #include <vector>
+
+#include "program/shared_frames.h"
+
+namespace CLI {
+class App;
+}
 
 namespace mallow::cli {
 
+/// Which frames a command works on, and whether others work beside it.
+struct FrameOptions {
+  std::string range;   ///< "A:B" or "A:B:S"; empty: all
+  bool share = false;  ///< take those that nobody has
+  /// Others may work on the same folder.
+  bool shared() const { return share || !range.empty(); }
+};
+/// --frames and --share.
+void add_frame_options(CLI::App& command, FrameOptions& options);
+
+/// Held while a frame is worked on, its done() called once its files are there; null where nobody else can
+/// work on the folder.
+using FrameClaim = std::shared_ptr<const program::SharedFrames::Claim>;
+
 /// Calls `work` for every frame, with progress on stderr. Throws RunFailure at Ctrl-C. Returns how many
-/// frames that were.
+/// frames that were. shared: null where nobody else works on them; else no frame is worked on while another
+/// process does, and with `share` none that is done already: this returns when all are, or are being written
+/// by this process.
+std::size_t for_each_frame(const std::vector<int>& frames, const program::SharedFrames* shared, bool share,
+                           const char* verb,
+                           const std::function<void(int frame, const FrameClaim& claim)>& work);
+/// The same where nobody else works on them.
 std::size_t for_each_frame(const std::vector<int>& frames, const char* verb,
                            const std::function<void(int frame)>& work);
 

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "cli/compare_command.h"
 #include "cli/export_command.h"
 #include "cli/info_command.h"
 #include "cli/materials_command.h"
@@ -24,6 +25,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
   add_surface_command(app);
   add_render_command(app);
   add_export_command(app);
+  add_compare_command(app);
   app.add_subcommand("keys", "Print every key that a scene file may hold")->callback([] {
     std::fputs(mallow::describe_scene_keys().c_str(), stdout);
   });

@@ -15,13 +15,6 @@
 namespace mallow::cli {
 namespace {
 
-/// The frames of which pictures can be taken. A run that was ended early may lack the last frame's surface,
-/// which gets no picture then; one without any shows its particles.
-std::vector<int> frames_to_show(const program::Cache& cache) {
-  const std::vector<int> surfaces = cache.surface_frames();
-  return surfaces.empty() ? cache.particle_frames() : surfaces;
-}
-
 /// Reads the frames one after another, each while the picture of the one before is taken.
 class FrameReader {
  public:
@@ -71,15 +64,49 @@ program::Stills stills_of(const Scene& scene, const program::Cache& cache, const
   return {scene, box.value_or(Aabb{{-1, -1, -1}, {1, 1, 1}}), run.spacings, run.threads};
 }
 
-}  // namespace
-
-std::size_t take_pictures(const Scene& scene, const program::Cache& cache, const PictureRun& run,
-                          program::StageTimes& seconds) {
-  const std::vector<int> frames = frames_to_show(cache);
+/// Ready for pictures of any of `frames`.
+program::Stills prepare(const Scene& scene, const program::Cache& cache, const PictureRun& run,
+                        const std::vector<int>& frames) {
   program::Stills stills = stills_of(scene, cache, run, frames);
   stills.set_frame_time(run.frame_time);
   std::filesystem::create_directories(cache.images_folder());
   cache.remove_images_but(frames);
+  return stills;
+}
+
+}  // namespace
+
+std::vector<int> frames_to_show(const program::Cache& cache) {
+  const std::vector<int> surfaces = cache.surface_frames();
+  return surfaces.empty() ? cache.particle_frames() : surfaces;
+}
+
+std::size_t share_pictures(const Scene& scene, const program::Cache& cache, const PictureRun& run,
+                           const std::vector<int>& chosen, const program::SharedFrames& shared, bool share,
+                           program::StageTimes& seconds) {
+  const bool with_surfaces = !cache.surface_frames().empty();
+  program::Stills stills = prepare(scene, cache, run, frames_to_show(cache));
+  program::BackgroundWriter files;
+  const std::size_t count =
+      for_each_frame(chosen, &shared, share, "rendering", [&](int number, const FrameClaim& claim) {
+        const program::StageTimer timer(seconds, program::Stage::pictures);
+        const ParticleFrame particles = read_particles(cache.particles_file(number));
+        const Mesh surface = with_surfaces ? read_mesh(cache.surface_file(number)) : Mesh{};
+        auto picture = std::make_shared<const render::Image>(stills.take(particles, surface));
+        files.add([&cache, number, picture, claim] {
+          render::write_png(cache.image_file(number), *picture);
+          claim->done();
+        });
+      });
+  const program::StageTimer timer(seconds, program::Stage::pictures);
+  files.finish();
+  return count;
+}
+
+std::size_t take_pictures(const Scene& scene, const program::Cache& cache, const PictureRun& run,
+                          program::StageTimes& seconds) {
+  const std::vector<int> frames = frames_to_show(cache);
+  program::Stills stills = prepare(scene, cache, run, frames);
   FrameReader reader(cache, frames);
   program::BackgroundWriter files;
   for_each_frame(frames, "rendering", [&](int number) {

@@ -3,7 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/film_options.h"
 #include "cli/frame_loop.h"
@@ -12,7 +15,10 @@
 #include "cli/summary.h"
 #include "program/cached_run.h"
 #include "program/failure.h"
+#include "program/film.h"
+#include "program/frame_range.h"
 #include "program/input_files.h"
+#include "program/shared_frames.h"
 #include "program/stills.h"
 
 namespace mallow::cli {
@@ -20,32 +26,69 @@ namespace {
 
 struct RenderOptions : program::CachedRunOptions {
   FilmOptions film;
+  FrameOptions frames;
 };
+
+/// What makes a picture what it is, beside the files that it is taken of.
+std::string job_of(const program::CachedRun& run, const std::vector<int>& frames) {
+  std::string job = print_scene(run.scene) + std::to_string(run.report.value("frame_time", 0.0));
+  for (const int frame : frames) job += ' ' + std::to_string(frame);  // the camera has all of them in view
+  return job;
+}
+
+PictureRun picture_run(const program::CachedRun& run) {
+  return {
+      .spacings = run.spacings, .frame_time = run.report.value("frame_time", 0.0), .threads = run.threads};
+}
+
+/// Film, scene and reports, once all pictures are there.
+void finish(const RenderOptions& options, program::CachedRun& run, program::StageTimes& seconds) {
+  {
+    const program::StageTimer timer(seconds, program::Stage::film);
+    make_film(options.film, run.cache, run.scene.render.frames_per_second, run.threads);
+  }
+  program::close_cached_run(run, seconds, std::array{program::Stage::pictures, program::Stage::film});
+  write_summary(run.cache, run.scene, run.report);
+}
+
+/// Beside other processes; the one that finds all pictures taken joins the film.
+void share_rendering(const RenderOptions& options, program::CachedRun& run, const std::vector<int>& chosen) {
+  const program::Cache& cache = run.cache;
+  const std::vector<int> frames = frames_to_show(cache);
+  const program::SharedFrames shared(
+      cache.folder(), "render", job_of(run, frames), [&](int frame) -> program::SharedFrames::Files {
+        return {{cache.particles_file(frame), cache.surface_file(frame)}, {cache.image_file(frame)}};
+      });
+  program::StageTimes seconds{};
+  const std::size_t count =
+      share_pictures(run.scene, cache, picture_run(run), chosen, shared, options.frames.share, seconds);
+  std::vector<std::filesystem::path> made;
+  if (!options.film.no_film && program::can_make_films())
+    made.push_back(options.film.file.empty() ? cache.film_file() : std::filesystem::path(options.film.file));
+  const std::size_t left = shared.join(frames, made, [&] { finish(options, run, seconds); });
+  std::printf("pictures %zu\n", count);
+  if (left > 0) std::printf("left %zu, and the film\n", left);
+}
 
 void render_cache(const RenderOptions& options) {
   check_film(options.film);
   program::CachedRun run = program::open_cached_run(options, "render");
   print_warning(run.cache.lock_warning());
-  const program::Cache& cache = run.cache;
   program::InputFiles(run.scene).refuse(options.film.file, "--film");
   program::check_environment(run.scene);
-  program::StageTimes seconds{};
-  std::size_t count = 0;
+  const std::vector<int> chosen = program::choose_frames(options.frames.range, frames_to_show(run.cache));
   try {
-    count = take_pictures(
-        run.scene, cache,
-        {.spacings = run.spacings, .frame_time = run.report.value("frame_time", 0.0), .threads = run.threads},
-        seconds);
-    {
-      const program::StageTimer timer(seconds, program::Stage::film);
-      make_film(options.film, cache, run.scene.render.frames_per_second, run.threads);
+    if (options.frames.shared()) {
+      share_rendering(options, run, chosen);
+    } else {
+      program::StageTimes seconds{};
+      const std::size_t count = take_pictures(run.scene, run.cache, picture_run(run), seconds);
+      finish(options, run, seconds);
+      std::printf("pictures %zu\n", count);
     }
-    program::close_cached_run(run, seconds, std::array{program::Stage::pictures, program::Stage::film});
-    write_summary(run.cache, run.scene, run.report);
   } catch (const std::exception& error) {
     throw program::RunFailure(error.what());
   }
-  std::printf("pictures %zu\n", count);
   require_film(options.film);
 }
 
@@ -64,7 +107,11 @@ void add_render_command(CLI::App& app) {
   command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
       ->check(CLI::Range(0, 1024));
   add_film_options(*command, options->film);
-  command->callback([options] { render_cache(*options); });
+  add_frame_options(*command, options->frames);
+  command->callback([options] {
+    options->shared = options->frames.shared();
+    render_cache(*options);
+  });
 }
 
 }  // namespace mallow::cli

@@ -34,6 +34,7 @@
 #include "program/run_loop.h"
 #include "program/run_plan.h"
 #include "program/run_report.h"
+#include "program/series.h"
 #include "program/shell_word.h"
 #include "program/stills.h"
 
@@ -51,6 +52,7 @@ struct RunOptions {
   int threads = 0;
   std::string state_out;
   std::string report;
+  std::string series;
   FilmOptions film;
   bool no_surface = false;
   bool no_images = false;
@@ -65,6 +67,7 @@ struct Run {
   std::optional<Simulation> simulation;
   std::vector<Skin> skins;  ///< that are drawn
   std::optional<program::Cache> cache;
+  std::optional<program::Series> series;
 };
 
 /// No output may be another one, or a file of the folder that means something else there.
@@ -85,6 +88,7 @@ void check_apart(const RunOptions& options) {
   add(options.report, "--report", "the run's report.json");
   add(options.film.file, "--film", "the run's film.mp4");
   add(options.state_out, "--state-out");
+  add(options.series, "--series");
 }
 
 /// All that can be known to be wrong before anything is read.
@@ -92,6 +96,7 @@ void check_outputs(const RunOptions& options) {
   if (!options.out.empty()) program::Cache::check(options.out, options.overwrite);
   if (!options.state_out.empty()) program::check_writable(options.state_out);
   if (!options.report.empty()) program::check_writable(options.report);
+  if (!options.series.empty()) program::check_writable(options.series);
   check_film(options.film);
   check_apart(options);
 }
@@ -101,6 +106,7 @@ void refuse_inputs(const RunOptions& options, const Scene& scene) {
   const program::InputFiles inputs(scene);
   inputs.refuse(options.state_out, "--state-out");
   inputs.refuse(options.report, "--report");
+  inputs.refuse(options.series, "--series");
   inputs.refuse(options.film.file, "--film");
   if (!options.out.empty()) program::Cache::refuse_inputs(options.out, inputs, "--out", true);
   // A run that goes on reads its own scene.toml, and writes there what of it has changed.
@@ -129,7 +135,8 @@ void describe(const Scene& scene, int threads, Simulation& simulation, program::
 }
 
 Run begin(const RunOptions& options, int threads) {
-  Run run{.scene = scene_of(options), .plan = {}, .report = {}, .simulation = {}, .skins = {}, .cache = {}};
+  Run run;
+  run.scene = scene_of(options);
   refuse_inputs(options, run.scene);
   if (!options.out.empty()) program::Cache::check_names(options.out, run.scene);
   run.plan = {.frames = run.scene.run.frames,
@@ -144,6 +151,8 @@ Run begin(const RunOptions& options, int threads) {
   {
     const program::StageTimer timer(run.report.stage_seconds, program::Stage::build);
     std::vector<std::string> notes;
+    if (!options.series.empty())  // which tells of the loads; no scene file has a word for them
+      for (Collider& collider : run.scene.colliders) collider.measure_load = true;
     run.simulation.emplace(build(run.scene, threads, &notes));
     print_notes(notes);
     if (run.plan.surface && !options.out.empty()) run.skins = skins(run.scene, *run.simulation, threads);
@@ -153,6 +162,7 @@ Run begin(const RunOptions& options, int threads) {
     run.cache = program::Cache::create(options.out, options.overwrite);
     print_warning(run.cache->lock_warning());
   }
+  if (!options.series.empty()) run.series.emplace(options.series, *run.simulation);
   return run;
 }
 
@@ -187,6 +197,21 @@ void take_changes(const Scene& now, bool own, const std::string& file, Scene& sc
   scene.run.frames = now.run.frames;
 }
 
+/// The series of a run that goes on, behind the rows that its checkpoint knows of.
+void resume_series(const RunOptions& options, const program::CheckpointedRun& saved, Run& run) try {
+  if (!saved.series.empty()) {
+    run.series.emplace(saved.series, options.series, *run.simulation);
+  } else if (!options.series.empty()) {
+    throw IoError(
+        {options.series, 0, 0, "--series",
+         "cannot be begun in the middle: this run was started without --series, so that the rows up "
+         "to frame " +
+             std::to_string(saved.report.frames) + " are not known"});
+  }
+} catch (const nlohmann::json::exception& error) {
+  throw IoError({saved.file.string(), 0, 0, "", error.what()});
+}
+
 /// The run in a folder as its newest whole checkpoint has it.
 Run resume(const RunOptions& options, int threads) {
   const auto started = std::chrono::steady_clock::now();
@@ -206,8 +231,14 @@ Run resume(const RunOptions& options, int threads) {
   take_changes(cache.moved_here(scene_now), own, now.file, saved.scene);
   if (options.frames) saved.scene.run.frames = *options.frames;
 
-  Run run{std::move(saved.scene), saved.plan,      std::move(saved.report), std::move(saved.simulation),
-          std::move(saved.skins), std::move(cache)};
+  Run run;
+  run.simulation = std::move(saved.simulation);
+  resume_series(options, saved, run);
+  run.scene = std::move(saved.scene);
+  run.plan = saved.plan;
+  run.report = std::move(saved.report);
+  run.skins = std::move(saved.skins);
+  run.cache = std::move(cache);
   if (options.frames) run.plan.steps.reset();
   if (options.steps) run.plan.steps = options.steps;
   run.plan.frames = run.scene.run.frames;
@@ -246,8 +277,8 @@ void simulate(Run& run, const program::Cache* cache) {
     callbacks.after_step = [&](const program::RunReport& report) { progress.show(report.steps); };
   else
     callbacks.after_frame = [&](const program::RunReport& report) { progress.show(report.frames); };
-  const program::RunEnd end =
-      program::run_frames(run.scene, *run.simulation, run.skins, run.plan, cache, run.report, callbacks);
+  const program::RunEnd end = program::run_frames(run.scene, *run.simulation, run.skins, run.plan, cache,
+                                                  run.report, callbacks, run.series ? &*run.series : nullptr);
   if (end == program::RunEnd::complete) return;
   const std::string said = "interrupted after " + std::to_string(run.report.steps) + " steps";
   throw program::Interrupted(
@@ -376,6 +407,11 @@ void add_run_command(CLI::App& app) {
   command->add_option("--state-out", options->state_out,
                       "Write the state after the last step to this CSV file");
   command->add_option("--report", options->report, "Write what ran and how long it took to this JSON file");
+  command->add_option(
+      "--series", options->series,
+      "Write a row for each frame to this CSV file: heights, volume, energies, forces and more, "
+      "see below. --resume continues it; with --series where it was moved to");
+  command->footer(program::series_help());
   command->add_flag("--no-surface", options->no_surface, "Make no surfaces; pictures show the particles");
   CLI::Option* no_images =
       command->add_flag("--no-images", options->no_images, "Make no pictures and no film");

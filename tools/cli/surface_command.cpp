@@ -15,55 +15,99 @@
 #include "program/background_writer.h"
 #include "program/cached_run.h"
 #include "program/failure.h"
+#include "program/frame_range.h"
 #include "program/frame_surface.h"
+#include "program/shared_frames.h"
 
 namespace mallow::cli {
 namespace {
 
-void draw_surfaces(const program::CachedRunOptions& options) {
+struct SurfaceOptions : program::CachedRunOptions {
+  FrameOptions frames;
+};
+
+/// Draws the surface of a frame with the settings of a run.
+class Redrawer {
+ public:
+  explicit Redrawer(const program::CachedRun& run)
+      : run_(run), surfacer_(run.scene.surface, run.threads), skinned_(skinned_bodies(run.scene)) {}
+
+  /// Skins follow what only the run knew: they stay as they were drawn.
+  Mesh draw(int number) {
+    const ParticleFrame frame = read_particles(run_.cache.particles_file(number));
+    SurfaceParticles particles = surface_particles(frame, run_.spacings);
+    const std::filesystem::path earlier = run_.cache.surface_file(number);
+    const bool any = std::ranges::find(skinned_, true) != skinned_.end();
+    if (!any || !std::filesystem::exists(earlier)) return surfacer_.draw(particles);
+    std::erase_if(particles.bodies, [&](const SurfaceBody& body) { return skinned_[body.body]; });
+    Mesh mesh;
+    if (!particles.bodies.empty()) mesh = surfacer_.draw(particles);
+    program::append(program::part_of(read_mesh(earlier), skinned_), mesh);
+    return mesh;
+  }
+
+ private:
+  const program::CachedRun& run_;
+  Surfacer surfacer_;
+  std::vector<bool> skinned_;
+};
+
+/// Draws frames; shared: where other processes do so too, else null. Returns how many.
+std::size_t draw_frames(const SurfaceOptions& options, const program::CachedRun& run,
+                        const std::vector<int>& frames, const program::SharedFrames* shared,
+                        program::StageTimes& seconds) {
+  std::filesystem::create_directories(run.cache.surface_file(0).parent_path());
+  Redrawer redrawer(run);
+  program::BackgroundWriter files;
+  const std::size_t count = for_each_frame(
+      frames, shared, options.frames.share, "surfacing", [&](int number, const FrameClaim& claim) {
+        const program::StageTimer timer(seconds, program::Stage::surface);
+        const auto mesh = std::make_shared<const Mesh>(redrawer.draw(number));
+        files.add([file = run.cache.surface_file(number), mesh, claim] {
+          write_mesh_ply(file, *mesh);
+          if (claim) claim->done();
+        });
+      });
+  const program::StageTimer timer(seconds, program::Stage::surface);
+  files.finish();
+  return count;
+}
+
+void draw_surfaces(const SurfaceOptions& options) {
   program::CachedRun run = program::open_cached_run(options, "surface");
   print_warning(run.cache.lock_warning());
   program::StageTimes seconds{};
-  std::size_t count = 0;
-  try {
-    std::filesystem::create_directories(run.cache.surface_file(0).parent_path());
-    Surfacer surfacer(run.scene.surface, run.threads);
-    program::BackgroundWriter files;
-    // Skins follow what only the run knew: they stay as they were drawn.
-    const std::vector<bool> skinned = skinned_bodies(run.scene);
-    const auto draw = [&](const ParticleFrame& frame, int number) {
-      SurfaceParticles particles = surface_particles(frame, run.spacings);
-      const std::filesystem::path earlier = run.cache.surface_file(number);
-      const bool any = std::ranges::find(skinned, true) != skinned.end();
-      if (!any || !std::filesystem::exists(earlier)) return surfacer.draw(particles);
-      std::erase_if(particles.bodies, [&](const SurfaceBody& body) { return skinned[body.body]; });
-      Mesh mesh;
-      if (!particles.bodies.empty()) mesh = surfacer.draw(particles);
-      program::append(program::part_of(read_mesh(earlier), skinned), mesh);
-      return mesh;
-    };
-    count = for_each_frame(run.cache.particle_frames(), "surfacing", [&](int number) {
-      const program::StageTimer timer(seconds, program::Stage::surface);
-      const ParticleFrame frame = read_particles(run.cache.particles_file(number));
-      const auto mesh = std::make_shared<const Mesh>(draw(frame, number));
-      files.add([file = run.cache.surface_file(number), mesh] { write_mesh_ply(file, *mesh); });
-    });
-    {
-      const program::StageTimer timer(seconds, program::Stage::surface);
-      files.finish();
-    }
+  const std::vector<int> frames = run.cache.particle_frames();
+  const std::vector<int> chosen = program::choose_frames(options.frames.range, frames);
+  const auto finish = [&] {
     program::close_cached_run(run, seconds, std::array{program::Stage::surface});
     write_summary(run.cache, run.scene, run.report);
+  };
+  std::size_t count = 0, left = 0;
+  try {
+    if (options.frames.shared()) {
+      const program::SharedFrames shared(
+          run.cache.folder(), "surface", print_scene(run.scene),
+          [&](int frame) -> program::SharedFrames::Files {
+            return {{run.cache.particles_file(frame)}, {run.cache.surface_file(frame)}};
+          });
+      count = draw_frames(options, run, chosen, &shared, seconds);
+      left = shared.join(frames, {}, finish);
+    } else {
+      count = draw_frames(options, run, frames, nullptr, seconds);
+      finish();
+    }
   } catch (const std::exception& error) {
     throw program::RunFailure(error.what());
   }
   std::printf("surfaces %zu\n", count);
+  if (left > 0) std::printf("left %zu\n", left);
 }
 
 }  // namespace
 
 void add_surface_command(CLI::App& app) {
-  const auto options = std::make_shared<program::CachedRunOptions>();
+  const auto options = std::make_shared<SurfaceOptions>();
   CLI::App* command =
       app.add_subcommand("surface", "Draw the surfaces of an earlier run again, from its particles");
   command->add_option("DIR", options->folder, "The --out folder of a run")->required();
@@ -76,7 +120,11 @@ void add_surface_command(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
       ->check(CLI::Range(0, 1024));
-  command->callback([options] { draw_surfaces(*options); });
+  add_frame_options(*command, options->frames);
+  command->callback([options] {
+    options->shared = options->frames.shared();
+    draw_surfaces(*options);
+  });
 }
 
 }  // namespace mallow::cli

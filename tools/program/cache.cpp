@@ -13,6 +13,7 @@
 #include "mallow/errors.h"
 #include "mallow/files.h"
 #include "program/run_report.h"
+#include "program/shared_frames.h"
 #include "program/shell_word.h"
 
 namespace mallow::program {
@@ -186,6 +187,7 @@ Cache Cache::create(const fs::path& folder, bool overwrite) {
     // Between the check and the lock somebody else may have run here, or be gone again.
     if (!overwrite && !holds_nothing_but_mark(folder)) refuse(folder, "is not empty any more");
     for (const fs::path& file : cache.files()) fs::remove(file);
+    for (const fs::path& shared : {folder, folder / "export"}) forget_shared_frames(shared);
     for (const char* empty : {"export/surface", "export/particles", "export", "surface", "images"})
       remove_if_empty(folder / empty);
     fs::create_directories(folder / "particles");
@@ -203,6 +205,7 @@ Cache Cache::open_to_resume(const fs::path& folder) {
                    std::string("holds no run of mallow (no ") + (marked ? "scene.toml" : k_run_mark) +
                        "); start one with: mallow run SCENE --out " + shell_word(folder.string())});
   cache.lock_ = RunLock::for_writing(folder);
+  forget_shared_frames(folder);
   for (const fs::path& file : cache.half_written_files()) {
     std::error_code ignored;
     fs::remove(file, ignored);
@@ -221,10 +224,13 @@ Cache Cache::open(const fs::path& folder, Access access) {
   const bool marked = mark_state(folder) == MarkState::run;
   if (!marked && !is_unmarked_run(folder))
     throw IoError({folder.string(), 0, 0, "", std::string("holds no run of mallow (no ") + k_run_mark + ")"});
-  if (access == Access::write)
+  if (access == Access::write) {
     cache.lock_ = RunLock::for_writing(folder);
-  else if (marked)
-    cache.lock_ = RunLock::for_reading(folder);
+    forget_shared_frames(folder);
+  } else {
+    if (!marked && access == Access::share) RunLock::for_writing(folder);  // makes the mark
+    if (marked || access == Access::share) cache.lock_ = RunLock::for_reading(folder);
+  }
   if (cache.particle_frames().empty())
     throw IoError({folder.string(), 0, 0, "", "holds no particles of any frame"});
   return cache;

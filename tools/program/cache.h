@@ -20,6 +20,7 @@ std::filesystem::path frame_name(int frame, const std::string& ending);
 ///   checkpoint  checkpoint.previous  what an unfinished run goes on from
 ///   particles/frame_000000.ply  surface/frame_000000.ply  images/frame_000000.png
 ///   export/                     what `mallow export` made of these for other programs
+///   .mallow-share/              who works on which frame, where several programs share them
 /// Frame 0 is the initial state. A folder of an earlier mallow has no mark: it is known by its report.json
 /// and its frame 0, gets a mark from what writes into it, but is not overwritten.
 class Cache {
@@ -50,9 +51,9 @@ class Cache {
   /// The cache of a run that goes on; removes what a killed writer left half written. Throws IoError where
   /// the folder holds no run or is in use.
   static Cache open_to_resume(const std::filesystem::path& folder);
-  /// The cache of an earlier run, to write into it or to read it alone. Throws IoError where the folder holds
-  /// none or is in use.
-  enum class Access { read, write };
+  /// The cache of an earlier run, to write into it, to read it, or to write into it beside others that do the
+  /// same (SharedFrames). Throws IoError where the folder holds none or is in use.
+  enum class Access { read, write, share };
   static Cache open(const std::filesystem::path& folder, Access access);
 
   /// Throws IoError where the scene.toml of a run in `folder` could not name the scene's files: TOML has no

@@ -6,6 +6,7 @@
 #include "mallow/errors.h"
 #include "program/input_files.h"
 #include "program/machine.h"
+#include "program/shared_frames.h"
 
 namespace mallow::program {
 namespace {
@@ -50,7 +51,10 @@ std::string with_surface_as_run(const Scene& scene, nlohmann::ordered_json& repo
 CachedRun open_cached_run(const CachedRunOptions& options, const std::string& section) {
   check_overrides(options.overrides, section);
   const bool writes = !section.empty();
-  Cache cache = Cache::open(options.folder, writes ? Cache::Access::write : Cache::Access::read);
+  const Cache::Access access = options.shared ? Cache::Access::share : Cache::Access::write;
+  Cache cache = Cache::open(options.folder, writes ? access : Cache::Access::read);
+  // Scene and report belong together: not one from before another process wrote them, one from after.
+  const auto lock = writes && options.shared ? lock_shared_folder(options.folder) : nullptr;
   // A cache stands anywhere, its scene's files where they were; from here on none of them is read.
   constexpr SceneReadOptions k_anywhere{.allow_outside_paths = true};
   nlohmann::ordered_json report = read_report(cache.report_file());

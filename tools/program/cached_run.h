@@ -16,6 +16,7 @@ struct CachedRunOptions {
   std::string folder;
   std::vector<std::string> overrides;  ///< "section.key=value"
   int threads = 0;                     ///< 0: one for each processor
+  bool shared = false;                 ///< others may write into the folder too, see SharedFrames
 };
 
 /// An earlier run, read back.
@@ -30,7 +31,7 @@ struct CachedRun {
 /// Throws IoError and ConfigError. `section`: the one whose keys may be changed, as the motion is there
 /// already, with "render" also which colliders are visible; empty: none, and the run stays as it is.
 /// Overrides of "surface" count on top of the scene as it was run, not as an earlier call drew it. No other
-/// program writes into the folder while the run lives.
+/// program writes into the folder while the run lives, but for those with which it is shared.
 CachedRun open_cached_run(const CachedRunOptions& options, const std::string& section);
 
 /// Writes the scene as it was changed, and the report with the new times of `stages`.

@@ -15,6 +15,7 @@ namespace {
 constexpr const char* k_scene = "run.scene";
 constexpr const char* k_plan = "run.plan";
 constexpr const char* k_progress = "run.progress";
+constexpr const char* k_series = "run.series";
 /// Skins are counted from 0.
 std::string skin_chunk(std::size_t number) {
   return "run.skin." + std::to_string(number);
@@ -61,12 +62,14 @@ std::vector<Skin> restore_skins(const SavedState& state, int threads) {
 CheckpointedRun load(const fs::path& file, const Cache& cache, int threads) try {
   const SavedState state = read_checkpoint(file);
   RunReport report;
+  const std::string* series = state.find(k_series);
   report.set_progress(nlohmann::ordered_json::parse(require_chunk(state, k_progress)));
   return {parse_scene(require_chunk(state, k_scene), cache.scene_file(), {}, {.allow_outside_paths = true}),
           read_plan(require_chunk(state, k_plan)),
           std::move(report),
           Simulation::restore(state, threads),
           restore_skins(state, threads),
+          series ? *series : std::string(),
           file,
           ""};
 } catch (const ConfigError& error) {
@@ -97,11 +100,12 @@ bool Checkpoints::due_after_frame(int frame) const {
 }
 
 SavedState Checkpoints::take(const Simulation& simulation, std::span<const Skin> skins,
-                             const RunReport& report) {
+                             const RunReport& report, const Series* series) {
   SavedState state = simulation.save();
   state.chunks.push_back({k_scene, scene_});
   state.chunks.push_back({k_plan, plan_});
   state.chunks.push_back({k_progress, dumped(report.progress())});
+  if (series) state.chunks.push_back({k_series, series->saved()});
   for (std::size_t k = 0; k < skins.size(); ++k) state.chunks.push_back({skin_chunk(k), skins[k].save()});
   taken_ = Clock::now();
   return state;

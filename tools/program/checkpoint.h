@@ -13,6 +13,7 @@
 #include "program/cache.h"
 #include "program/run_plan.h"
 #include "program/run_report.h"
+#include "program/series.h"
 
 namespace mallow::program {
 
@@ -23,7 +24,9 @@ class Checkpoints {
 
   bool due_after_step() const;
   bool due_after_frame(int frame) const;
-  SavedState take(const Simulation& simulation, std::span<const Skin> skins, const RunReport& report);
+  /// series: null where the run writes none.
+  SavedState take(const Simulation& simulation, std::span<const Skin> skins, const RunReport& report,
+                  const Series* series);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -41,6 +44,7 @@ struct CheckpointedRun {
   RunReport report;
   Simulation simulation;
   std::vector<Skin> skins;
+  std::string series;          ///< Series::saved(); empty where the run writes none
   std::filesystem::path file;  ///< the checkpoint
   std::string passed_over;     ///< why it is not the newest one; empty where it is
 };

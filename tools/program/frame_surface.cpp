@@ -30,6 +30,17 @@ Mesh FrameSurface::draw(const Simulation& simulation) {
   return mesh;
 }
 
+double enclosed_volume(const Mesh& mesh) {
+  double volume = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const auto corner = [&](std::uint32_t v) -> Eigen::Vector3d {
+      return (mesh.vertices[v] - mesh.vertices[0]).cast<double>();  // near 0, where no digits are lost
+    };
+    volume += corner(a).dot(corner(b).cross(corner(c))) / 6;
+  }
+  return volume;
+}
+
 void append(const Mesh& part, Mesh& mesh) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   append(part.vertices, mesh.vertices);

@@ -23,6 +23,8 @@ class FrameSurface {
   std::span<Skin> skins_;
 };
 
+/// The volume that a closed mesh encloses [m³].
+double enclosed_volume(const Mesh& mesh);
 /// Adds the vertices and triangles of `part`, which has the same columns.
 void append(const Mesh& part, Mesh& mesh);
 /// The vertices of some bodies and the triangles between them, in their order. chosen: by material id.

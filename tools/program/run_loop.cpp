@@ -22,9 +22,10 @@ namespace {
 class FrameWriter {
  public:
   FrameWriter(const Scene& scene, std::span<Skin> skins, const RunPlan& plan, const Cache& cache,
-              const ParticleFrame& first, RunReport& report)
+              const ParticleFrame& first, RunReport& report, const Series* series)
       : cache_(cache),
         report_(report),
+        series_(series),
         skins_(skins),
         checkpoints_(scene, plan, cache),
         whole_frames_(report.frames) {
@@ -53,8 +54,9 @@ class FrameWriter {
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
 
-  /// frame: the particles of the simulation as they are now.
-  void write(int number, const Simulation& simulation, const std::shared_ptr<const ParticleFrame>& frame) {
+  /// frame: the particles of the simulation as they are now. Returns the surface where there is one.
+  std::shared_ptr<const Mesh> write(int number, const Simulation& simulation,
+                                    const std::shared_ptr<const ParticleFrame>& frame) {
     {
       const StageTimer timer(report_.stage_seconds, Stage::particles);
       files_.add([this, number, frame] {
@@ -76,18 +78,21 @@ class FrameWriter {
       auto picture = std::make_shared<const render::Image>(stills_->take(*frame, *mesh));
       files_.add([this, number, picture] { render::write_png(cache_.image_file(number), *picture); });
     }
+    return surface_ ? mesh : nullptr;
   }
 
   /// A checkpoint behind the files of all frames so far, so that those need not be made again.
   void write_checkpoint(const Simulation& simulation) {
-    const auto state = std::make_shared<const SavedState>(checkpoints_.take(simulation, skins_, report_));
+    const auto state =
+        std::make_shared<const SavedState>(checkpoints_.take(simulation, skins_, report_, series_));
     files_.add([this, state] { mallow::write_checkpoint(cache_.checkpoint_file(), *state); });
   }
   void after_step(const Simulation& simulation) {
     if (checkpoints_.due_after_step()) write_checkpoint(simulation);
   }
   void after_frame(const Simulation& simulation) {
-    if (checkpoints_.due_after_frame(report_.frames)) write_checkpoint(simulation);
+    if (checkpoints_.due_after_frame(report_.frames) || checkpoints_.due_after_step())
+      write_checkpoint(simulation);
   }
 
   /// Waits until all files are there.
@@ -99,6 +104,7 @@ class FrameWriter {
  private:
   const Cache& cache_;
   RunReport& report_;
+  const Series* series_;
   std::span<Skin> skins_;
   Checkpoints checkpoints_;
   std::optional<FrameSurface> surface_;
@@ -125,13 +131,19 @@ void write_last_checkpoint(const Simulation& simulation, FrameWriter& writer, co
 }  // namespace
 
 RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> skins, const RunPlan& plan,
-                  const Cache* cache, RunReport& report, const RunCallbacks& callbacks) {
+                  const Cache* cache, RunReport& report, const RunCallbacks& callbacks, Series* series) {
   std::optional<FrameWriter> writer;
+  const auto add_row = [&](int number, const Mesh* surface) {
+    if (!series) return;
+    series->add_row(number, simulation, surface ? std::optional(enclosed_volume(*surface)) : std::nullopt);
+  };
+  std::shared_ptr<const Mesh> surface;
   if (cache) {
     const auto first = first_frame(simulation, *cache);
-    writer.emplace(scene, skins, plan, *cache, *first, report);
-    if (report.steps == 0) writer->write(0, simulation, first);
+    writer.emplace(scene, skins, plan, *cache, *first, report, series);
+    if (report.steps == 0) surface = writer->write(0, simulation, first);
   }
+  if (report.steps == 0) add_row(0, surface.get());
 
   const auto steps_left = [&] { return !plan.steps || report.steps < *plan.steps; };
   const auto ended = [&] { return plan.steps ? !steps_left() : report.frames >= plan.frames; };
@@ -147,13 +159,17 @@ RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> sk
         const StageTimer timer(report.stage_seconds, Stage::motion);
         const StepReport step = simulation.step_towards(frame_end);
         report.add(step, simulation.events());
+        if (series) series->add_step(step, simulation);
       }
-      if (writer) writer->after_step(simulation);
+      // At the end of a frame its files and its row come first.
+      if (writer && simulation.time() < frame_end) writer->after_step(simulation);
       if (callbacks.after_step) callbacks.after_step(report);
     }
     if (simulation.time() < frame_end) break;
     if (writer)
-      writer->write(number, simulation, std::make_shared<const ParticleFrame>(snapshot(simulation)));
+      surface =
+          writer->write(number, simulation, std::make_shared<const ParticleFrame>(snapshot(simulation)));
+    add_row(number, surface.get());
     report.frames = number;
     if (writer) writer->after_frame(simulation);
     if (callbacks.after_frame) callbacks.after_frame(report);

@@ -136,10 +136,10 @@ RunLock RunLock::for_reading(const fs::path& folder) {
   return {mark.release(), std::move(warning), false};
 }
 
-RunLock RunLock::for_exports(const fs::path& folder) {
+RunLock RunLock::for_exports(const fs::path& folder, bool shared) {
   Descriptor place(folder, O_RDONLY | O_DIRECTORY);
   if (place.value() < 0) fail(folder, std::string("cannot be opened: ") + std::strerror(errno));
-  std::string warning = lock(place.value(), LOCK_EX, folder);
+  std::string warning = lock(place.value(), shared ? LOCK_SH : LOCK_EX, folder);
   return {place.release(), std::move(warning), false};
 }
 

@@ -29,8 +29,9 @@ class RunLock {
   static RunLock for_writing(const std::filesystem::path& folder);
   /// Nobody writes. Throws IoError where somebody does.
   static RunLock for_reading(const std::filesystem::path& folder);
-  /// Nobody else exports into `folder`, which has no mark: the lock is on the folder itself.
-  static RunLock for_exports(const std::filesystem::path& folder);
+  /// Nobody else exports into `folder`, which has no mark: the lock is on the folder itself. shared: but for
+  /// others that say the same, and share the frames.
+  static RunLock for_exports(const std::filesystem::path& folder, bool shared = false);
 
   ~RunLock();
   RunLock(RunLock&& other) noexcept;

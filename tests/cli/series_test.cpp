@@ -1,0 +1,166 @@
+// mallow run --series: a row for each frame, whatever interrupts the run.
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "cli/program.h"
+#include "mallow/files.h"
+#include "program/frame_surface.h"
+
+namespace mallow::test {
+namespace series_test {
+
+namespace fs = std::filesystem;
+
+/// The columns of a series, by name without unit; cells stand between commas and none is in quotes.
+std::map<std::string, std::vector<double>> columns(const std::string& text) {
+  std::istringstream lines(text);
+  std::string line, cell;
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<double>> columns;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    for (std::size_t k = 0; std::getline(cells, cell, ','); ++k)
+      if (columns.empty() || names.size() == k)
+        columns[names.emplace_back(cell.substr(0, cell.find(" [")))];
+      else
+        columns.at(names.at(k)).push_back(std::strtod(cell.c_str(), nullptr));
+  }
+  return columns;
+}
+
+class cli_series : public CliTest {
+ protected:
+  bool wait_for_lines(const std::string& file, int lines) const {
+    for (int k = 0; k < 20000; ++k) {
+      const std::string text = read_text(folder_ / file);
+      if (std::count(text.begin(), text.end(), '\n') >= lines) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
+};
+
+TEST_F(cli_series, has_a_row_for_each_frame_and_changes_no_bit_of_the_run) {
+  const Outcome with = run({"--frames", "12", "--series", at("a.csv")}), without = run({"--frames", "12"});
+  ASSERT_EQ(with.exit_code, 0) << with.err;
+  EXPECT_EQ(with.out, without.out);
+  const std::string text = read_text(at("a.csv"));
+  EXPECT_TRUE(text.starts_with("frame,time [s],steps,particles,height [m],")) << text;
+  auto series = columns(text);
+  ASSERT_EQ(series.at("frame").size(), 13u);
+  for (std::size_t k = 0; k <= 12; ++k) {
+    EXPECT_EQ(series.at("frame")[k], static_cast<double>(k));
+    EXPECT_NEAR(series.at("time")[k], 0.45 * static_cast<double>(k), 1e-9);
+    EXPECT_EQ(series.at("steps")[k], 3 * static_cast<double>(k));
+    EXPECT_EQ(series.at("particles")[k], 125);
+    EXPECT_EQ(series.at("parts")[k], 1);
+  }
+  EXPECT_NEAR(series.at("height")[0], 4, 0.4);
+  EXPECT_NEAR(series.at("volume")[0], 125, 0.02 * 125);
+  ASSERT_EQ(run({"--frames", "12", "--series", at("b.csv"), "--threads", "3"}).exit_code, 2) << "given twice";
+  ASSERT_EQ(
+      run_mallow({"run", scene_, "--frames", "12", "--series", at("b.csv"), "--threads", "3"}).exit_code, 0);
+  EXPECT_EQ(read_text(at("b.csv")), text) << "whatever the number of threads";
+}
+
+TEST_F(cli_series, forces_on_colliders_and_weight_are_what_changes_the_momentum) {
+  ASSERT_EQ(run({"--frames", "20", "--series", at("a.csv")}).exit_code, 0);
+  auto series = columns(read_text(at("a.csv")));
+  const std::vector<double>&time = series.at("time"), &momentum = series.at("momentum_z");
+  const double weight = -momentum[1] / time[1];  // it falls freely at first
+  EXPECT_GT(weight, 0);
+  double largest = 0;
+  for (std::size_t k = 1; k < time.size(); ++k) {
+    const double force = series.at("collider[0].force_z")[k];  // the floor is pushed down
+    const double seconds = time[k] - time[k - 1];
+    EXPECT_NEAR(momentum[k] - momentum[k - 1], (-weight - force) * seconds, 2e-5 * weight * time.back()) << k;
+    largest = std::max(largest, -force);
+  }
+  EXPECT_GT(largest, weight) << "it has hit the floor";
+}
+
+TEST_F(cli_series, volume_is_that_of_the_surface_where_one_is_drawn) {
+  ASSERT_EQ(run({"--out", at("out"), "--series", at("a.csv")}).exit_code, 0);
+  const auto series = columns(read_text(at("a.csv")));
+  for (const int frame : {0, 1, 2}) {
+    const Mesh mesh = read_mesh(at("out/surface/frame_00000" + std::to_string(frame) + ".ply"));
+    EXPECT_NEAR(series.at("volume")[static_cast<std::size_t>(frame)], program::enclosed_volume(mesh), 1e-6);
+  }
+}
+
+TEST_F(cli_series, of_several_bodies_has_columns_of_each) {
+  std::string scene = read_text(scene_);
+  scene.insert(scene.find("[[collider]]"), R"([[body]]
+material = "paste"
+group = "ball, high"
+box = { count = [3, 3, 3], spacing = 1.0, corner = [-1, -1, 8] }
+)");
+  ASSERT_EQ(run_mallow({"run", write("two.toml", scene).string(), "--series", at("a.csv")}).exit_code, 0);
+  const std::string text = read_text(at("a.csv"));
+  EXPECT_NE(text.find(",cube.height [m],cube.top [m],cube.x [m],"), std::string::npos) << text;
+  EXPECT_NE(text.find(",\"ball, high.height [m]\","), std::string::npos) << text;
+}
+
+TEST_F(cli_series, of_an_interrupted_run_goes_on_to_the_same_bytes) {
+  const std::vector<std::string> what = {"run", scene_, "--frames", "40", "--no-images"};
+  std::vector<std::string> whole = what, halves = what;
+  whole.insert(whole.end(), {"--out", at("whole"), "--series", at("whole.csv"), "--threads", "1"});
+  halves.insert(halves.end(), {"--out", at("halves"), "--series", at("halves.csv"), "--threads", "2",
+                               "--checkpoint-seconds", "1e-9"});
+  ASSERT_EQ(run_mallow(whole).exit_code, 0);
+  {
+    Running running(halves);
+    ASSERT_TRUE(wait_for_lines("halves.csv", 6));
+    running.send(SIGINT);
+    ASSERT_EQ(running.wait().exit_code, 128 + SIGINT);
+  }
+  {
+    Running running({"run", "--resume", at("halves")});
+    ASSERT_TRUE(wait_for_lines("halves.csv", 15));
+    running.send(SIGKILL);
+    running.wait();
+  }
+  const std::string left = read_text(at("halves.csv"));
+  EXPECT_TRUE(left.ends_with('\n')) << "whole lines are left";
+  EXPECT_TRUE(read_text(at("whole.csv")).starts_with(left));
+  fs::rename(at("halves.csv"), at("moved.csv"));
+  Outcome outcome = run_mallow({"run", "--resume", at("halves")});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("halves.csv: --series: cannot be continued: No such file"), std::string::npos)
+      << outcome.err;
+  outcome = run_mallow({"run", "--resume", at("halves"), "--series", at("moved.csv")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(read_text(at("moved.csv")), read_text(at("whole.csv")));
+}
+
+TEST_F(cli_series, is_written_over_no_input_and_continued_in_no_other_file) {
+  Outcome outcome = run({"--series", scene_});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("cube.toml: --series: would be written over"), std::string::npos) << outcome.err;
+  ASSERT_EQ(run({"--out", at("out"), "--checkpoint-every", "1"}).exit_code, 0);
+  outcome = run_mallow({"run", "--resume", at("out"), "--frames", "4", "--series", at("late.csv")});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("started without --series"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(at("late.csv")));
+
+  ASSERT_EQ(run({"--out", at("two"), "--checkpoint-every", "1", "--series", at("a.csv")}).exit_code, 0);
+  const std::string mine = "0123456789\n" + read_text(at("a.csv"));
+  write("mine.csv", mine);
+  write("short.csv", "frame\n");
+  for (const char* other : {"mine.csv", "short.csv"}) {
+    const std::string before = read_text(at(other));
+    outcome = run_mallow({"run", "--resume", at("two"), "--frames", "4", "--series", at(other)});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_NE(outcome.err.find("is not the series of this run"), std::string::npos) << outcome.err;
+    EXPECT_EQ(read_text(at(other)), before);
+  }
+}
+
+}  // namespace series_test
+}  // namespace mallow::test

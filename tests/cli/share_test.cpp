@@ -1,0 +1,192 @@
+// --frames and --share: many processes over one folder write what one would.
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/program.h"
+#include "program/external_program.h"
+
+namespace mallow::test {
+namespace share_test {
+
+namespace fs = std::filesystem;
+
+class cli_share : public CliTest {
+ protected:
+  /// All that a command made, by name; not reports, which tell how long it took.
+  std::map<std::string, std::string> files(const std::string& folder,
+                                           const std::vector<std::string>& parts) const {
+    std::map<std::string, std::string> contents;
+    for (const std::string& part : parts) {
+      if (fs::is_regular_file(folder_ / folder / part))
+        contents[part] = read_text(folder_ / folder / part);
+      else
+        for (const std::string& name : names_in(folder_ / folder / part))
+          if (fs::is_regular_file(folder_ / folder / part / name))
+            contents[part + '/' + name] = read_text(folder_ / folder / part / name);
+    }
+    return contents;
+  }
+  void expect_same(const std::string& folder, const std::string& other,
+                   const std::vector<std::string>& parts) const {
+    const auto a = files(folder, parts), b = files(other, parts);
+    ASSERT_EQ(a.size(), b.size());
+    ASSERT_FALSE(a.empty());
+    for (const auto& [name, content] : b) {
+      ASSERT_TRUE(a.contains(name)) << name;
+      EXPECT_TRUE(a.at(name) == content) << name;
+    }
+  }
+  /// Two folders with the same frames, without pictures.
+  void make_runs(const std::string& frames) const {
+    ASSERT_EQ(run({"--out", at("one"), "--frames", frames}).exit_code, 0);
+    fs::copy(at("one"), at("many"), fs::copy_options::recursive);
+  }
+  static void kill(std::unique_ptr<Running>& running) {
+    running->send(SIGKILL);
+    EXPECT_EQ(running->wait().exit_code, -1) << "it was still at work";
+    running.reset();
+  }
+  static bool wait_for_files(const fs::path& folder, std::size_t count) {
+    for (int k = 0; k < 20000; ++k) {
+      if (names_in(folder).size() >= count) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
+};
+
+TEST_F(cli_share, four_processes_of_which_one_is_killed_write_what_one_writes) {
+  make_runs("24");
+  const auto draw = [&](const std::string& folder) -> std::vector<std::string> {
+    return {"surface", at(folder), "--threads", "1", "--set", "surface.voxels=24"};
+  };
+  const auto render = [&](const std::string& folder) -> std::vector<std::string> {
+    return {"render",           at(folder), "--threads",       "1", "--set", "render.samples=16", "--set",
+            "render.width=160", "--set",    "render.height=90"};
+  };
+  using Command = std::function<std::vector<std::string>(const std::string& folder)>;
+  for (const Command& command : {Command(draw), Command(render)}) {
+    ASSERT_EQ(run_mallow(command("one")).exit_code, 0);
+    std::vector<std::string> share = command("many");
+    share.push_back("--share");
+    std::vector<std::unique_ptr<Running>> slots;
+    for (int slot = 0; slot < 4; ++slot) slots.push_back(std::make_unique<Running>(share));
+    const bool pictures = share[0] == "render";
+    if (pictures) {
+      ASSERT_TRUE(wait_for_files(folder_ / "many/images", 4));
+      kill(slots[1]);
+      slots[1] = std::make_unique<Running>(share);
+      ASSERT_TRUE(wait_for_files(folder_ / "many/images", 9));
+      kill(slots[3]);
+    }
+    std::size_t done = 0;
+    for (auto& slot : slots) {
+      if (!slot) continue;
+      const Outcome outcome = slot->wait();
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+      EXPECT_EQ(outcome.out.find("left"), std::string::npos) << "each ends when all is there";
+      done += static_cast<std::size_t>(std::stoi(outcome.out.substr(outcome.out.find(' '))));
+    }
+    if (!pictures) {
+      EXPECT_EQ(done, 25u) << "each frame by one of them";
+    }
+    expect_same("many", "one", {pictures ? "images" : "surface", "scene.toml"});
+    if (pictures && program::is_installed("ffmpeg")) expect_same("many", "one", {"film.mp4"});
+    const Outcome late = run_mallow(share);
+    EXPECT_EQ(late.out, pictures ? "pictures 0\n" : "surfaces 0\n") << "all are there";
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(at("many")))
+    EXPECT_FALSE(entry.path().filename().string().ends_with(".partial")) << entry.path();
+}
+
+TEST_F(cli_share, frames_are_named_as_in_python_and_the_last_part_joins_the_film) {
+  make_runs("6");
+  ASSERT_EQ(run_mallow({"render", at("one")}).exit_code, 0);
+  const auto part = [&](const std::string& frames) {
+    return run_mallow({"render", at("many"), "--frames", frames});
+  };
+  EXPECT_EQ(part("1:-1:2").out, "pictures 3\nleft 4, and the film\n");
+  EXPECT_EQ(names_in(at("many/images")),
+            (std::vector<std::string>{"frame_000001.png", "frame_000003.png", "frame_000005.png"}));
+  EXPECT_FALSE(fs::exists(at("many/film.mp4")));
+  EXPECT_EQ(part("-1:").out, "pictures 1\nleft 3, and the film\n");
+  EXPECT_EQ(part(":5:2").out, "pictures 3\n");
+  expect_same("many", "one", {"images"});
+  if (program::is_installed("ffmpeg")) expect_same("many", "one", {"film.mp4"});
+
+  EXPECT_EQ(run_mallow({"render", at("many"), "--frames", "2:4", "--set", "render.width=80"}).out,
+            "pictures 2\nleft 5, and the film\n")
+      << "pictures of other settings do not count";
+  EXPECT_EQ(run_mallow({"render", at("many"), "--share"}).out, "pictures 2\n") << "those are taken again";
+  expect_same("many", "one", {"images"});
+}
+
+TEST_F(cli_share, exports_are_shared_and_what_plays_them_is_added_once) {
+  make_runs("8");
+  const auto write = [&](const std::string& folder) -> std::vector<std::string> {
+    return {"export",      at(folder), "--surface",   "glb,vtp,usda,vdb",
+            "--particles", "vtp,csv",  "--animation", "glb"};
+  };
+  ASSERT_EQ(run_mallow(write("one")).exit_code, 0);
+  std::vector<std::string> share = write("many");
+  share.push_back("--share");
+  std::vector<std::unique_ptr<Running>> slots;
+  for (int slot = 0; slot < 4; ++slot) slots.push_back(std::make_unique<Running>(share));
+  ASSERT_TRUE(wait_for_files(folder_ / "many/export/particles", 3));
+  slots[2]->send(SIGKILL);
+  slots[2]->wait();
+  slots[2] = std::make_unique<Running>(share);
+  std::string said;
+  for (auto& slot : slots) {
+    const Outcome outcome = slot->wait();
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    said += outcome.out;
+  }
+  EXPECT_EQ(said, "surface 9\nparticles 9\nanimation 9\n");
+  std::vector<std::string> parts = {"export/particles", "export/surface.pvd", "export/particles.pvd",
+                                    "export/surface.usda", "export/surface.glb"};
+  expect_same("many", "one", parts);
+  EXPECT_EQ(names_in(at("many/export/surface")), names_in(at("one/export/surface")));
+  for (const std::string& name : names_in(at("one/export/surface"))) {
+    if (name.ends_with(".vdb")) continue;  // which holds an id of its own
+    EXPECT_TRUE(read_text(at("one/export/surface/" + name)) == read_text(at("many/export/surface/" + name)))
+        << name;
+  }
+}
+
+TEST_F(cli_share, whole_commands_and_those_that_share_wait_for_each_other) {
+  make_runs("3");
+  Running running({"render", at("many"), "--share", "--set", "render.width=1920", "--set",
+                   "render.height=1080", "--set", "render.samples=64"});
+  ASSERT_TRUE(wait_for_files(folder_ / "many/.mallow-share/render", 1));
+  const Outcome outcome = run_mallow({"render", at("many")});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("is in use"), std::string::npos) << outcome.err;
+  running.send(SIGKILL);
+  running.wait();
+  EXPECT_EQ(run_mallow({"render", at("many"), "--no-film"}).exit_code, 0);
+  EXPECT_FALSE(fs::exists(at("many/.mallow-share"))) << "it has all frames, and forgets who had which";
+}
+
+TEST_F(cli_share, frames_that_are_none_are_refused) {
+  make_runs("3");
+  for (const char* bad : {"3", "a:b", "0:4:0", "0:4:-1", "1:2:3:4", "1.5:2"}) {
+    const Outcome outcome = run_mallow({"surface", at("many"), "--frames", bad});
+    EXPECT_EQ(outcome.exit_code, 2) << bad;
+    EXPECT_NE(outcome.err.find(std::string("--frames: '") + bad + "' is not allowed: A:B or A:B:S"),
+              std::string::npos)
+        << outcome.err;
+  }
+  const Outcome outcome = run_mallow({"export", at("many"), "--surface", "obj", "--frames", "4:9"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("--frames: '4:9' names none of the frames 0 to 3"), std::string::npos)
+      << outcome.err;
+}
+
+}  // namespace share_test
+}  // namespace mallow::test

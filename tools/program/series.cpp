@@ -1,0 +1,265 @@
+#include "program/series.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace mallow::program {
+namespace fs = std::filesystem;
+namespace {
+
+/// More would be a table that nobody reads.
+constexpr std::size_t k_most_described = 32;
+
+/// A line of a CSV.
+class Line {
+ public:
+  void add(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.10g", value);
+    add(std::string(text));
+  }
+  void add(std::size_t value) { add(std::to_string(value)); }
+  void add(const Eigen::Vector3d& value) {
+    for (int axis = 0; axis < 3; ++axis) add(value[axis]);
+  }
+  /// As it is, in quotes where a comma or the like asks for them.
+  void add(const std::string& cell) {
+    if (cell.find_first_of(",\"\n\r") == cell.npos) return add_separated(cell);
+    std::string quoted;
+    for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    add_separated('"' + quoted + '"');
+  }
+  std::string text() const { return text_ + '\n'; }
+  /// The cells of another line.
+  void add(const Line& other) {
+    if (!other.is_empty_) add_separated(other.text_);
+  }
+
+ private:
+  void add_separated(const std::string& text) {
+    if (!is_empty_) text_ += ',';
+    is_empty_ = false;
+    text_ += text;
+  }
+
+  std::string text_;
+  bool is_empty_ = true;
+};
+
+/// What a set of bodies has in sum.
+struct Sums {
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d high = -low;
+  std::size_t particles = 0, awake = 0, parts = 0;
+  double volume = 0;
+  Eigen::Vector3d momentum{0, 0, 0};
+
+  Eigen::Vector3d extent() const {
+    return particles > 0 ? Eigen::Vector3d(high - low) : Eigen::Vector3d(0, 0, 0);
+  }
+  double top() const { return particles > 0 ? high.z() : 0; }
+};
+
+/// Where particles are less dense than at rest, as they are where they see less of each other at a surface,
+/// they count as at rest: so that the volume of what lies still is that of its particles.
+double volume(const Simulation& simulation, const Simulation::Rows& rows, double mass, double rest_volume) {
+  const std::span<const float> densities = simulation.densities();
+  if (densities.size() < rows.end) return rest_volume * static_cast<double>(rows.end - rows.begin);
+  double sum = 0;
+  for (std::size_t row = rows.begin; row < rows.end; ++row) {
+    const double density = static_cast<double>(densities[row]);
+    sum += density * rest_volume > mass ? mass / density : rest_volume;
+  }
+  return sum;
+}
+
+std::vector<ColliderId> measured_colliders(const Simulation& simulation) {
+  std::vector<ColliderId> ids = simulation.collider_ids();
+  std::erase_if(ids, [&](ColliderId id) { return !simulation.collider(id).measure_load; });
+  return ids;
+}
+
+nlohmann::json saved_state(const std::string& text) {
+  return nlohmann::json::parse(text);
+}
+
+fs::path file_of(const nlohmann::json& state, const fs::path& now) {
+  return now.empty() ? fs::path(state.at("file").get<std::string>()) : now;
+}
+
+}  // namespace
+
+Series::Series(const fs::path& file, Simulation& simulation)
+    : file_(file), colliders_(measured_colliders(simulation)) {
+  for (const BodyId id : simulation.bodies()) bodies_.push_back({.id = id, .name = simulation.name(id)});
+  find_rest_volumes(simulation);
+  row_time_ = simulation.time();
+  impulses_.assign(colliders_.size(), Eigen::Vector3d::Zero());
+  file_.add(header());
+}
+
+Series::Series(const std::string& text, const fs::path& file, Simulation& simulation)
+    : file_(file_of(saved_state(text), file), saved_state(text).at("bytes").get<std::uint64_t>(),
+            saved_state(text).at("hash").get<std::uint64_t>()),
+      colliders_(measured_colliders(simulation)) {
+  const nlohmann::json state = saved_state(text);
+  for (const auto& body : state.at("bodies"))
+    bodies_.push_back({.id = BodyId{body.at("id").get<std::uint64_t>()},
+                       .name = body.at("name").get<std::string>(),
+                       .parts = body.at("parts").get<std::size_t>()});
+  find_rest_volumes(simulation);
+  state.at("row_time").get_to(row_time_);
+  state.at("largest_compression").get_to(largest_compression_);
+  state.at("mean_compression").get_to(mean_compression_);
+  for (const auto& sum : state.at("impulses"))
+    impulses_.push_back({sum.at(0).get<double>(), sum.at(1).get<double>(), sum.at(2).get<double>()});
+  impulses_.resize(colliders_.size(), Eigen::Vector3d::Zero());
+}
+
+void Series::find_rest_volumes(Simulation& simulation) {
+  const SimulationInfo info = simulation.info();
+  const std::vector<BodyId> ids = simulation.bodies();
+  for (Body& body : bodies_) {
+    const auto found = std::ranges::find(ids, body.id);
+    if (found == ids.end()) continue;  // it is gone
+    const BodyInfo& now = info.bodies[static_cast<std::size_t>(found - ids.begin())];
+    body.rest_volume = static_cast<double>(now.particle_mass) / static_cast<double>(now.rest_density);
+  }
+}
+
+bool Series::has_body_columns() const {
+  return bodies_.size() > 1 && bodies_.size() <= k_most_described;
+}
+bool Series::has_collider_columns() const {
+  return colliders_.size() <= k_most_described;
+}
+
+std::string Series::header() const {
+  Line line;
+  for (const char* name : {"frame", "time [s]", "steps", "particles", "height [m]", "top [m]", "extent_x [m]",
+                           "extent_y [m]", "volume [m3]", "kinetic_energy [J]", "elastic_energy [J]",
+                           "conserved_energy [J]", "momentum_x [N s]", "momentum_y [N s]", "momentum_z [N s]",
+                           "parts", "awake_bodies", "largest_compression", "mean_compression"})
+    line.add(std::string(name));
+  if (has_collider_columns())
+    for (std::size_t k = 0; k < colliders_.size(); ++k)
+      for (const char axis : {'x', 'y', 'z'})
+        line.add("collider[" + std::to_string(k) + "].force_" + axis + " [N]");
+  if (has_body_columns())
+    for (const Body& body : bodies_)
+      for (const char* name :
+           {"height [m]", "top [m]", "x [m]", "y [m]", "z [m]", "kinetic_energy [J]", "parts"})
+        line.add(body.name + '.' + name);
+  return line.text();
+}
+
+void Series::add_step(const StepReport& step, const Simulation& simulation) {
+  largest_compression_ = std::max(largest_compression_, step.largest_compression);
+  mean_compression_ = step.mean_compression;
+  for (std::size_t k = 0; k < colliders_.size(); ++k) impulses_[k] += simulation.load(colliders_[k]).impulse;
+  for (const BodyEvent& event : simulation.events()) {
+    if (event.kind != BodyEvent::Kind::torn && event.kind != BodyEvent::Kind::merged) continue;
+    if (const auto body = std::ranges::find(bodies_, event.body, &Body::id); body != bodies_.end())
+      body->parts = event.parts;
+  }
+}
+
+void Series::add_row(int frame, Simulation& simulation, const std::optional<double>& volume_of_surface) {
+  const std::vector<BodyId> ids = simulation.bodies();
+  Sums sums;
+  Line of_bodies;
+  for (const Body& body : bodies_) {
+    if (std::ranges::find(ids, body.id) == ids.end()) {
+      if (has_body_columns())
+        for (int cell = 0; cell < 7; ++cell) of_bodies.add(std::string());
+      continue;
+    }
+    const Simulation::Rows rows = simulation.rows(body.id);
+    const Aabb box = simulation.bounds(body.id);
+    const BodyMotion motion = simulation.motion(body.id);
+    const std::size_t particles = rows.end - rows.begin;
+    const double mass = particles > 0 ? motion.mass / static_cast<double>(particles) : 0;
+    sums.low = sums.low.cwiseMin(box.min.cast<double>());
+    sums.high = sums.high.cwiseMax(box.max.cast<double>());
+    sums.particles += particles;
+    sums.awake += simulation.is_awake(body.id) ? 1 : 0;
+    sums.parts += body.parts;
+    sums.volume += volume(simulation, rows, mass, body.rest_volume);
+    sums.momentum += motion.momentum;
+    if (!has_body_columns()) continue;
+    of_bodies.add(static_cast<double>(box.max.z()) - static_cast<double>(box.min.z()));
+    of_bodies.add(static_cast<double>(box.max.z()));
+    of_bodies.add(motion.center_of_mass);
+    of_bodies.add(motion.kinetic_energy);
+    of_bodies.add(body.parts);
+  }
+  const Energy energy = sums.particles > 0 ? simulation.energy() : Energy{};
+  Line line;
+  line.add(static_cast<std::size_t>(frame));
+  line.add(simulation.time());
+  line.add(static_cast<std::size_t>(simulation.step_count()));
+  line.add(sums.particles);
+  line.add(sums.extent().z());
+  line.add(sums.top());
+  line.add(sums.extent().x());
+  line.add(sums.extent().y());
+  line.add(volume_of_surface.value_or(sums.volume));
+  line.add(energy.kinetic);
+  line.add(energy.elastic);
+  line.add(energy.conserved);
+  line.add(sums.momentum);
+  line.add(sums.parts);
+  line.add(sums.awake);
+  line.add(largest_compression_);
+  line.add(mean_compression_);
+  const double seconds = simulation.time() - row_time_;
+  if (has_collider_columns())
+    for (const Eigen::Vector3d& impulse : impulses_)
+      line.add(seconds > 0 ? Eigen::Vector3d(impulse / seconds) : Eigen::Vector3d(0, 0, 0));
+  line.add(of_bodies);
+  file_.add(line.text());
+  row_time_ = simulation.time();
+  largest_compression_ = 0;
+  for (Eigen::Vector3d& impulse : impulses_) impulse.setZero();
+}
+
+std::string Series::saved() const {
+  file_.sync();
+  nlohmann::json bodies = nlohmann::json::array(), impulses = nlohmann::json::array();
+  for (const Body& body : bodies_)
+    bodies.push_back(
+        {{"id", static_cast<std::uint64_t>(body.id)}, {"name", body.name}, {"parts", body.parts}});
+  for (const Eigen::Vector3d& sum : impulses_) impulses.push_back({sum.x(), sum.y(), sum.z()});
+  const nlohmann::json state = {{"file", fs::absolute(file_.file()).string()},
+                                {"bytes", file_.size()},
+                                {"hash", file_.hash()},
+                                {"bodies", bodies},
+                                {"row_time", row_time_},
+                                {"largest_compression", largest_compression_},
+                                {"mean_compression", mean_compression_},
+                                {"impulses", impulses}};
+  return state.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+const char* series_help() {
+  return "Columns of --series, a row for frame 0 and each frame after it, units in the header:\n"
+         "frame, time, steps, particles;\n"
+         "height, top, extent_x, extent_y: of the box around all particles' centres; top is its largest z;\n"
+         "volume: that the surface encloses where one is drawn (--out without --no-surface), else of the\n"
+         "  particles, mass over density, where less dense than at rest as at rest;\n"
+         "kinetic_energy, elastic_energy, conserved_energy (what elastic bodies keep), without pinned "
+         "particles;\n"
+         "momentum_x, _y, _z: of all particles;\n"
+         "parts: pieces that shape matching holds together, one a body until it tears or merges;\n"
+         "awake_bodies: that do not sleep;\n"
+         "largest_compression: of a particle in any step since the row before; mean_compression: over all\n"
+         "  particles in the last step; both where solver.volume_iterations run, else 0;\n"
+         "collider[0].force_x, _y, _z: on each of up to 32 colliders, mean since the row before;\n"
+         "NAME.height, .top, .x, .y, .z (centre of mass), .kinetic_energy, .parts: of each body where there\n"
+         "  are 2 to 32; empty once a body is gone.";
+}
+
+}  // namespace mallow::program
