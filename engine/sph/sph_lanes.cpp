@@ -114,7 +114,7 @@ struct Separation {
 /// three components of the velocity took 28% of a free cube's spin in 200 steps. There ρ is at least ρ0.
 /// [model 2, section 0]
 struct Conservative {
-  static constexpr bool central = true;
+  static constexpr bool central = true, looks_ahead = true;
   static float factor(const SphInput& in) {
     return 0.5f * in.spiky_gradient * in.inverse_radius * in.inverse_radius;
   }
@@ -150,7 +150,7 @@ struct RoughSeparation {
 
 /// The same from a rough 1/r: neither a root nor a quotient. What both terms share is t/r times (x_i − x_j).
 struct ConservativeNative {
-  static constexpr bool central = true;
+  static constexpr bool central = true, looks_ahead = false;
   static float factor(const SphInput& in) { return Conservative::factor(in); }
 
   MALLOW_INLINE RoughSeparation separate(const SphInput& in, const ClusterVec3& d) {
@@ -178,7 +178,7 @@ using Pairs = Conservative;
 
 /// F = |∇W_poly6/r| = |∇²W_poly6|/3 at q = 0. [TK eq. 1, 2]
 struct Printed {
-  static constexpr bool central = false;
+  static constexpr bool central = false, looks_ahead = true;
   static float factor(const SphInput& in) { return in.poly6_gradient; }
 
   MALLOW_INLINE Separation separate(const SphInput&, const ClusterVec3& d) { return {d, Floats{}, Floats{}}; }
@@ -246,9 +246,14 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
       same += a;
     }
   };
+  const auto separate = [&](std::uint32_t j) { return Formula::separate(in, difference(in.position, j, x)); };
+  if constexpr (!Formula::looks_ahead) {
+#pragma GCC unroll 2
+    for (std::uint32_t k = 0; k < n; ++k) add_pairs(list[k], separate(list[k]));
+    return;
+  }
   // The root and the quotient of the next pair are under way while this one's are used: left in one piece,
   // the chain of a pair is longer than what a processor looks ahead.
-  const auto separate = [&](std::uint32_t j) { return Formula::separate(in, difference(in.position, j, x)); };
   auto apart = separate(list[0]);
 #pragma GCC unroll 2
   for (std::uint32_t k = 0; k + 1 < n; ++k) {
