@@ -137,6 +137,13 @@ const std::vector<Knob>& all_knobs() {
                  .label = "slack " + text(slack),
                  .overrides = {override_of("solver.neighbor_slack", slack)}};
        }},
+      {"arithmetic",
+       sph,
+       {0},
+       {0},
+       [](const Base&, double) -> Setting {
+         return {.knobs = "arithmetic", .label = "native", .overrides = {"solver.arithmetic=\"native\""}};
+       }},
       {"update_interval",
        [](const Base& base) { return base.updates; },
        {0.5, 2, 4},
@@ -180,7 +187,7 @@ Setting joined(const Setting& a, const Setting& b) {
 /// Those that change what is computed and not what is modelled: their combinations are worth a look.
 const std::vector<std::pair<std::string, std::vector<double>>> k_combined = {
     {"particles", {2.0 / 3}},  {"time_step", {2, 1.5, 0.5}}, {"rotation_iterations", {1}},
-    {"region_stride", {2, 4}}, {"neighbor_slack", {0.1}},
+    {"region_stride", {2, 4}}, {"neighbor_slack", {0.1}},    {"arithmetic", {0}},
 };
 
 }  // namespace

@@ -16,6 +16,9 @@ constexpr std::array<const char*, 2> choices(Formulation) {
 constexpr std::array<const char*, 2> choices(BodyContact) {
   return {"constraint", "pressure"};
 }
+constexpr std::array<const char*, 2> choices(Arithmetic) {
+  return {"exact", "native"};
+}
 constexpr std::array<const char*, 3> choices(SurfaceKind) {
   return {"blended", "anisotropic", "spheres"};
 }

@@ -60,6 +60,8 @@ struct FieldTable<SolverConfig> {
           "most iterations for a region's rotation in a step; it stops when converged; 0 is exact and slow"},
       Field{"neighbor_slack", &Config::neighbor_slack, between(0, 1), "σ",
             "extra reach of neighbour lists, which are kept until a particle has moved half of it"},
+      Field{"arithmetic", &Config::arithmetic, k_any, "",
+            "rounding of SPH sums: the same on every machine, or faster and another on another machine"},
       Field{"instruction_level", &Config::instruction_level, k_any, "",
             "instructions that kernels use; the motion is the same", "the best this machine has",
             Written::in_scenes},

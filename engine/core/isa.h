@@ -26,7 +26,24 @@
   namespace level_v4 {                     \
   extern MALLOW_EXPORT const type table;   \
   }
+/// The same for files that mallow_add_native_lanes() compiles once more: where `native`, from what is as fast
+/// as a level can be and has the bits of that level alone. The lowest has no fused multiply-adds: it is
+/// exact.
+#define MALLOW_SELECT_NATIVE(level, native, table)                           \
+  (!(native)                                   ? MALLOW_SELECT(level, table) \
+   : (level) == ::mallow::InstructionLevel::v4 ? level_v4_native::table      \
+   : (level) == ::mallow::InstructionLevel::v3 ? level_v3_native::table      \
+                                               : level_baseline::table)
+#define MALLOW_DECLARE_NATIVE_LEVELS(type, table) \
+  namespace level_v3_native {                     \
+  extern MALLOW_EXPORT const type table;          \
+  }                                               \
+  namespace level_v4_native {                     \
+  extern MALLOW_EXPORT const type table;          \
+  }
 #else
+#define MALLOW_SELECT_NATIVE(level, native, table) ((void)(native), MALLOW_SELECT(level, table))
+#define MALLOW_DECLARE_NATIVE_LEVELS(type, table)
 #define MALLOW_SELECT(level, table) ((void)(level), level_baseline::table)
 #define MALLOW_DECLARE_LEVELS(type, table) \
   namespace level_baseline {               \

@@ -20,8 +20,8 @@ namespace mallow::scene_file {
 using Target =
     std::variant<bool*, int*, std::optional<int>*, float*, std::optional<float>*, std::optional<double>*,
                  Vec3*, std::optional<Vec3>*, Count3*, std::string*, std::filesystem::path*, Schedule*,
-                 std::optional<Schedule>*, std::vector<Vec3>*, BodyContact*, Formulation*, SurfaceKind*,
-                 Finish*, std::optional<InstructionLevel>*>;
+                 std::optional<Schedule>*, std::vector<Vec3>*, BodyContact*, Formulation*, Arithmetic*,
+                 SurfaceKind*, Finish*, std::optional<InstructionLevel>*>;
 
 /// A key of a scene file: a setting, bound to the member of a config that it sets. Reading, range checks,
 /// overrides, the printed scene and the description of all keys are driven by lists of these alone.

@@ -75,7 +75,7 @@ std::string suggestion(std::string_view name, std::span<const std::string> known
     return "; did you mean '" + *nearest + "'?";
   if (const std::string* holder = only_holder(name, known.first(std::min(known.size(), k_most_compared))))
     return "; did you mean '" + *holder + "'?";
-  constexpr std::size_t k_most_listed = 20;
+  constexpr std::size_t k_most_listed = 24;
   std::string text = known.size() == 1 ? "; the only one known is " : "; known are ";
   const std::size_t listed = std::min(known.size(), k_most_listed);
   for (std::size_t i = 0; i < listed; ++i) {

@@ -176,6 +176,7 @@ Simulation::Simulation(const SolverConfig& config) : state_(std::make_unique<Sta
   if (config.support_radius) take_support_radius(*state_);
   state_->sph.formulation = config.formulation;
   state_->sph.neighbor_slack = config.neighbor_slack;
+  state_->sph.native = config.arithmetic == Arithmetic::native;
 }
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;

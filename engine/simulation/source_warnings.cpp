@@ -29,6 +29,7 @@ class SourceWarnings {
       look_at_parts(body);
     }
     look_at_formulation();
+    look_at_arithmetic();
     return std::move(list_);
   }
 
@@ -146,6 +147,17 @@ class SourceWarnings {
     if (std::ranges::none_of(state_.bodies, flows) && !state_.needs_sph())
       add("solver.formulation = \"printed\" has no effect where alpha is 0: it is of the accelerations that "
           "alpha blends in");
+  }
+
+  void look_at_arithmetic() {
+    if (state_.config.arithmetic == Arithmetic::exact || state_.bodies.empty()) return;
+    const InstructionLevel level = state_.execution.level;
+    if (!state_.needs_sph() && !state_.keeps_volume())
+      add("solver.arithmetic = \"native\" has no effect: it is of sums of SPH and of volume iterations, and "
+          "there are none where alpha is 0");
+    else if (level == InstructionLevel::baseline)
+      add("solver.arithmetic = \"native\" has no effect: at instruction level ", name(level),
+          " there are no fused multiply-adds, and sums are exact");
   }
 
   const Simulation::State& state_;

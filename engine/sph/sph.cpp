@@ -73,7 +73,7 @@ void compute_density(const Execution& execution, Sph& sph) {
   for (Column<float>* column : {&sph.density, &sph.pressure, &sph.volume}) column->resize(n);
   sph.density_by_row.resize(sph.store_rows);
   const SphInput in = input(sph);
-  const SphLanes& lanes = MALLOW_SELECT(execution.level, sph_lanes);
+  const SphLanes& lanes = MALLOW_SELECT_NATIVE(execution.level, sph.native, sph_lanes);
   // Lists that are kept for steps to come stay as they are.
   const bool whole = sph.kept.any || sph.keeps_lists;
   const NearLists near =
@@ -116,7 +116,7 @@ void compute_accelerations(const VectorColumn& velocities, const ByParticle& own
   sort(own.alpha, sph.alpha);
   sort(own.viscosity, sph.viscosity);
   const SphInput in = input(sph);
-  const SphLanes& lanes = MALLOW_SELECT(execution.level, sph_lanes);
+  const SphLanes& lanes = MALLOW_SELECT_NATIVE(execution.level, sph.native, sph_lanes);
   const auto accelerate = sph.formulation == Formulation::printed ? lanes.printed : lanes.conservative;
   parallel_for(
       execution.threads, sph.grid.clusters(),

@@ -24,6 +24,7 @@ struct Sph {
   Formulation formulation = Formulation::conservative;
   bool viscous = false;      ///< some group has μ > 0
   float neighbor_slack = 0;  ///< share of σ by which lists reach farther
+  bool native = false;       ///< sums are of Arithmetic::native
   /// Constants of particles that act on each other as parts of one body: that of one body, or of several
   /// that merge.
   std::vector<SphGroup> groups;

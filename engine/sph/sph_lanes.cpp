@@ -93,8 +93,9 @@ struct Sides {
   Floats own_pressure;
   float pressure, volume;  ///< p_j, V_j
   Floats viscosity;        ///< μ_i + μ_j, twice their mean
-  /// Volume of j in the viscous term of Conservative, times the share of each i there, see sum_pairs().
-  Floats viscous_volume;
+  /// In the viscous term of Conservative: the share of each i there, and the volume of j, see sum_pairs().
+  Floats own_share;
+  float viscous_volume;
   ClusterVec3 velocity;  ///< v_j − v_i, or v_j
 };
 
@@ -113,12 +114,12 @@ struct Separation {
 /// three components of the velocity took 28% of a free cube's spin in 200 steps. There ρ is at least ρ0.
 /// [model 2, section 0]
 struct Conservative {
-  static constexpr bool central = true;
+  static constexpr bool central = true, looks_ahead = true;
   static float factor(const SphInput& in) {
     return 0.5f * in.spiky_gradient * in.inverse_radius * in.inverse_radius;
   }
 
-  MALLOW_INLINE Separation separate(const ClusterVec3& d) {
+  MALLOW_INLINE Separation separate(const SphInput&, const ClusterVec3& d) {
     const Floats r2 = squared_length(d);
     // 1/r as r/r², which need not wait for the root; 0 for coincident particles, which have no direction to
     // push in.
@@ -133,19 +134,54 @@ struct Conservative {
     Floats push = (sides.volume * (sides.own_pressure + sides.pressure)) * (t * apart.r);
     if (viscous) {
       const ClusterVec3& w = sides.velocity;
-      push -= sides.viscous_volume * (5.0f * sides.viscosity) * dot_from_left(w, d);
+      push -= sides.own_share * sides.viscous_volume * (5.0f * sides.viscosity) * dot_from_left(w, d);
     }
     push *= t * apart.inverse_square;
     return -(push * d);
   }
 };
 
+#ifdef MALLOW_NATIVE
+/// σ − r and 1/r in place of r and 1/r².
+struct RoughSeparation {
+  ClusterVec3 d;
+  Floats falloff, inverse;
+};
+
+/// The same from a rough 1/r: neither a root nor a quotient. What both terms share is t/r times (x_i − x_j).
+struct ConservativeNative {
+  static constexpr bool central = true, looks_ahead = false;
+  static float factor(const SphInput& in) { return Conservative::factor(in); }
+
+  MALLOW_INLINE RoughSeparation separate(const SphInput& in, const ClusterVec3& d) {
+    const Floats r2 = squared_length(d);
+    // Nearer than 1e-6 σ, pushes fade away: coincident particles have no direction.
+    const Floats inverse = rough_inverse_root(larger(r2, all(1e-12f * in.radius * in.radius)));
+    return {d, not_negative(in.radius - r2 * inverse), inverse};
+  }
+
+  template <bool viscous>
+  MALLOW_INLINE ClusterVec3 acceleration(const SphInput&, const RoughSeparation& apart, const Sides& sides) {
+    Floats push = (sides.volume * (sides.own_pressure + sides.pressure)) * apart.falloff;
+    if (viscous) {
+      const Floats drag = sides.viscous_volume * (5.0f * sides.viscosity * sides.own_share);
+      push -= drag * apart.inverse * dot_from_left(sides.velocity, apart.d);
+    }
+    push *= apart.falloff * apart.inverse;
+    return -(push * apart.d);
+  }
+};
+using Pairs = ConservativeNative;
+#else
+using Pairs = Conservative;
+#endif
+
 /// F = |∇W_poly6/r| = |∇²W_poly6|/3 at q = 0. [TK eq. 1, 2]
 struct Printed {
-  static constexpr bool central = false;
+  static constexpr bool central = false, looks_ahead = true;
   static float factor(const SphInput& in) { return in.poly6_gradient; }
 
-  MALLOW_INLINE Separation separate(const ClusterVec3& d) { return {d, Floats{}, Floats{}}; }
+  MALLOW_INLINE Separation separate(const SphInput&, const ClusterVec3& d) { return {d, Floats{}, Floats{}}; }
 
   template <bool viscous>
   MALLOW_INLINE ClusterVec3 acceleration(const SphInput& in, const Separation& apart, const Sides& sides) {
@@ -188,14 +224,14 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
   // place would be the stiffer the thinner it is, beyond what the limit on the step knows of.
   const Floats own_volume = load(volumes + first);
   const Floats own_share = smaller(own_rest / larger(own_volume, all(k_least)), all(1.0f));
-  const auto add_pairs = [&](std::uint32_t j, const Separation& apart) {
+  const auto add_pairs = [&](std::uint32_t j, const auto& apart) {
     const int number = grouped ? static_cast<int>(in.group[j]) : 0;
     const SphGroup& group = in.groups[number];
-    Sides sides{own_pressure, pressures[j], volumes[j], own_viscosity + group.viscosity, {}, {}};
+    Sides sides{own_pressure, pressures[j], volumes[j], own_viscosity + group.viscosity, own_share, 0, {}};
     if (blended && in.viscosity) sides.viscosity = own_viscosity + in.viscosity[j];
     if (viscous) sides.velocity = difference(in.velocity, j, v);
     if (viscous && Formula::central)
-      sides.viscous_volume = own_share * (volumes[j] < group.rest_volume ? volumes[j] : group.rest_volume);
+      sides.viscous_volume = volumes[j] < group.rest_volume ? volumes[j] : group.rest_volume;
     ClusterVec3 a = Formula::template acceleration<viscous>(in, apart, sides);
     if (blended) a = (half_alpha + 0.5f * in.alpha[j]) * a;
     // Where groups do not touch, which is nearly everywhere, the branch is foreseen.
@@ -210,13 +246,18 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
       same += a;
     }
   };
+  const auto separate = [&](std::uint32_t j) { return Formula::separate(in, difference(in.position, j, x)); };
+  if constexpr (!Formula::looks_ahead) {
+#pragma GCC unroll 2
+    for (std::uint32_t k = 0; k < n; ++k) add_pairs(list[k], separate(list[k]));
+    return;
+  }
   // The root and the quotient of the next pair are under way while this one's are used: left in one piece,
   // the chain of a pair is longer than what a processor looks ahead.
-  const auto separate = [&](std::uint32_t j) { return Formula::separate(difference(in.position, j, x)); };
-  Separation apart = separate(list[0]);
+  auto apart = separate(list[0]);
 #pragma GCC unroll 2
   for (std::uint32_t k = 0; k + 1 < n; ++k) {
-    const Separation next = separate(list[k + 1]);
+    const auto next = separate(list[k + 1]);
     add_pairs(list[k], apart);
     apart = next;
   }
@@ -268,6 +309,6 @@ void accelerations(const SphInput& in, std::size_t begin, std::size_t end, const
 }  // namespace
 
 extern const SphLanes sph_lanes;
-const SphLanes sph_lanes = {density, accelerations<Conservative>, accelerations<Printed>};
+const SphLanes sph_lanes = {density, accelerations<Pairs>, accelerations<Printed>};
 
 }  // namespace mallow::MALLOW_LEVEL

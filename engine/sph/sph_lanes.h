@@ -73,5 +73,6 @@ struct SphLanes {
                   const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept;
 };
 MALLOW_DECLARE_LEVELS(SphLanes, sph_lanes)
+MALLOW_DECLARE_NATIVE_LEVELS(SphLanes, sph_lanes)
 
 }  // namespace mallow

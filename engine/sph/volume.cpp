@@ -128,7 +128,7 @@ Compression find_compression(const VolumeStep& step, const VectorColumn& velocit
   gather_sorted(velocity, sph, execution, volume.velocity);
   if (sph.walls.any) find_wall_rates(step, velocity, sph, execution, volume);
   const VolumeInput in = input(sph, volume, step.time_step);
-  const VolumeLanes& lanes = MALLOW_SELECT(execution.level, volume_lanes);
+  const VolumeLanes& lanes = MALLOW_SELECT_NATIVE(execution.level, sph.native, volume_lanes);
   const std::size_t clusters = sph.grid.clusters();
   volume.partial.assign((clusters + k_cluster_block - 1) / k_cluster_block, {});
   parallel_for(
@@ -150,7 +150,7 @@ Compression find_compression(const VolumeStep& step, const VectorColumn& velocit
 void correct_velocities(const VolumeStep& step, Sph& sph, const Execution& execution, Volume& volume,
                         VectorColumn& velocity) {
   const VolumeInput in = input(sph, volume, step.time_step);
-  const VolumeLanes& lanes = MALLOW_SELECT(execution.level, volume_lanes);
+  const VolumeLanes& lanes = MALLOW_SELECT_NATIVE(execution.level, sph.native, volume_lanes);
   const Vectors changes = sph.walls.any ? raw(volume.changes) : Vectors{};
   parallel_for(
       execution.threads, sph.grid.clusters(),

@@ -62,5 +62,6 @@ struct VolumeLanes {
                Vectors velocity, Vectors changes) noexcept;
 };
 MALLOW_DECLARE_LEVELS(VolumeLanes, volume_lanes)
+MALLOW_DECLARE_NATIVE_LEVELS(VolumeLanes, volume_lanes)
 
 }  // namespace mallow

@@ -38,7 +38,7 @@ const Case k_cases[] = {
      "update_period, update_interval, formulation, acoustic_limit, contact, contact_offset, "
      "wall_pressure, volume_iterations, volume_tolerance, sleep_speed, sleep_time, air_temperature, "
      "rotation_iterations, "
-     "neighbor_slack, instruction_level and memory_limit"},
+     "neighbor_slack, arithmetic, instruction_level and memory_limit"},
     {{.solver = "support_radius = 2.0\nupdate_interval = 10\nupdate_period = 1"},
      "scene.toml:3:19: solver.update_interval: is not allowed beside update_period: give one of the two"},
     {{.solver = "support_radius = 2.0\ntime_step_factor = 5"},

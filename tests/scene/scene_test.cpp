@@ -30,6 +30,7 @@ sleep_time = 2
 air_temperature = [[0, 290], [5, 280]]
 rotation_iterations = 2
 neighbor_slack = 0.125
+arithmetic = "native"
 memory_limit = 0.5
 instruction_level = ")" + std::string(name(InstructionLevel::baseline)) +
                                 R"("
@@ -221,6 +222,7 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_EQ(read.solver.volume_tolerance, 0.25f);
   EXPECT_EQ(read.solver.rotation_iterations, 2);
   EXPECT_EQ(read.solver.neighbor_slack, 0.125f);
+  EXPECT_EQ(read.solver.arithmetic, Arithmetic::native);
   EXPECT_EQ(read.solver.instruction_level, InstructionLevel::baseline);
 
   const SceneMaterial& material = read.materials.at(0);

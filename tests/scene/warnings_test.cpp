@@ -140,6 +140,18 @@ TEST_F(scene_warnings, name_what_acts_on_nothing) {
   EXPECT_TRUE(warns(warnings_of(read(printed)), "has no effect where alpha is 0"));
 }
 
+TEST_F(scene_warnings, name_native_arithmetic_that_nothing_has) {
+  const auto native = [](std::string scene, const std::string& more = "") {
+    return scene.replace(0, 8, "[solver]\narithmetic = \"native\"\n" + more);
+  };
+  EXPECT_TRUE(warns(warnings_of(read(native(jelly("alpha = 0.0")))), "there are none where alpha is 0"));
+  const std::string lowest = std::string("instruction_level = \"") + name(InstructionLevel::baseline) + '"';
+  EXPECT_TRUE(warns(warnings_of(read(native(jelly("alpha = 0.5"), lowest))), "no fused multiply-adds"));
+  if (best_instruction_level() > InstructionLevel::baseline) {
+    EXPECT_FALSE(warns(warnings_of(read(native(jelly("alpha = 0.5")))), "arithmetic"));
+  }
+}
+
 TEST_F(scene_warnings, name_creep_that_takes_longer_than_the_run) {
   const std::string flows = "alpha = 0.3\nplastic_yield = 0.05\nplastic_creep = ";
   EXPECT_TRUE(warns(warnings_of(read(jelly(flows + "0.001"))), "plastic_creep"));

@@ -287,7 +287,7 @@ TEST(checkpoint, of_another_version_is_refused) {
     Simulation::restore(saved);
     ADD_FAILURE();
   } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find("version 11; this build of mallow reads 10"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("version 12; this build of mallow reads 11"), std::string::npos)
         << error.what();
   }
 }

@@ -25,6 +25,12 @@ enum class BodyContact {
                ///< the paper's rule
 };
 
+/// How sums of SPH and of the volume iterations round.
+enum class Arithmetic {
+  exact,   ///< as IEEE 754 says: the same bits on every machine
+  native,  ///< with what the machine has to be faster
+};
+
 /// What holds for a whole simulation. Copied when given to a Simulation.
 struct SolverConfig {
   /// Δt0 [s], > 0: the upper bound of a step, and what elasticity, the update rule and contact measure time
@@ -93,6 +99,11 @@ struct SolverConfig {
   /// keeps its lists, at the price of longer ones. 0: they are found anew in every step. Results differ by
   /// the order of sums only.
   float neighbor_slack = 0.0f;
+  /// native: sums of SPH and of the volume iterations by fused multiply-adds, distances in accelerations right
+  /// to 12 bits, or 14 with AVX-512. That is faster and moves as well, but not the same to the bit on another
+  /// kind of machine or at another instruction_level; on any number of threads it is. At
+  /// InstructionLevel::baseline, and on machines other than x86-64, it is exact.
+  Arithmetic arithmetic = Arithmetic::exact;
   /// Threads of every phase, in [0, 1024]; 0 takes all that the executor has. Results do not depend on it.
   int threads = 0;
   /// Whose threads run the loops: team_executor() where it is null, openmp_executor(), or an application's
