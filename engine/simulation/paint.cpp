@@ -85,9 +85,9 @@ void paint(Simulation::State& s, std::span<const ParticleId> ids, float value, c
     throw;
   }
   s.blend_changed = true;
-  if (std::ranges::find(painted, false) != painted.end()) s.prepared = false;  // which bodies touch
   for (BodyState* body : changed) {
     wake_island(s, *body);
+    if (body->merges) s.prepared = false;  // whether it touches what it merges with follows from it
     if (body->keeps_reference() && body->shape.reference.size() != body->size()) {
       body->grew = true;
       s.prepared = false;

@@ -125,8 +125,10 @@ void Simulation::set_alpha(MaterialId id, const AlphaSchedule& alpha) {
   for_bodies_of(s, material, [&](const BodyState& body) { check_modulus(s.config, changed, body, checks); });
   checks.finish();
   material.settings.alpha = alpha;
-  for_bodies_of(s, material, [&](BodyState& body) { follow_alpha(s, body); });
-  s.prepared = false;  // which bodies touch follows from it
+  for_bodies_of(s, material, [&](BodyState& body) {
+    follow_alpha(s, body);
+    if (body.merges) s.prepared = false;  // whether it touches what it merges with follows from it
+  });
 }
 
 void Simulation::set_velocity(BodyId id, const Vec3& velocity, const Vec3& angular_velocity) {
