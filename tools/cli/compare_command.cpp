@@ -223,11 +223,12 @@ void run(const CompareOptions& options) {
     inputs.refuse(options.csv, "--csv");
   }
   const Comparison comparison = compare(options, a, b);
-  const bool near = tolerance && comparison.only_a.empty() && comparison.only_b.empty() &&
-                    std::ranges::none_of(comparison.frames, [&](const program::FrameDifference& frame) {
-                      return frame.is_beyond(*tolerance);
-                    });
-  const bool same = comparison.same_bits() || near;
+  const bool same_frames = comparison.only_a.empty() && comparison.only_b.empty();
+  const bool near =
+      tolerance && std::ranges::none_of(comparison.frames, [&](const program::FrameDifference& frame) {
+        return frame.is_beyond(*tolerance);
+      });
+  const bool same = comparison.same_bits() || (near && same_frames);
   if (!options.csv.empty()) write_csv(options.csv, comparison, a);
   if (options.json)
     print_json(comparison, a, b, same);
@@ -235,7 +236,9 @@ void run(const CompareOptions& options) {
     print_table(comparison, a);
   if (same) return;
   throw program::RunFailure(options.a + " and " + options.b + " differ" +
-                            (tolerance ? " by more than " + number(*tolerance) + " spacings" : ""));
+                            (near        ? ": one has frames that the other lacks"
+                             : tolerance ? " by more than " + number(*tolerance) + " spacings"
+                                         : ""));
 }
 
 }  // namespace

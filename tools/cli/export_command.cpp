@@ -115,6 +115,8 @@ void export_frames(const ExportOptions& options) {
       all.add_frame(number);
     });
     all.finish();
+  } catch (const program::Interrupted&) {
+    throw;
   } catch (const std::exception& error) {
     throw program::RunFailure(error.what());
   }

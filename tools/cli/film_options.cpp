@@ -38,7 +38,7 @@ void check_pictures(const FilmOptions& options, const program::Cache& cache, int
   }
 }
 
-void make_film(const FilmOptions& options, const program::Cache& cache, int frames_per_second, int threads) {
+void make_film(const FilmOptions& options, const program::Cache& cache, int frames_per_second) {
   if (options.no_film) return;
   if (!program::can_make_films()) {
     if (options.file.empty())
@@ -46,7 +46,7 @@ void make_film(const FilmOptions& options, const program::Cache& cache, int fram
     return;
   }
   program::make_film(cache, options.file.empty() ? cache.film_file() : std::filesystem::path(options.file),
-                     frames_per_second, threads);
+                     frames_per_second);
 }
 
 void require_film(const FilmOptions& options) {

@@ -28,7 +28,7 @@ void check_pictures(const FilmOptions& options, const program::Cache& cache, int
 
 /// The film of a cache, where one is wanted. Where ffmpeg is not installed it makes none, and says so on
 /// stderr unless check_film() did. Throws what program::make_film() throws.
-void make_film(const FilmOptions& options, const program::Cache& cache, int frames_per_second, int threads);
+void make_film(const FilmOptions& options, const program::Cache& cache, int frames_per_second);
 
 /// After all other work: throws RunFailure where FILE was asked for and there was no ffmpeg to make it.
 void require_film(const FilmOptions& options);

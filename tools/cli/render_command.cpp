@@ -45,7 +45,7 @@ PictureRun picture_run(const program::CachedRun& run) {
 void finish(const RenderOptions& options, program::CachedRun& run, program::StageTimes& seconds) {
   {
     const program::StageTimer timer(seconds, program::Stage::film);
-    make_film(options.film, run.cache, run.scene.render.frames_per_second, run.threads);
+    make_film(options.film, run.cache, run.scene.render.frames_per_second);
   }
   program::close_cached_run(run, seconds, std::array{program::Stage::pictures, program::Stage::film});
   write_summary(run.cache, run.scene, run.report);
@@ -86,6 +86,8 @@ void render_cache(const RenderOptions& options) {
       finish(options, run, seconds);
       std::printf("pictures %zu\n", count);
     }
+  } catch (const program::Interrupted&) {
+    throw;
   } catch (const std::exception& error) {
     throw program::RunFailure(error.what());
   }

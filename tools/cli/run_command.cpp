@@ -300,7 +300,7 @@ void run_stages(const RunOptions& options, Run& run) {
                   run.report.stage_seconds);
   }
   const program::StageTimer timer(run.report.stage_seconds, program::Stage::film);
-  make_film(options.film, *cache, run.scene.render.frames_per_second, run.plan.threads);
+  make_film(options.film, *cache, run.scene.render.frames_per_second);
 }
 
 void print_result(const program::Cache* cache, const program::RunReport& report) {

@@ -97,6 +97,8 @@ void draw_surfaces(const SurfaceOptions& options) {
       count = draw_frames(options, run, frames, nullptr, seconds);
       finish();
     }
+  } catch (const program::Interrupted&) {
+    throw;
   } catch (const std::exception& error) {
     throw program::RunFailure(error.what());
   }

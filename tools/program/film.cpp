@@ -12,10 +12,11 @@ namespace mallow::program {
 namespace {
 
 constexpr const char* k_ffmpeg = "ffmpeg";
+/// The same whatever a run has: the bytes of a film depend on it.
+constexpr const char* k_threads = "2";
 
 /// The pictures of the present folder from frame `first` on to an MP4.
-std::vector<std::string> command_line(int first, const std::string& film, int frames_per_second,
-                                      int threads) {
+std::vector<std::string> command_line(int first, const std::string& film, int frames_per_second) {
   // yuv420p, which every player knows, has no odd sides: hence the pad.
   return {k_ffmpeg,
           "-nostdin",
@@ -39,7 +40,7 @@ std::vector<std::string> command_line(int first, const std::string& film, int fr
           "-pix_fmt",
           "yuv420p",
           "-threads",
-          std::to_string(threads),
+          k_threads,
           "-movflags",
           "+faststart",
           "-f",
@@ -67,13 +68,12 @@ std::string missing_picture(const Cache& cache, int frame) {
          shell_word(cache.folder().string()) + "' takes all of them again";
 }
 
-void make_film(const Cache& cache, const std::filesystem::path& film, int frames_per_second, int threads) {
+void make_film(const Cache& cache, const std::filesystem::path& film, int frames_per_second) {
   require_all_pictures(cache);
   const int first = cache.image_frames().front();
   write_whole(film, [&](const std::filesystem::path& beside) {
     const std::string name = std::filesystem::absolute(beside).string();  // ffmpeg runs in another folder
-    const int status =
-        run_program(command_line(first, name, frames_per_second, threads), cache.images_folder());
+    const int status = run_program(command_line(first, name, frames_per_second), cache.images_folder());
     if (status != 0) throw RunFailure("ffmpeg failed with exit status " + std::to_string(status));
   });
 }

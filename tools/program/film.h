@@ -14,7 +14,7 @@ bool can_make_films();
 std::string missing_picture(const Cache& cache, int frame);
 
 /// Joins the pictures of a run to a film (H.264), an MP4 file. Throws RunFailure where ffmpeg fails or a
-/// picture between two others is missing.
-void make_film(const Cache& cache, const std::filesystem::path& film, int frames_per_second, int threads);
+/// picture between two others is missing. The same pictures make the same bytes.
+void make_film(const Cache& cache, const std::filesystem::path& film, int frames_per_second);
 
 }  // namespace mallow::program
