@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -369,7 +370,9 @@ std::string hdr_file(int width, int height, const Pixel& pixel) {
 }
 
 struct HdrFile {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / "mallow_render_test.hdr";
+  // Tests run beside each other, each in a process of its own.
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("mallow_render_test_" + std::to_string(getpid()) + ".hdr");
   explicit HdrFile(const std::string& bytes) { write_whole(path, std::string_view(bytes)); }
   ~HdrFile() { std::filesystem::remove(path); }
 };
