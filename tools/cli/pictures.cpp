@@ -9,8 +9,8 @@
 #include "cli/frame_loop.h"
 #include "mallow/files.h"
 #include "program/background_writer.h"
+#include "program/film_bounds.h"
 #include "program/stills.h"
-#include "program/view_bounds.h"
 
 namespace mallow::cli {
 namespace {
@@ -60,8 +60,7 @@ program::Stills stills_of(const Scene& scene, const program::Cache& cache, const
   for (std::size_t k = 0; k < looks; ++k)
     bounds.add(
         read_particles(cache.particles_file(frames[looks > 1 ? k * (frames.size() - 1) / (looks - 1) : 0])));
-  const auto box = bounds.box(scene, *std::ranges::min_element(run.spacings));
-  return {scene, box.value_or(Aabb{{-1, -1, -1}, {1, 1, 1}}), run.spacings, run.threads};
+  return {scene, bounds, run.spacings, run.threads};
 }
 
 /// Ready for pictures of any of `frames`.

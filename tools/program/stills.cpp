@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "program/body_appearances.h"
-#include "program/view_bounds.h"
 #include "render/hdr.h"
 
 namespace mallow::program {
@@ -31,15 +30,16 @@ void check_environment(const Scene& scene) {
   if (!scene.render.environment.empty()) render::read_hdr(of_scene(scene).environment);
 }
 
-Stills::Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads)
-    : Stills(scene, view_bounds(scene, first), spacings, threads) {}
-
-Stills::Stills(const Scene& scene, const Aabb& film, std::span<const float> spacings, int threads)
+Stills::Stills(const Scene& scene, const FilmBounds& film, std::span<const float> spacings, int threads)
     : scene_(scene),
       renderer_(of_scene(scene), threads),
-      camera_(render::frame_camera(film, scene.render, visible_colliders(scene))),
       palette_(body_appearances(scene)),
-      ball_radius_(0.5f * *std::min_element(spacings.begin(), spacings.end())) {}
+      ball_radius_(0.5f * *std::min_element(spacings.begin(), spacings.end())) {
+  camera_ = render::frame_camera(film.box(scene, 2 * ball_radius_), scene.render, visible_colliders(scene));
+}
+
+Stills::Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads)
+    : Stills(scene, FilmBounds(first), spacings, threads) {}
 
 render::Image Stills::take(const ParticleFrame& frame, const Mesh& surface) {
   const std::vector<Collider> colliders = colliders_at(scene_, frame.time);

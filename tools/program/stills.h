@@ -5,6 +5,7 @@
 #include "mallow/files.h"
 #include "mallow/mesh.h"
 #include "mallow/scene.h"
+#include "program/film_bounds.h"
 #include "render/renderer.h"
 
 namespace mallow::program {
@@ -15,10 +16,11 @@ void check_environment(const Scene& scene);
 /// Takes the pictures of a run: camera and looks stay through the film.
 class Stills {
  public:
-  /// `scene` must outlive the stills. spacings: h of each body [m].
+  /// `scene` must outlive the stills. film: what the camera has in view, where the scene does not say where
+  /// it is. spacings: h of each body [m].
+  Stills(const Scene& scene, const FilmBounds& film, std::span<const float> spacings, int threads);
+  /// Of a film of which one frame is known.
   Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads);
-  /// The same for a film whose bounds are known.
-  Stills(const Scene& scene, const Aabb& film, std::span<const float> spacings, int threads);
 
   /// Simulated time from one frame to the next [s], of which the shutter is open for a share; 0 to begin
   /// with.

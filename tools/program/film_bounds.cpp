@@ -1,0 +1,141 @@
+#include "program/film_bounds.h"
+
+#include <algorithm>
+#include <limits>
+#include <type_traits>
+
+namespace mallow::program {
+namespace {
+
+/// Moments at which a path is looked at from one end to the other.
+constexpr int k_looks = 24;
+/// A collider that goes through keyframes is seen whole up to this size, in sizes of what moves.
+constexpr float k_tool = 1.5f;
+
+void extend(Aabb& box, const Aabb& other) {
+  box.min = box.min.cwiseMin(other.min);
+  box.max = box.max.cwiseMax(other.max);
+}
+
+float longest_side(const Aabb& box) {
+  return (box.max - box.min).maxCoeff();
+}
+
+/// A plane that things come to rest on.
+bool is_ground(const Plane& plane) {
+  return plane.normal.z() > 0.7f * plane.normal.norm();
+}
+
+/// Height of a ground plane below (or above) a point.
+float ground_height(const Plane& plane, const Vec3& x) {
+  return (plane.offset - plane.normal.x() * x.x() - plane.normal.y() * x.y()) / plane.normal.z();
+}
+
+/// What a scene has that stops a fall.
+struct Room {
+  std::vector<Collider> colliders;  ///< that are seen
+  std::vector<Plane> grounds;
+
+  explicit Room(const Scene& scene) : colliders(visible_colliders(scene)) {
+    for (const Collider& collider : colliders)
+      visit_parts(collider, [&]<class Shape>(const Shape& shape) {
+        if constexpr (std::is_same_v<Shape, Plane>)
+          if (const Plane plane = placed(shape, collider.pose); is_ground(plane)) grounds.push_back(plane);
+      });
+  }
+};
+
+/// The bounds of a shape wherever its keyframes take it, or its velocity up to a time.
+template <class Shape>
+Aabb swept(const Shape& shape, const Collider& collider, double last) {
+  if (collider.keyframes.empty()) {
+    Aabb box = placed(bounds(shape), collider.pose);
+    if (last > 0) extend(box, placed(bounds(shape), pose_after(collider, last)));
+    return box;
+  }
+  const double begin = collider.keyframes.front().time, end = collider.keyframes.back().time;
+  Aabb box = placed(bounds(shape), pose_at(collider.keyframes, begin));
+  for (const PoseKeyframe& key : collider.keyframes) extend(box, placed(bounds(shape), key.pose));
+  for (int k = 1; k < k_looks; ++k)
+    extend(box, placed(bounds(shape), pose_at(collider.keyframes, begin + (end - begin) * k / k_looks)));
+  return box;
+}
+
+/// What is seen of the colliders with what is in the box.
+void add_colliders(const Room& room, double last, Aabb& box) {
+  // A collider far larger than what moves is a part of the room and does not have to be seen whole, one that
+  // is moved through keyframes and is no larger is a tool, and is.
+  const float size = longest_side(box);
+  const Vec3 reach = Vec3::Constant(size);
+  const Aabb near{box.min - reach, box.max + reach};
+  const Aabb far{box.min - Vec3::Constant(2 * size), box.max + Vec3::Constant(2 * size)};
+  for (const Collider& collider : room.colliders)
+    visit_parts(collider, [&]<class Shape>(const Shape& shape) {
+      if constexpr (std::is_same_v<Shape, Plane>) return;  // endless
+      const bool is_tool = !collider.keyframes.empty() && longest_side(bounds(shape)) <= k_tool * size;
+      const Aabb whole = swept(shape, collider, last);
+      const Aabb& seen = is_tool ? far : near;
+      const auto clamped = [&](const Vec3& x) -> Vec3 { return x.cwiseMax(seen.min).cwiseMin(seen.max); };
+      extend(box, {clamped(whole.min), clamped(whole.max)});
+    });
+}
+
+/// The particles of a frame without those far from all others.
+Aabb most_of(const ParticleFrame& frame) {
+  constexpr std::size_t k_rare = 100;  // one in so many may be far away
+  Aabb box{frame.positions.at(0), frame.positions.at(0)};
+  for (const Vec3& x : frame.positions) extend(box, {x, x});
+  const std::size_t rare = frame.positions.size() / k_rare;
+  if (rare == 0) return box;
+  Aabb most;
+  std::vector<float> values(frame.positions.size());
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::ranges::transform(frame.positions, values.begin(), [&](const Vec3& x) { return x[axis]; });
+    const auto low = values.begin() + static_cast<std::ptrdiff_t>(rare);
+    const auto high = values.end() - 1 - static_cast<std::ptrdiff_t>(rare);
+    std::nth_element(values.begin(), low, values.end());
+    most.min[axis] = *low;
+    std::nth_element(values.begin(), high, values.end());
+    most.max[axis] = *high;
+  }
+  const Vec3 reach = Vec3::Constant(longest_side(most));
+  return {box.min.cwiseMax(most.min - reach), box.max.cwiseMin(most.max + reach)};
+}
+
+}  // namespace
+
+std::vector<Collider> visible_colliders(const Scene& scene) {
+  std::vector<Collider> colliders;
+  for (const SceneCollider& collider : scene.colliders)
+    if (collider.visible) colliders.push_back(collider);
+  return colliders;
+}
+
+void FilmBounds::add(const ParticleFrame& frame) {
+  if (frame.positions.empty()) return;
+  const Aabb box = most_of(frame);
+  if (!box_) box_ = box;
+  extend(*box_, box);
+  last_time_ = std::max(last_time_, frame.time);
+}
+
+Aabb FilmBounds::box(const Scene& scene, float spacing) const {
+  if (!box_) return {{-1, -1, -1}, {1, 1, 1}};
+  // The surface is half a spacing and a little outside of the particles.
+  const Vec3 skin = Vec3::Constant(0.75f * spacing);
+  Aabb box{box_->min - skin, box_->max + skin};
+  const Room room(scene);
+  float lowest = -std::numeric_limits<float>::infinity();
+  for (const Plane& plane : room.grounds) {
+    const Vec3 middle = 0.5f * (box.min + box.max);
+    const Vec3 foot(middle.x(), middle.y(), ground_height(plane, middle));
+    lowest = std::max(lowest, std::min(foot.z(), box.min.z()));
+    // How high something hangs is seen where the ground is near.
+    if (box.min.z() - foot.z() < 2 * longest_side(box)) extend(box, {foot, foot});
+  }
+  add_colliders(room, last_time_, box);
+  box.min.z() = std::max(box.min.z(), lowest);
+  return box;
+}
+
+}  // namespace mallow::program
