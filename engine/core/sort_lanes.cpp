@@ -24,9 +24,10 @@ std::uint32_t counts_to_places(std::uint32_t* counts, std::size_t chunks, std::s
     Ints next = behind - total;
     store(next, starts + key);
     for (std::size_t c = 0; c < chunks; ++c) {
-      const Ints here = load(counts + c * keys + key);
+      // Before the count is written over: GCC 12 loses a sum behind it with -fno-sanitize-recover=undefined.
+      const Ints after = next + load(counts + c * keys + key);
       store(next, counts + c * keys + key);
-      next += here;
+      next = after;
     }
     place = static_cast<std::uint32_t>(behind[k_cluster - 1]);
   }
