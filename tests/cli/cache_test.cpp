@@ -92,6 +92,19 @@ TEST_F(cli_cache, each_surfacing_changes_what_the_run_drew_and_not_what_the_last
   EXPECT_EQ(draw({}), coarse);
 }
 
+TEST_F(cli_cache, each_rendering_changes_what_the_run_showed_and_not_what_the_last_one_did) {
+  ASSERT_EQ(run({"--out", at("out")}).exit_code, 0);
+  ASSERT_EQ(run_mallow({"render", at("out"), "--no-film"}).exit_code, 0);
+  const std::string picture = at("out/images/frame_000002.png"), as_run = read_text(picture);
+  ASSERT_FALSE(as_run.empty());
+  ASSERT_EQ(run_mallow({"render", at("out"), "--no-film", "--set", "render.width=32"}).exit_code, 0);
+  EXPECT_NE(read_text(picture), as_run);
+  ASSERT_EQ(run_mallow({"render", at("out"), "--no-film", "--set", "render.field_of_view=20"}).exit_code, 0);
+  EXPECT_EQ(read_text(at("out/scene.toml")).find("width = 32"), std::string::npos);
+  ASSERT_EQ(run_mallow({"render", at("out"), "--no-film"}).exit_code, 0);
+  EXPECT_EQ(read_text(picture), as_run);
+}
+
 TEST_F(cli_cache, motion_cannot_be_changed_afterwards) {
   ASSERT_EQ(run({"--out", at("out"), "--no-surface"}).exit_code, 0);
   const Outcome outcome = run_mallow({"surface", at("out"), "--set", "solver.time_step=0.1"});

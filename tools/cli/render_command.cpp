@@ -102,8 +102,10 @@ void add_render_command(CLI::App& app) {
       app.add_subcommand("render", "Render the pictures of an earlier run again, and make its film");
   command->add_option("DIR", options->folder, "The --out folder of a run")->required();
   command
-      ->add_option("--set", options->overrides,
-                   "Change how pictures look: --set render.samples=16, --set collider[0].visible=false")
+      ->add_option(
+          "--set", options->overrides,
+          "Change how pictures look: --set render.samples=16, --set collider[0].visible=false; what an "
+          "earlier call set is forgotten")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
   command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")

@@ -11,10 +11,6 @@
 namespace mallow::program {
 namespace {
 
-/// In report.json, where `mallow surface` drew surfaces anew.
-constexpr const char* k_surface_as_run = "surface_as_run";
-constexpr const char* k_surface_drawn = "surface_drawn";
-
 void check_overrides(std::span<const std::string> overrides, const std::string& section) {
   std::vector<Problem> problems;
   for (const std::string& setting : overrides) {
@@ -27,23 +23,51 @@ void check_overrides(std::span<const std::string> overrides, const std::string& 
   if (!problems.empty()) throw ConfigError(std::move(problems));
 }
 
-/// How surfaces are drawn, as a scene file says it: its section of that name.
-std::string surface_section(const std::string& scene_text) {
-  const std::size_t begin = scene_text.find("[surface]\n");
+/// Names in report.json: a section of the scene as the run had it, and as the last call that changed it left
+/// it.
+std::string as_run(const std::string& section) {
+  return section + "_as_run";
+}
+std::string as_left(const std::string& section) {
+  return section + "_drawn";
+}
+
+/// How surfaces or pictures are made, as a scene file says it: its section of that name.
+std::string text_of(const std::string& section, const std::string& scene_text) {
+  const std::size_t begin = scene_text.find("[" + section + "]\n");
   return scene_text.substr(begin, scene_text.find("\n[", begin) - begin);
 }
 
-/// The text of a cache's scene with surfaces as the run drew them, whatever was changed since: each call of
-/// `mallow surface` says by itself what is other than in the run. What the user wrote into scene.toml in the
-/// meantime counts as the run's. Notes in the report what the run's settings are.
-std::string with_surface_as_run(const Scene& scene, nlohmann::ordered_json& report) {
+/// Which colliders are seen, in their order.
+std::vector<bool> seen_colliders(const Scene& scene) {
+  std::vector<bool> seen;
+  for (const SceneCollider& collider : scene.colliders) seen.push_back(collider.visible);
+  return seen;
+}
+
+/// The text of a cache's scene with a section as the run had it, whatever was changed since: each call of
+/// `mallow surface` and `mallow render` says by itself what is other than in the run. What the user wrote
+/// into scene.toml in the meantime counts as the run's. Notes in the report what the run's settings are.
+std::string with_section_as_run(Scene scene, const std::string& section, nlohmann::ordered_json& report) {
+  const std::string now = text_of(section, print_scene(scene));
+  const std::vector<bool> seen = seen_colliders(scene);
+  const bool is_ours = report.contains(as_run(section)) && report[as_run(section)].is_string() &&
+                       report.value(as_left(section), nlohmann::ordered_json()) == now;
+  std::string then = now;
+  if (is_ours)
+    then = report[as_run(section)].get<std::string>();
+  else
+    report[as_run(section)] = now;
+  if (section == "render") {
+    const nlohmann::ordered_json noted = report.value(as_run("visible"), nlohmann::ordered_json());
+    const bool is_left = noted.is_array() && noted.size() == seen.size() &&
+                         report.value(as_left("visible"), nlohmann::ordered_json()) == seen;
+    for (std::size_t c = 0; c < seen.size(); ++c)
+      if (is_left && noted[c].is_boolean()) scene.colliders[c].visible = noted[c].get<bool>();
+    if (!is_left) report[as_run("visible")] = seen;
+  }
   std::string text = print_scene(scene);
-  const std::string now = surface_section(text);
-  if (report.contains(k_surface_as_run) && report.value(k_surface_drawn, nlohmann::ordered_json()) == now &&
-      report[k_surface_as_run].is_string())
-    return text.replace(text.find(now), now.size(), report[k_surface_as_run].get<std::string>());
-  report[k_surface_as_run] = now;
-  return text;
+  return text.replace(text.find(now), now.size(), then);
 }
 
 }  // namespace
@@ -58,11 +82,10 @@ CachedRun open_cached_run(const CachedRunOptions& options, const std::string& se
   // A cache stands anywhere, its scene's files where they were; from here on none of them is read.
   constexpr SceneReadOptions k_anywhere{.allow_outside_paths = true};
   nlohmann::ordered_json report = read_report(cache.report_file());
-  const Scene scene =
-      section == "surface"
-          ? parse_scene(with_surface_as_run(read_scene(cache.scene_file(), {}, k_anywhere), report),
-                        cache.scene_file(), options.overrides, k_anywhere)
-          : read_scene(cache.scene_file(), options.overrides, k_anywhere);
+  Scene scene = read_scene(cache.scene_file(), {}, k_anywhere);
+  if (writes)
+    scene = parse_scene(with_section_as_run(std::move(scene), section, report), cache.scene_file(),
+                        options.overrides, k_anywhere);
   std::vector<float> spacings = body_spacings(report, cache.report_file());
   if (spacings.size() != body_materials(scene).size()) {
     throw IoError({cache.report_file().string(), 0, 0, "groups", "does not list the groups of scene.toml"});
@@ -77,8 +100,10 @@ void close_cached_run(CachedRun& run, const StageTimes& seconds, std::span<const
     run.report["stage_seconds"][name(stage)] = seconds[static_cast<std::size_t>(stage)];
   }
   run.cache.write_scene(run.scene);
-  if (run.report.contains(k_surface_as_run))
-    run.report[k_surface_drawn] = surface_section(print_scene(run.scene));
+  for (const std::string section : {"surface", "render"})
+    if (run.report.contains(as_run(section)))
+      run.report[as_left(section)] = text_of(section, print_scene(run.scene));
+  if (run.report.contains(as_run("visible"))) run.report[as_left("visible")] = seen_colliders(run.scene);
   write_report(run.cache.report_file(), run.report);
 }
 

@@ -30,7 +30,7 @@ struct CachedRun {
 
 /// Throws IoError and ConfigError. `section`: the one whose keys may be changed, as the motion is there
 /// already, with "render" also which colliders are visible; empty: none, and the run stays as it is.
-/// Overrides of "surface" count on top of the scene as it was run, not as an earlier call drew it. No other
+/// Overrides count on top of the section as it was in the run, not as an earlier call left it. No other
 /// program writes into the folder while the run lives, but for those with which it is shared.
 CachedRun open_cached_run(const CachedRunOptions& options, const std::string& section);
 
