@@ -123,7 +123,7 @@ std::vector<fs::path> Cache::files() const {
       for (const int frame : frames_in(folder_ / frames.name, ending))
         files.push_back(folder_ / frames.name / frame_name(frame, ending));
   for (const char* file : k_single_files)
-    if (file != k_run_mark) files.push_back(folder_ / file);
+    if (std::string_view(file) != k_run_mark) files.push_back(folder_ / file);
   std::erase_if(files, [](const fs::path& file) {
     std::error_code unknown;
     const fs::file_status status = fs::symlink_status(file, unknown);
