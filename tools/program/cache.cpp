@@ -277,8 +277,12 @@ Scene Cache::moved_here(Scene scene) const {
   return scene;
 }
 
+std::string Cache::scene_text(const fs::path& folder, const Scene& scene) {
+  return print_scene(Cache(folder).moved_here(scene));
+}
+
 void Cache::write_scene(const Scene& scene) const {
-  const std::string text = print_scene(moved_here(scene));
+  const std::string text = scene_text(folder_, scene);
   try {
     if (print_scene(read_scene(scene_file(), {}, {.allow_outside_paths = true})) == text) return;
   } catch (const ConfigError&) {

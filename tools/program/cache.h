@@ -89,6 +89,8 @@ class Cache {
   Scene moved_here(Scene scene) const;
   /// scene.toml, unless it says the same already, with comments perhaps.
   void write_scene(const Scene& scene) const;
+  /// What scene.toml of a run in `folder` says: its files are named as from there.
+  static std::string scene_text(const std::filesystem::path& folder, const Scene& scene);
 
  private:
   explicit Cache(std::filesystem::path folder) : folder_(std::move(folder)) {}

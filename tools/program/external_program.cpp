@@ -1,5 +1,7 @@
 #include "program/external_program.h"
 
+#include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,6 +12,7 @@
 #include <sstream>
 
 #include "program/failure.h"
+#include "program/interrupt.h"
 
 namespace mallow::program {
 
@@ -22,21 +25,52 @@ bool is_installed(const std::string& program) {
   return false;
 }
 
-int run_program(std::vector<std::string> arguments, const std::filesystem::path& folder) {
+namespace {
+
+/// Starts a program; `actions` is given up.
+pid_t start(std::vector<std::string>& arguments, posix_spawn_file_actions_t& actions) {
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_addchdir_np(&actions, folder.empty() ? "." : folder.c_str());
   pid_t child = 0;
   const int error = ::posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw RunFailure(arguments[0] + " cannot be started: " + std::strerror(error));
+  return child;
+}
+
+int exit_status(int status) {
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace
+
+int run_program(std::vector<std::string> arguments, const std::filesystem::path& folder) {
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addchdir_np(&actions, folder.empty() ? "." : folder.c_str());
+  const pid_t child = start(arguments, actions);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return exit_status(status);
+}
+
+int run_logged(std::vector<std::string> arguments, const std::filesystem::path& log) {
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  ::posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  ::posix_spawn_file_actions_adddup2(&actions, 1, 2);
+  const pid_t child = start(arguments, actions);
+  int status = 0;
+  for (bool asked = false; ::waitpid(child, &status, asked ? 0 : WNOHANG) == 0;) {
+    ::usleep(2000);
+    if (interrupted() == 0) continue;
+    ::kill(child, SIGTERM);
+    asked = true;
+  }
+  return exit_status(status);
 }
 
 }  // namespace mallow::program

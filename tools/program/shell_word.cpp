@@ -14,4 +14,11 @@ std::string shell_word(const std::string& text) {
   return word + '\'';
 }
 
+std::string shell_line(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words)
+    line += (line.empty() ? "" : " ") + (word.starts_with("--") ? word : shell_word(word));
+  return line;
+}
+
 }  // namespace mallow::program

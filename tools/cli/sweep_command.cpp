@@ -1,0 +1,205 @@
+#include "cli/sweep_command.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mallow/errors.h"
+#include "mallow/files.h"
+#include "program/failure.h"
+#include "program/interrupt.h"
+#include "program/machine.h"
+#include "sweep/schedulers.h"
+#include "sweep/sweep_table.h"
+
+namespace mallow::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using sweep::Outcome;
+using sweep::SweepFolder;
+
+struct SweepOptions {
+  std::string spec, out, on = "local", point, hosts;
+  std::vector<std::string> slurm_options;
+  bool dry_run = false;
+  int jobs = 0, threads = 0, points_per_task = 1;
+};
+
+/// The program that runs, by the name that others can start it with.
+fs::path own_program() {
+  return fs::read_symlink("/proc/self/exe");
+}
+
+/// Only a folder that is empty, or holds this sweep, is written into.
+void take_folder(const SweepOptions& options) {
+  const fs::path folder = options.out, mark = folder / "sweep.toml";
+  if (fs::exists(folder) && !fs::is_empty(folder) && !fs::exists(mark))
+    throw ConfigError("--out", options.out + " is not empty, and holds no sweep; give another folder");
+  fs::create_directories(folder);
+  if (!fs::equivalent(fs::absolute(options.spec).parent_path(), folder) ||
+      fs::path(options.spec).filename() != "sweep.toml")
+    fs::copy_file(options.spec, mark, fs::copy_options::overwrite_existing);
+}
+
+struct Slots {
+  int jobs, threads;
+};
+
+/// Every run takes the threads of its slot: small ones gain little from a second thread.
+Slots slots(const SweepOptions& options, std::size_t points) {
+  const int cores = program::resolve_threads(0);
+  const int jobs = options.jobs > 0 ? options.jobs
+                                    : std::min(cores, static_cast<int>(std::min<std::size_t>(points, 4096)));
+  return {std::max(1, jobs), options.threads > 0 ? options.threads : std::max(1, cores / std::max(1, jobs))};
+}
+
+void print_points(const SweepFolder& sweep) {
+  for (std::size_t point = 0; point < sweep.points().size(); ++point) {
+    std::printf("%zu", point);
+    for (std::size_t k = 0; k < sweep.points()[point].size(); ++k)
+      std::printf(" %s=%s", sweep.spec().vary[k].key.c_str(), sweep.points()[point][k].c_str());
+    std::printf("\n");
+  }
+}
+
+/// A few frames of the first point tell what all take.
+void print_estimate(const SweepFolder& sweep, const Slots& slots) {
+  const int frames = sweep.spec().frames.value_or(read_scene(sweep.spec().scene, {}, {}).run.frames);
+  const int few = std::max(1, frames / 20), more = 2 * few;
+  const auto start = sweep.probe(0, slots.threads, few), longer = sweep.probe(0, slots.threads, more);
+  if (!start || !longer) {
+    std::printf("estimate none: point 0 does not run\n");
+    return;
+  }
+  const double frame = std::max(0.0, (*longer - *start) / few),
+               each = std::max(0.0, *start - frame * few) + frame * frames;
+  std::printf("points %zu\nestimate %.3g s a point, %.3g s in all, %d at a time\n", sweep.points().size(),
+              each, each * static_cast<double>(sweep.points().size()) / slots.jobs, slots.jobs);
+}
+
+sweep::Elsewhere elsewhere(const SweepOptions& options) {
+  std::vector<std::string> command{own_program().string(),
+                                   "sweep",
+                                   fs::absolute(options.spec).string(),
+                                   "--out",
+                                   fs::absolute(options.out).string(),
+                                   "--jobs",
+                                   "1",
+                                   "--threads",
+                                   std::to_string(std::max(1, options.threads))};
+  return {.command = std::move(command),
+          .jobs = options.jobs,
+          .hosts = options.hosts,
+          .points_per_task = options.points_per_task,
+          .slurm_options = options.slurm_options};
+}
+
+void say(std::size_t point, const Outcome& outcome) {
+  std::fprintf(stderr, "point %zu %s, %.3g s%s%s\n", point, name(outcome.status), outcome.seconds,
+               outcome.message.empty() ? "" : ": ", outcome.message.c_str());
+}
+
+/// All outcomes, the table and its pictures; what is still open is a failure.
+void finish(const SweepFolder& sweep) {
+  std::vector<Outcome> outcomes;
+  std::array<std::size_t, 4> counts{};
+  for (std::size_t point = 0; point < sweep.points().size(); ++point) {
+    outcomes.push_back(sweep.outcome(point));
+    ++counts[static_cast<std::size_t>(outcomes.back().status)];
+  }
+  write_table(sweep, outcomes);
+  draw_plots(sweep, outcomes);
+  make_sheet(sweep, outcomes);
+  const auto count = [&](Outcome::Status status) { return counts[static_cast<std::size_t>(status)]; };
+  std::printf("points %zu\ndone %zu\nrefused %zu\nfailed %zu\ntable %s\n", outcomes.size(),
+              count(Outcome::Status::done), count(Outcome::Status::refused), count(Outcome::Status::failed),
+              (sweep.folder() / "table.csv").c_str());
+  if (const std::size_t open = count(Outcome::Status::open))
+    throw program::RunFailure(std::to_string(open) +
+                              " points were not run; the same command goes on with them");
+}
+
+void run_sweep(const SweepOptions& options) {
+  SweepFolder sweep(sweep::read_spec(options.spec), options.out, own_program());
+  if (options.dry_run) {
+    print_points(sweep);
+    return print_estimate(sweep, slots(options, sweep.points().size()));
+  }
+  if (options.out.empty()) throw ConfigError("--out", "is missing: the folder of the sweep");
+  if (options.on == "list") {
+    for (std::size_t point = 0; point < sweep.points().size(); ++point)
+      if (sweep.outcome(point).status != Outcome::Status::done)
+        std::printf("%s\n", sweep.worker(elsewhere(options).command, point).c_str());
+    return;
+  }
+  take_folder(options);
+  program::watch_for_interrupt();
+  std::vector<std::size_t> points;
+  if (!options.point.empty()) {
+    points = sweep::point_list(options.point, sweep.points().size());
+  } else {
+    for (std::size_t point = 0; point < sweep.points().size(); ++point)
+      if (sweep.outcome(point).status != Outcome::Status::done) points.push_back(point);
+  }
+  if (options.on == "parallel" && !points.empty())
+    run_by_parallel(sweep, points, elsewhere(options));
+  else if (options.on == "slurm" && !points.empty())
+    run_by_slurm(sweep, points, elsewhere(options));
+  else {
+    const Slots room = slots(options, points.size());
+    run_here(sweep, points, room.jobs, room.threads, say);
+  }
+  if (options.point.empty()) finish(sweep);
+}
+
+}  // namespace
+
+void add_sweep_command(CLI::App& app) {
+  const auto options = std::make_shared<SweepOptions>();
+  CLI::App* command =
+      app.add_subcommand("sweep", "Run one scene many times with other values; make a table of it");
+  command->add_option("SPEC", options->spec, "What is turned, and measured (TOML), see below")->required();
+  command->add_option("--out", options->out, "Folder of the sweep; what is done there is not run again");
+  command->add_flag("--dry-run", options->dry_run, "Print the points and an estimate of the time");
+  command
+      ->add_option("--on", options->on,
+                   "Where points run; list: print a command for each, for any other scheduler")
+      ->check(CLI::IsMember({"local", "parallel", "slurm", "list"}));
+  command
+      ->add_option("--jobs", options->jobs,
+                   "Points at a time; 0: one for each processor, or as the scheduler has it")
+      ->check(CLI::Range(0, 1'000'000));
+  command->add_option("--threads", options->threads, "Threads of each run; 0: those of its slot")
+      ->check(CLI::Range(0, 1024));
+  command->add_option("--point", options->point,
+                      "Run these points alone, and make no table: 7, or 3,7,10:20");
+  command->add_option("--hosts", options->hosts,
+                      "For --on parallel: a file of hosts for ssh, which see the same folders");
+  command
+      ->add_option("--points-per-task", options->points_per_task,
+                   "For --on parallel and slurm: points of one task")
+      ->check(CLI::Range(1, 1'000'000));
+  command
+      ->add_option("--sbatch", options->slurm_options,
+                   "For --on slurm: an option of sbatch, --sbatch=--partition=long")
+      ->allow_extra_args(false);
+  command->footer(
+      "A spec: scene = \"drop.toml\"; method = \"grid\", \"random\", \"latin_hypercube\" or \"sobol\", with "
+      "points = 100 and seed = 1\n"
+      "for all but a grid; [[vary]] tables with key = \"material[0].alpha\" and values = [0, 0.3], or from, "
+      "to, scale = \"linear\" or\n"
+      "\"log\", and count in a grid; or points_file = \"points.csv\", whose header has keys; frames; images; "
+      "measures, columns of\n"
+      "`mallow run --series` with .last, .min, .max or .mean; [[plot]] tables with x, y and color, columns "
+      "of the table.\n"
+      "DIR/table.csv and table.sqlite have a row for each point, points/00007 its scene, series, report and "
+      "what it said.");
+  command->callback([options] { run_sweep(*options); });
+}
+
+}  // namespace mallow::cli

@@ -1,0 +1,240 @@
+#include "sweep/sweep_points.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "mallow/errors.h"
+#include "mallow/files.h"
+#include "mallow/scene.h"
+#include "program/cache.h"
+#include "program/external_program.h"
+#include "program/failure.h"
+#include "program/fnv.h"
+#include "program/interrupt.h"
+#include "program/shell_word.h"
+#include "sweep/text.h"
+
+namespace mallow::sweep {
+namespace fs = std::filesystem;
+namespace {
+
+using Status = Outcome::Status;
+constexpr std::array k_names{"open", "done", "refused", "failed"};
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return std::move(text).str();
+}
+
+std::vector<std::string> overrides(const SweepSpec& spec, const std::vector<std::string>& values) {
+  std::vector<std::string> all;
+  for (std::size_t k = 0; k < values.size(); ++k) all.push_back(spec.vary[k].key + "=" + values[k]);
+  return all;
+}
+
+/// The last line that a run said, without the program's name: what went wrong.
+std::string last_word(const fs::path& log) {
+  std::istringstream text(text_of(log));
+  std::string last;
+  for (std::string line; std::getline(text, line);)
+    if (line.starts_with("mallow: ") && !line.starts_with("mallow: warning")) last = line.substr(8);
+  return last;
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream text(line);
+  for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+/// Of a column: one of its values, or their mean.
+std::optional<double> value_of(const std::vector<double>& column, Measure::Of of) {
+  if (column.empty()) return std::nullopt;
+  switch (of) {
+    case Measure::Of::least:
+      return *std::ranges::min_element(column);
+    case Measure::Of::most:
+      return *std::ranges::max_element(column);
+    case Measure::Of::mean: {
+      double sum = 0;
+      for (const double value : column) sum += value;
+      return sum / static_cast<double>(column.size());
+    }
+    case Measure::Of::last:
+      break;
+  }
+  return column.back();
+}
+
+/// Throws ConfigError where a series has no such column.
+std::map<std::string, double> measure_series(const SweepSpec& spec, const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  std::vector<std::string> names = split(line);
+  for (std::string& column : names) column = column.substr(0, column.find(" ["));
+  std::vector<std::vector<double>> columns(names.size());
+  while (std::getline(in, line)) {
+    const std::vector<std::string> cells = split(line);
+    for (std::size_t c = 0; c < std::min(cells.size(), names.size()); ++c)
+      if (const auto value = number_of(cells[c])) columns[c].push_back(*value);
+  }
+  std::map<std::string, double> measured;
+  for (const Measure& measure : spec.measures) {
+    const auto found = std::ranges::find(names, measure.column);
+    if (found == names.end()) {
+      std::string all;
+      for (const std::string& column : names) all += (all.empty() ? "" : ", ") + column;
+      throw ConfigError({{spec.file.string(), 0, 0, "measures",
+                          "'" + measure.name +
+                              "' is no column of a series, nor one with .last, .min, .max or "
+                              ".mean behind it; there are " +
+                              all}});
+    }
+    if (const auto value = value_of(columns[static_cast<std::size_t>(found - names.begin())], measure.of))
+      measured[measure.name] = *value;
+  }
+  return measured;
+}
+
+}  // namespace
+
+const char* name(Outcome::Status status) {
+  return k_names[static_cast<std::size_t>(status)];
+}
+
+SweepFolder::SweepFolder(SweepSpec spec, fs::path folder, fs::path program)
+    : spec_(std::move(spec)), folder_(std::move(folder)), program_(std::move(program)) {
+  points_ = sample_points(spec_);
+  program_hash_ = program::fnv(text_of(program_));
+}
+
+fs::path SweepFolder::point_folder(std::size_t point) const {
+  std::string number = std::to_string(point);
+  number.insert(0, std::max<std::size_t>(5, number.size()) - number.size(), '0');
+  return folder_ / "points" / number;
+}
+
+std::vector<std::string> SweepFolder::arguments(std::size_t point, int threads) const {
+  const fs::path folder = point_folder(point);
+  std::vector<std::string> all{program_.string(),
+                               "run",
+                               spec_.scene.string(),
+                               "--threads",
+                               std::to_string(threads),
+                               "--series",
+                               (folder / "series.csv").string(),
+                               "--report",
+                               (folder / "report.json").string()};
+  if (spec_.frames) all.insert(all.end(), {"--frames", std::to_string(*spec_.frames)});
+  if (spec_.images)
+    all.insert(all.end(), {"--out", (folder / "run").string(), "--overwrite", "--no-film"});
+  else
+    all.insert(all.end(), {"--no-images", "--no-surface"});
+  for (const std::string& set : overrides(spec_, points_[point])) all.insert(all.end(), {"--set", set});
+  return all;
+}
+
+std::string SweepFolder::command(std::size_t point) const {
+  return program::shell_line(arguments(point, 1));
+}
+
+std::string SweepFolder::worker(const std::vector<std::string>& command, std::size_t point) {
+  return program::shell_line(command) + " --point " + std::to_string(point);
+}
+
+/// Of all that a row depends on. Throws ConfigError and IoError as the scene's reader does.
+std::string SweepFolder::hash(std::size_t point) const {
+  Scene scene = read_scene(spec_.scene, overrides(spec_, points_[point]), {});
+  std::uint64_t hash = program::fnv(program::Cache::scene_text(point_folder(point), scene), program_hash_);
+  for (const fs::path* file : named_files(scene))
+    hash = program::fnv(text_of(scene.file.parent_path() / *file), hash);
+  hash = program::fnv(std::to_string(spec_.frames.value_or(-1)) + (spec_.images ? " images" : ""), hash);
+  std::ostringstream text;
+  text << std::hex << hash;
+  return text.str();
+}
+
+Outcome SweepFolder::outcome(std::size_t point) const try {
+  const auto json = nlohmann::json::parse(text_of(point_folder(point) / "point.json"));
+  Outcome outcome;
+  const auto status = std::ranges::find(k_names, json.at("status").get<std::string>());
+  if (status == k_names.end()) return {};
+  outcome.status = static_cast<Status>(status - k_names.begin());
+  outcome.message = json.at("message").get<std::string>();
+  outcome.seconds = json.at("seconds").get<double>();
+  if (outcome.status == Status::refused) return outcome;
+  if (json.at("hash") != hash(point)) return {};
+  if (outcome.status == Status::done)
+    outcome.measured = measure_series(spec_, point_folder(point) / "series.csv");
+  return outcome;
+} catch (const nlohmann::json::exception&) {
+  return {};
+}
+
+Outcome SweepFolder::run(std::size_t point, int threads) const {
+  const fs::path folder = point_folder(point);
+  Outcome outcome;
+  std::string own_hash;
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    fs::create_directories(folder);
+    own_hash = hash(point);
+    const Scene scene = read_scene(spec_.scene, overrides(spec_, points_[point]), {});
+    write_whole(folder / "scene.toml", program::Cache::scene_text(folder, scene));
+    fs::remove(folder / "point.json");
+    const int code = program::run_logged(arguments(point, threads), folder / "log.txt");
+    if (const int signal = program::interrupted())
+      throw program::Interrupted("ended by a signal; the same command goes on with what is left", signal);
+    outcome.status = code == program::k_exit_done        ? Status::done
+                     : code == program::k_exit_bad_input ? Status::refused
+                                                         : Status::failed;
+    if (code != program::k_exit_done) {
+      outcome.message = last_word(folder / "log.txt");
+      if (outcome.message.empty()) outcome.message = "ended with exit code " + std::to_string(code);
+    }
+  } catch (const ConfigError& error) {
+    outcome.status = Status::refused;
+    outcome.message = error.what();
+  } catch (const program::Interrupted&) {
+    throw;
+  } catch (const std::exception& error) {
+    outcome.status = Status::failed;
+    outcome.message = error.what();
+  }
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const nlohmann::ordered_json json{{"point", point},
+                                    {"set", overrides(spec_, points_[point])},
+                                    {"command", command(point)},
+                                    {"hash", own_hash},
+                                    {"status", name(outcome.status)},
+                                    {"message", outcome.message},
+                                    {"seconds", outcome.seconds}};
+  try {
+    write_whole(folder / "point.json", json.dump(2) + "\n");
+  } catch (const std::exception& error) {  // a full disk is this point's trouble alone
+    outcome.status = Status::failed;
+    outcome.message = error.what();
+  }
+  if (outcome.status == Status::done) outcome.measured = measure_series(spec_, folder / "series.csv");
+  return outcome;
+}
+
+std::optional<double> SweepFolder::probe(std::size_t point, int threads, int frames) const {
+  std::vector<std::string> all{program_.string(),       "run",      spec_.scene.string(),   "--threads",
+                               std::to_string(threads), "--frames", std::to_string(frames), "--no-images",
+                               "--no-surface"};
+  for (const std::string& set : overrides(spec_, points_[point])) all.insert(all.end(), {"--set", set});
+  const auto begin = std::chrono::steady_clock::now();
+  if (program::run_logged(all, "/dev/null") != program::k_exit_done) return std::nullopt;
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace mallow::sweep

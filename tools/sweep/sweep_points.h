@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sweep/sweep_spec.h"
+
+namespace mallow::sweep {
+
+/// What became of a point.
+struct Outcome {
+  enum class Status { open, done, refused, failed };
+  Status status = Status::open;
+  std::string message;                     ///< why it was refused, or failed
+  std::map<std::string, double> measured;  ///< by name of the measure; none of those that have no number
+  double seconds = 0;                      ///< wall time of the run
+};
+const char* name(Outcome::Status status);
+
+/// A sweep and its folder: points/00007 has scene.toml, series.csv, report.json and point.json of point 7.
+class SweepFolder {
+ public:
+  /// Samples the points. program: the mallow that runs them. Throws IoError and ConfigError.
+  SweepFolder(SweepSpec spec, std::filesystem::path folder, std::filesystem::path program);
+
+  const SweepSpec& spec() const { return spec_; }
+  const std::filesystem::path& folder() const { return folder_; }
+  const std::vector<std::vector<std::string>>& points() const { return points_; }
+  std::filesystem::path point_folder(std::size_t point) const;
+  /// Nothing but `open` where the point was not run, or was with another scene, input or program.
+  Outcome outcome(std::size_t point) const;
+  /// The command that runs one point by itself, without this folder.
+  std::string command(std::size_t point) const;
+  /// The command of a worker, which keeps what becomes of a point, as a line for a shell.
+  static std::string worker(const std::vector<std::string>& command, std::size_t point);
+
+  /// Runs one point, on so many threads, and keeps what became of it. Whoever runs it, and however often: the
+  /// same but for its wall time. Throws Interrupted; all else that fails is an outcome.
+  Outcome run(std::size_t point, int threads) const;
+  /// The first `frames` frames of a point, for an estimate; gives the wall time [s], nothing where it fails.
+  std::optional<double> probe(std::size_t point, int threads, int frames) const;
+
+ private:
+  std::vector<std::string> arguments(std::size_t point, int threads) const;
+  std::string hash(std::size_t point) const;
+  Outcome measure(std::size_t point) const;
+
+  SweepSpec spec_;
+  std::filesystem::path folder_, program_;
+  std::vector<std::vector<std::string>> points_;
+  std::uint64_t program_hash_ = 0;
+};
+
+}  // namespace mallow::sweep

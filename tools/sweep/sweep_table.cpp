@@ -1,0 +1,196 @@
+#include "sweep/sweep_table.h"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <set>
+
+#include "mallow/errors.h"
+#include "mallow/files.h"
+#include "program/external_program.h"
+#include "sweep/text.h"
+
+namespace mallow::sweep {
+namespace fs = std::filesystem;
+namespace {
+
+/// The cells of a point's row, as text; empty where there is nothing.
+std::vector<std::string> row(const SweepFolder& sweep, std::size_t point, const Outcome& outcome) {
+  std::vector<std::string> cells{std::to_string(point)};
+  for (const std::string& value : sweep.points()[point]) cells.push_back(value);
+  cells.emplace_back(name(outcome.status));
+  for (const Measure& measure : sweep.spec().measures) {
+    const auto found = outcome.measured.find(measure.name);
+    cells.push_back(found == outcome.measured.end() ? "" : number_text(found->second));
+  }
+  cells.push_back(outcome.message);
+  return cells;
+}
+
+/// A cell of a CSV [RFC 4180].
+std::string quoted(const std::string& cell) {
+  if (cell.find_first_of(",\"\n\r") == std::string::npos) return cell;
+  std::string text = "\"";
+  for (const char c : cell) text += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return text + '"';
+}
+
+std::string line_of(const std::vector<std::string>& cells) {
+  std::string line;
+  for (const std::string& cell : cells) line += (&cell == cells.data() ? "" : ",") + quoted(cell);
+  return line + '\n';
+}
+
+/// A name in SQL, whatever is in it.
+std::string sql_name(const std::string& name) {
+  std::string text = "\"";
+  for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return text + '"';
+}
+
+bool is_number(const std::string& text) {
+  return number_of(text).has_value();
+}
+
+/// A database that is written anew.
+class Database {
+ public:
+  explicit Database(const fs::path& file) : file_(file) { check(sqlite3_open(file.c_str(), &database_)); }
+  ~Database() { sqlite3_close(database_); }
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  void run(const std::string& sql) { check(sqlite3_exec(database_, sql.c_str(), nullptr, nullptr, nullptr)); }
+
+  void insert(std::size_t columns, const std::vector<std::vector<std::string>>& rows) {
+    std::string marks;
+    for (std::size_t c = 0; c < columns; ++c) marks += c == 0 ? "?" : ",?";
+    sqlite3_stmt* statement = nullptr;
+    check(sqlite3_prepare_v2(database_, ("INSERT INTO points VALUES (" + marks + ")").c_str(), -1, &statement,
+                             nullptr));
+    const std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> owner(statement, sqlite3_finalize);
+    for (const std::vector<std::string>& cells : rows) {
+      for (std::size_t c = 0; c < columns; ++c) {
+        const int at = static_cast<int>(c) + 1;
+        if (cells[c].empty())
+          check(sqlite3_bind_null(statement, at));
+        else if (is_number(cells[c]))
+          check(sqlite3_bind_double(statement, at, std::stod(cells[c])));
+        else
+          check(sqlite3_bind_text(statement, at, cells[c].c_str(), -1, SQLITE_TRANSIENT));
+      }
+      const int code = sqlite3_step(statement);
+      if (code != SQLITE_DONE) check(code);
+      sqlite3_reset(statement);
+    }
+  }
+
+ private:
+  void check(int code) {
+    if (code != SQLITE_OK)
+      throw IoError(
+          {file_.string(), 0, 0, "", std::string("cannot be written: ") + sqlite3_errmsg(database_)});
+  }
+  fs::path file_;
+  sqlite3* database_ = nullptr;
+};
+
+std::vector<std::vector<std::string>> rows_of(const SweepFolder& sweep,
+                                              const std::vector<Outcome>& outcomes) {
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t point = 0; point < outcomes.size(); ++point)
+    rows.push_back(row(sweep, point, outcomes[point]));
+  return rows;
+}
+
+}  // namespace
+
+std::vector<std::string> table_columns(const SweepFolder& sweep) {
+  std::vector<std::string> columns{"point"};
+  for (const Vary& vary : sweep.spec().vary) columns.push_back(vary.key);
+  columns.emplace_back("status");
+  for (const Measure& measure : sweep.spec().measures) columns.push_back(measure.name);
+  columns.emplace_back("message");
+  return columns;
+}
+
+void write_table(const SweepFolder& sweep, const std::vector<Outcome>& outcomes) {
+  const std::vector<std::string> columns = table_columns(sweep);
+  const auto rows = rows_of(sweep, outcomes);
+  std::string csv = line_of(columns);
+  for (const std::vector<std::string>& cells : rows) csv += line_of(cells);
+  write_whole(sweep.folder() / "table.csv", csv);
+  write_whole(sweep.folder() / "table.sqlite", [&](const fs::path& beside) {
+    fs::remove(beside);
+    Database database(beside);
+    std::string list;
+    for (const std::string& column : columns) list += (list.empty() ? "" : ", ") + sql_name(column);
+    database.run("PRAGMA journal_mode = OFF; BEGIN; CREATE TABLE points (" + list + ")");
+    database.insert(columns.size(), rows);
+    database.run("COMMIT");
+  });
+}
+
+int draw_plots(const SweepFolder& sweep, const std::vector<Outcome>& outcomes) {
+  const std::vector<std::string> columns = table_columns(sweep);
+  const auto place = [&](const std::string& column) {
+    const auto found = std::ranges::find(columns, column);
+    if (found != columns.end()) return static_cast<std::size_t>(found - columns.begin());
+    std::string all;
+    for (const std::string& known : columns) all += (all.empty() ? "" : ", ") + known;
+    throw ConfigError({{sweep.spec().file.string(), 0, 0, "plot",
+                        "'" + column + "' is no column of the table; there are " + all}});
+  };
+  const auto rows = rows_of(sweep, outcomes);
+  int drawn = 0;
+  for (const Plot& plot : sweep.spec().plots) {
+    const std::size_t x = place(plot.x), y = place(plot.y);
+    const bool has_color = !plot.color.empty();
+    const std::size_t color = has_color ? place(plot.color) : y;
+    if (!program::is_installed("gnuplot")) continue;
+    const std::string stem = "plot_" + std::to_string(drawn++);
+    std::string data;
+    for (const std::vector<std::string>& cells : rows)
+      if (is_number(cells[x]) && is_number(cells[y]) && is_number(cells[color]))
+        data += cells[x] + ' ' + cells[y] + ' ' + cells[color] + '\n';
+    write_whole(sweep.folder() / (stem + ".dat"), data);
+    // noenhanced: brackets and underscores of keys are themselves.
+    std::string script = "set terminal svg size 720,480 noenhanced\nset output '" + stem +
+                         ".svg'\nset xlabel '" + plot.x + "'\nset ylabel '" + plot.y + "'\nunset key\n";
+    if (has_color) script += "set cblabel '" + plot.color + "'\n";
+    script += "plot '" + stem + ".dat' using 1:2" +
+              (has_color ? ":3 with points pt 7 ps 0.6 palette\n" : " with points pt 7 ps 0.6\n");
+    write_whole(sweep.folder() / (stem + ".gp"), script);
+    if (program::run_program({"gnuplot", stem + ".gp"}, sweep.folder()) != 0) --drawn;
+  }
+  return drawn;
+}
+
+bool make_sheet(const SweepFolder& sweep, const std::vector<Outcome>& outcomes) {
+  if (!sweep.spec().images || !program::is_installed("ffmpeg")) return false;
+  std::string list;
+  int count = 0;
+  for (std::size_t point = 0; point < outcomes.size(); ++point) {
+    std::set<fs::path> pictures;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(sweep.point_folder(point) / "run" / "images", none))
+      pictures.insert(entry.path());
+    if (pictures.empty()) continue;
+    list += "file '" + fs::proximate(*pictures.rbegin(), sweep.folder()).string() + "'\n";
+    ++count;
+  }
+  if (count == 0) return false;
+  write_whole(sweep.folder() / "sheet.txt", list);
+  const int across = std::max(1, static_cast<int>(std::ceil(std::sqrt(count * 0.75))));
+  const int down = (count + across - 1) / across;
+  return program::run_program(
+             {"ffmpeg", "-y", "-loglevel", "error", "-f", "concat", "-i", "sheet.txt", "-vf",
+              "scale=240:-2,tile=" + std::to_string(across) + "x" + std::to_string(down) + ":padding=2",
+              "-frames:v", "1", "sheet.png"},
+             sweep.folder()) == 0;
+}
+
+}  // namespace mallow::sweep
