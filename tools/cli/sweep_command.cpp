@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -104,12 +105,16 @@ void say(std::size_t point, const Outcome& outcome) {
                outcome.message.empty() ? "" : ": ", outcome.message.c_str());
 }
 
-/// All outcomes, the table and its pictures; what is still open is a failure.
-void finish(const SweepFolder& sweep) {
+/// All outcomes, the table and its pictures; what is still open is a failure. ran: of those that could not
+/// even keep what became of them.
+void finish(const SweepFolder& sweep, const std::map<std::size_t, Outcome>& ran) {
   std::vector<Outcome> outcomes;
   std::array<std::size_t, 4> counts{};
   for (std::size_t point = 0; point < sweep.points().size(); ++point) {
     outcomes.push_back(sweep.outcome(point));
+    const auto known = ran.find(point);
+    if (outcomes.back().status == Outcome::Status::open && known != ran.end())
+      outcomes.back() = known->second;
     ++counts[static_cast<std::size_t>(outcomes.back().status)];
   }
   write_table(sweep, outcomes);
@@ -146,15 +151,19 @@ void run_sweep(const SweepOptions& options) {
     for (std::size_t point = 0; point < sweep.points().size(); ++point)
       if (sweep.outcome(point).status != Outcome::Status::done) points.push_back(point);
   }
+  std::map<std::size_t, Outcome> ran;
   if (options.on == "parallel" && !points.empty())
     run_by_parallel(sweep, points, elsewhere(options));
   else if (options.on == "slurm" && !points.empty())
     run_by_slurm(sweep, points, elsewhere(options));
   else {
     const Slots room = slots(options, points.size());
-    run_here(sweep, points, room.jobs, room.threads, say);
+    run_here(sweep, points, room.jobs, room.threads, [&](std::size_t point, const Outcome& outcome) {
+      say(point, outcome);
+      ran[point] = outcome;
+    });
   }
-  if (options.point.empty()) finish(sweep);
+  if (options.point.empty()) finish(sweep, ran);
 }
 
 }  // namespace

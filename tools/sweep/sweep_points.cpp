@@ -38,6 +38,15 @@ std::vector<std::string> overrides(const SweepSpec& spec, const std::vector<std:
   return all;
 }
 
+/// Throws ConfigError where a scene has no such key: no point could be run. A value that it refuses is a row.
+void check_key(const SweepSpec& spec, const std::string& key, const std::string& value) try {
+  read_scene(spec.scene, std::vector{key + "=" + value}, {});
+} catch (const ConfigError& error) {
+  const std::string text = error.what();
+  if (text.find("unknown key") != std::string::npos || text.find("does not exist") != std::string::npos)
+    throw;
+}
+
 /// The last line that a run said, without the program's name: what went wrong.
 std::string last_word(const fs::path& log) {
   std::istringstream text(text_of(log));
@@ -113,6 +122,7 @@ const char* name(Outcome::Status status) {
 SweepFolder::SweepFolder(SweepSpec spec, fs::path folder, fs::path program)
     : spec_(std::move(spec)), folder_(std::move(folder)), program_(std::move(program)) {
   points_ = sample_points(spec_);
+  for (std::size_t k = 0; k < spec_.vary.size(); ++k) check_key(spec_, spec_.vary[k].key, points_[0][k]);
   program_hash_ = program::fnv(text_of(program_));
 }
 
