@@ -111,6 +111,15 @@ CsvColumns read_csv_header(TextReader& text) {
   return columns;
 }
 
+float read_number(const TextReader& text, std::size_t column, std::string_view cell) {
+  const double value = text.finite(k_columns[column], cell);
+  const bool of_their_own = column >= k_own && column < k_columns.size() - 1;  // temperatures are any
+  const bool to_one = column == k_own;
+  if (of_their_own && (value < 0 || (to_one && value > 1)))
+    text.fail(k_columns[column], in_quotes(cell) + " is not allowed: " + (to_one ? "0 to 1" : "0 or more"));
+  return static_cast<float>(value);
+}
+
 Body read_csv_points(const std::filesystem::path& file) {
   const std::string content = read_whole_file(file);
   TextReader text(file, content);
@@ -121,8 +130,7 @@ Body read_csv_points(const std::filesystem::path& file) {
     std::size_t cells = 0;
     while (const auto cell = text.cell(columns.separator)) {
       if (cells < columns.meaning.size()) {
-        if (const auto k = columns.meaning[cells])
-          row[*k] = static_cast<float>(text.finite(k_columns[*k], *cell));
+        if (const auto k = columns.meaning[cells]) row[*k] = read_number(text, *k, *cell);
       }
       ++cells;
     }

@@ -28,6 +28,8 @@ constexpr float k_wide_radius = 3.6f;
 constexpr float k_usual_radius = 3.05f;
 /// Strain by the own weight from which on a body is hardly meant to stand.
 constexpr float k_own_weight = 0.5f;
+/// Stiffness that holds nothing, and alpha whose share of pressure does not either.
+constexpr float k_limp = 1e-3f, k_no_pressure = 0.05f;
 /// Damping times as long as so many steps that follow from them.
 constexpr float k_long_damping = 3;
 /// Spacings within which there are the six nearest and the twelve of diagonals: fewer hold no body together.
@@ -67,6 +69,7 @@ class Warnings {
       look_at_neighbors(body);
       look_at_stride(body);
       look_at_volume(body);
+      look_at_limp(body);
     }
     look_at_tolerance();
     if (state_.step == 0 && state_.bodies.size() > 1) look_at_overlaps();
@@ -211,6 +214,18 @@ class Warnings {
           " s that a volume iteration takes ", share,
           " of its share; raise material.elastic_time_step, or lower solver.time_step and give "
           "material.elastic_time_step");
+  }
+
+  /// Particles without stiffness, pressure and volume: nothing keeps them apart.
+  void look_at_limp(const BodyState& body) {
+    if (!body.paints_stiffness || state_.volume_iterations() > 0) return;
+    std::size_t limp = 0;
+    for (std::size_t row = body.begin; row < body.end; ++row)
+      limp += state_.store.stiffness[row] < k_limp && state_.store.alpha[row] < k_no_pressure ? 1 : 0;
+    if (limp == 0) return;
+    add(body, limp,
+        " of its particles have a stiffness of 0 or nearly, and an alpha at which no pressure parts ",
+        "them: they fall together; give solver.volume_iterations = 2, or them a stiffness or an alpha");
   }
 
   /// Where elasticity alone bears it.

@@ -20,7 +20,7 @@ TEST_F(cli_bad_input, command_line_that_makes_no_sense) {
   expect_refused(run_mallow({}), {"run", "info", "sample", "surface", "render", "export", "keys"});
   expect_refused(run_mallow({"walk"}), {"walk"});
   expect_refused(run_mallow({"run"}), {"SCENE"});
-  expect_refused(run({"--frames", "-1"}), {"--frames"});
+  expect_refused(run({"--frames", "-1"}), {"--frames", "must be a number >= 0, is -1"});
   expect_refused(run({"--frames", "many"}), {"--frames"});
   expect_refused(run({"--frames", "1", "--steps", "1"}), {"--steps", "--frames"});
   expect_refused(run({"--threads", "100000"}), {"--threads"});

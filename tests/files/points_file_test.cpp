@@ -107,6 +107,11 @@ TEST(points_file, a_bad_value_is_named_with_line_column_and_text) {
   EXPECT_EQ(problem("x,y,z\n1,,3\n").message, "is missing; a finite number is needed");
   EXPECT_EQ(problem("x,y,z\n1,2\n").message, "2 values in this row, but the header names 3 columns");
   EXPECT_EQ(problem("x,y,z\n1,2,3,\n").message, "4 values in this row, but the header names 3 columns");
+  const Problem alpha = problem("x,y,z,alpha\n1,2,3,1\n1,2,4,1.5\n");
+  EXPECT_EQ(alpha.line, 3);
+  EXPECT_EQ(alpha.field, "alpha");
+  EXPECT_EQ(alpha.message, "'1.5' is not allowed: 0 to 1");
+  EXPECT_EQ(problem("x,y,z,stiffness\n1,2,3,-1\n").message, "'-1' is not allowed: 0 or more");
   EXPECT_NE(problem("x,y\n1,2\n").message.find("lacks column 'z'"), std::string::npos);
   EXPECT_NE(problem("x,y,z,vx\n1,2,3,4\n").message.find("lacks column 'vy'"), std::string::npos);
   EXPECT_NE(problem("x,y,z,x\n1,2,3,4\n").message.find("'x' is given twice"), std::string::npos);

@@ -176,6 +176,22 @@ TEST_F(scene_warnings, name_parts_that_pass_through_each_other) {
   EXPECT_FALSE(warns(of(0, 0.1f), "parts pass"));
 }
 
+TEST_F(scene_warnings, name_particles_that_nothing_keeps_apart) {
+  const auto of = [&](float alpha, float stiffness, std::optional<int> iterations) {
+    Simulation s({.volume_iterations = iterations});
+    Body body = sample(Lattice{.count = {4, 4, 4}});
+    body.stiffness.assign(body.positions.size(), 1.0f);
+    body.stiffness.front() = stiffness;
+    s.add_body(body, {.alpha = alpha});
+    s.prepare();
+    return s.info().warnings;
+  };
+  EXPECT_TRUE(warns(of(0, 0, {}), "1 of its particles have a stiffness of 0"));
+  EXPECT_FALSE(warns(of(0, 0, 2), "a stiffness of 0"));
+  EXPECT_FALSE(warns(of(0.5f, 0, {}), "a stiffness of 0"));
+  EXPECT_FALSE(warns(of(0, 0.5f, {}), "a stiffness of 0"));
+}
+
 TEST_F(scene_warnings, name_bodies_that_their_own_weight_flattens_and_spacings_that_differ_too_much) {
   const auto of = [&](const Material& material, float coarse) {
     Simulation s({.gravity = {0, 0, -9.81f}});

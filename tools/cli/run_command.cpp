@@ -369,6 +369,16 @@ void check_together(const RunOptions& options) {
 
 }  // namespace
 
+/// CLI's own says of -5 that it is not in a range whose end is the largest number there is.
+static CLI::Validator not_negative() {
+  const auto check = [](const std::string& text) {
+    double value = 0;
+    return CLI::detail::lexical_cast(text, value) && value >= 0 ? std::string()
+                                                                : "must be a number >= 0, is " + text;
+  };
+  return {check, ">= 0"};
+}
+
 void add_run_command(CLI::App& app) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App* command =
@@ -378,9 +388,9 @@ void add_run_command(CLI::App& app) {
   CLI::Option* frames = command
                             ->add_option("--frames", options->frames,
                                          "Number of frames after frame 0, instead of the scene's run.frames")
-                            ->check(CLI::NonNegativeNumber);
+                            ->check(not_negative());
   command->add_option("--steps", options->steps, "Number of steps to take, instead of frames")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->excludes(frames);
   CLI::Option* out =
       command->add_option("--out", options->out, "Folder for the frames; without it no frames are written");
@@ -399,7 +409,7 @@ void add_run_command(CLI::App& app) {
           "--checkpoint-seconds", options->checkpoint_seconds,
           "Seconds from one checkpoint to the next; 0: none by time. Default: 60, or none by time with "
           "--checkpoint-every")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command
       ->add_option("--threads", options->threads,
                    "Number of threads; 0: one for each processor. The result does not depend on it")
