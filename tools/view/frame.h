@@ -67,6 +67,7 @@ struct Frame {
   bool paused = false;
   bool finished = false;              ///< a frame of the scene ended here: what a film holds
   Mesh mesh;                          ///< surface and skins; material ids are slots of bodies
+  bool has_skins = false;             ///< which may be open: their insides are seen
   std::vector<Vec3> positions;        ///< of particles [m], where they are drawn
   std::vector<std::uint32_t> bodies;  ///< slot of the body of each
   std::vector<float> values;          ///< what is shown of each, empty for appearances

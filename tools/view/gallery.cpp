@@ -110,8 +110,9 @@ struct Gallery::Maker {
   int built = -1;
 };
 
-Gallery::Gallery(const fs::path& folder)
+Gallery::Gallery(const fs::path& folder, bool plain)
     : folder_(folder),
+      plain_(plain),
       scenes_(find_scenes(folder)),
       pictures_(scenes_.size(), 0),
       tried_(scenes_.size(), false) {
@@ -157,7 +158,7 @@ void Gallery::make_thumbnails(double wall) {
     try {
       Scene scene = read_scene(scenes_[k].file);
       maker_ = std::unique_ptr<Maker>(
-          new Maker{.scene = k, .started = wall, .drawer = {}, .picture = {}, .camera = {}});
+          new Maker{.scene = k, .started = wall, .drawer = SceneDrawer(false), .picture = {}, .camera = {}});
       maker_->thread.open(scene);
       maker_->thread.send(
           [](Session& session) { session.set_speed(std::numeric_limits<double>::infinity()); });
@@ -186,8 +187,8 @@ std::optional<fs::path> Gallery::draw(double) {
   ImGui::SetNextWindowPos(ImVec2(0, 0));
   ImGui::SetNextWindowSize(size);
   ImGui::Begin("gallery", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings);
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoResize |
+                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
   ImGui::SetWindowFontScale(1.5f);
   ImGui::TextUnformatted("mallow");
   ImGui::SetWindowFontScale(1);

@@ -29,7 +29,8 @@ std::filesystem::path thumbnail_file(const GalleryScene& scene);
 /// nobody plays, and their pictures are kept in the user's cache.
 class Gallery {
  public:
-  explicit Gallery(const std::filesystem::path& folder);
+  /// plain: see SceneDrawer.
+  Gallery(const std::filesystem::path& folder, bool plain);
   ~Gallery();
   Gallery(const Gallery&) = delete;
   Gallery& operator=(const Gallery&) = delete;
@@ -48,6 +49,7 @@ class Gallery {
   void finish_thumbnail();
 
   std::filesystem::path folder_;
+  bool plain_;
   std::vector<GalleryScene> scenes_;
   std::vector<GLuint> pictures_;  ///< of each scene; 0: none yet
   std::vector<bool> tried_;

@@ -37,14 +37,14 @@ void OffscreenPicture::resize(int width, int height, int samples) {
   width_ = width;
   height_ = height;
   samples_ = samples;
-  color_ = renderbuffer(GL_RGB8, width, height, samples);
+  color_ = renderbuffer(GL_RGBA8, width, height, samples);
   depth_ = renderbuffer(GL_DEPTH_COMPONENT24, width, height, samples);
   glGenFramebuffers(1, &framebuffer_);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
   if (samples == 1) return;
-  plain_color_ = renderbuffer(GL_RGB8, width, height, 1);
+  plain_color_ = renderbuffer(GL_RGBA8, width, height, 1);
   glGenFramebuffers(1, &plain_framebuffer_);
   glBindFramebuffer(GL_FRAMEBUFFER, plain_framebuffer_);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, plain_color_);
@@ -71,11 +71,12 @@ GLuint OffscreenPicture::resolved() const {
   return plain_framebuffer_;
 }
 
-void OffscreenPicture::show() const {
+void OffscreenPicture::show(int left, int bottom) const {
   const GLuint plain = resolved();
   glBindFramebuffer(GL_READ_FRAMEBUFFER, plain);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBlitFramebuffer(0, 0, width_, height_, left, bottom, left + width_, bottom + height_, GL_COLOR_BUFFER_BIT,
+                    GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 

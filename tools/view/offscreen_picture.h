@@ -21,8 +21,8 @@ class OffscreenPicture {
   int height() const { return height_; }
   /// What is drawn from now on goes here.
   void bind() const;
-  /// To the window, which has the same size.
-  void show() const;
+  /// To the window, with its lower left corner there.
+  void show(int left, int bottom) const;
   render::Image read() const;
 
  private:

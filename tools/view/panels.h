@@ -9,6 +9,9 @@
 /// What lies around the picture. Panels change the state and send commands; they hold nothing.
 namespace mallow::view {
 
+/// Pixels that panels take at the edges of the window.
+inline constexpr int k_top_height = 52, k_time_height = 68, k_settings_width = 320;
+
 using Send = std::function<void(std::function<void(Session&)>)>;
 
 /// Rates, phases, counts, plots. drawn_per_second: pictures of the window.

@@ -9,11 +9,12 @@
 namespace mallow::view {
 namespace {
 
-constexpr int k_shadow_size = 1024;
 constexpr int k_palette_width = 1024;
 
-std::string with_light(const char* text) {
-  return std::string(shaders::k_light) + text;
+std::string with_light(bool plain, const char* text, int finish = -1) {
+  const std::string one = finish < 0 ? "" : "#define FINISH " + std::to_string(finish) + "\n";
+  return std::string("#version 330 core\n") + (plain ? "#define PLAIN\n" : "") + one + shaders::k_light +
+         text;
 }
 
 void point_attribute(GLuint place, GLint components) {
@@ -34,11 +35,13 @@ GLuint nearest_texture(GLenum target) {
 
 }  // namespace
 
-SceneDrawer::SceneDrawer()
-    : mesh_(shaders::k_mesh_vertex, with_light(shaders::k_mesh_fragment)),
-      particles_(shaders::k_particle_vertex, with_light(shaders::k_particle_fragment)),
-      obstacles_(shaders::k_obstacle_vertex, with_light(shaders::k_obstacle_fragment)),
-      studio_(shaders::k_studio_vertex, with_light(shaders::k_studio_fragment)),
+SceneDrawer::SceneDrawer(bool plain)
+    : plain_(plain),
+      shadow_size_(plain ? 512 : 1024),
+      particles_(shaders::k_particle_vertex, with_light(plain_, shaders::k_particle_fragment)),
+      obstacles_(shaders::k_obstacle_vertex, with_light(plain_, shaders::k_obstacle_fragment)),
+      studio_(shaders::k_studio_vertex, with_light(plain_, shaders::k_studio_fragment)),
+      floor_program_(shaders::k_floor_vertex, with_light(plain_, shaders::k_floor_fragment)),
       mesh_shadow_(shaders::k_mesh_vertex, shaders::k_nothing_fragment),
       particle_shadow_(shaders::k_particle_vertex, shaders::k_nothing_fragment),
       obstacle_shadow_(shaders::k_obstacle_vertex, shaders::k_nothing_fragment) {
@@ -47,9 +50,14 @@ SceneDrawer::SceneDrawer()
   shadow_map_ = nearest_texture(GL_TEXTURE_2D);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  // Beyond its edge nothing throws a shadow.
+  constexpr float k_far[] = {1, 1, 1, 1};
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+  glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, k_far);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, k_shadow_size, k_shadow_size, 0, GL_DEPTH_COMPONENT,
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, shadow_size_, shadow_size_, 0, GL_DEPTH_COMPONENT,
                GL_UNSIGNED_INT, nullptr);
   glGenFramebuffers(1, &shadow_framebuffer_);
   glBindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer_);
@@ -95,7 +103,7 @@ void SceneDrawer::place_light(const Vec3& low, const Vec3& high) {
   to_light_.block<1, 3>(1, 0) = v.transpose() / radius;
   to_light_.block<1, 3>(2, 0) = -to_key_.transpose() / (4 * radius);
   to_light_.block<3, 1>(0, 3) = -to_light_.block<3, 3>(0, 0) * middle;
-  shadow_length_ = 2 * radius / k_shadow_size;
+  shadow_length_ = 2 * radius / static_cast<float>(shadow_size_);
   shadow_is_old_ = true;
 }
 
@@ -104,11 +112,21 @@ void SceneDrawer::take(const Frame& frame) {
   take_mesh(frame);
   take_particles(frame);
   take_colliders(frame);
-  shadow_is_old_ = true;
+  skips_shadows_ = plain_ && !skips_shadows_;
+  shadow_is_old_ = shadow_is_old_ || !skips_shadows_;
+}
+
+GlProgram& SceneDrawer::mesh_program() {
+  std::unique_ptr<GlProgram>& program = mesh_programs_[finish_];
+  if (!program)
+    program = std::make_unique<GlProgram>(shaders::k_mesh_vertex,
+                                          with_light(plain_, shaders::k_mesh_fragment, finish_));
+  return *program;
 }
 
 void SceneDrawer::take_mesh(const Frame& frame) {
   const Mesh& mesh = frame.mesh;
+  closed_ = !frame.has_skins;
   index_count_ = static_cast<GLsizei>(3 * mesh.triangles.size());
   if (index_count_ == 0) return;
   glBindVertexArray(mesh_array_);
@@ -149,14 +167,21 @@ void SceneDrawer::take_particles(const Frame& frame) {
 
 void SceneDrawer::take_palette(const Frame& frame) {
   const std::size_t bodies = std::max<std::size_t>(1, frame.palette.size());
-  const std::size_t rows = (2 * bodies + k_palette_width - 1) / k_palette_width;
+  const std::size_t rows = (4 * bodies + k_palette_width - 1) / k_palette_width;
+  finish_ = frame.palette.empty() ? -1 : static_cast<int>(frame.palette[0].finish);
   std::vector<float> texels(4 * k_palette_width * rows, 0);
   for (std::size_t body = 0; body < frame.palette.size(); ++body) {
     const Appearance& look = frame.palette[body];
-    float* const at = &texels[8 * body];
+    float* const at = &texels[16 * body];
+    if (static_cast<int>(look.finish) != finish_) finish_ = -1;
     std::copy_n(look.color.data(), 3, at);
     at[3] = static_cast<float>(look.finish);
     at[4] = body < frame.radii.size() ? frame.radii[body] : 0;
+    // What the shader would else take powers for: see tools/render/finishes.cpp.
+    for (int k = 0; k < 3; ++k) {
+      at[8 + k] = std::pow(look.color[k], 0.75f);
+      at[12 + k] = std::pow(look.color[k], 1.4f);
+    }
   }
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, palette_);
@@ -181,7 +206,7 @@ void SceneDrawer::set_light(GlProgram& program, const OrbitCamera& camera) {
   to_map.diagonal().head<3>().setConstant(0.5f);
   to_map.col(3).head<3>().setConstant(0.5f);
   program.set("to_shadow", Eigen::Matrix4f(to_map * to_light_));
-  program.set("shadow_texel", 1.0f / k_shadow_size);
+  program.set("shadow_texel", 1.0f / static_cast<float>(shadow_size_));
   program.set("shadow_bias", 2.5f * shadow_length_);
   program.set("floor_height", floor_.value_or(-1e30f));
   program.set("floor_fade", std::max(0.5f * (bounds_.max - bounds_.min).norm(), 1e-6f));
@@ -190,7 +215,7 @@ void SceneDrawer::set_light(GlProgram& program, const OrbitCamera& camera) {
 
 void SceneDrawer::draw_shadows() {
   glBindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer_);
-  glViewport(0, 0, k_shadow_size, k_shadow_size);
+  glViewport(0, 0, shadow_size_, shadow_size_);
   glClear(GL_DEPTH_BUFFER_BIT);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5f, 2);
@@ -232,9 +257,12 @@ void SceneDrawer::draw(const OrbitCamera& camera, int width, int height) {
   glViewport(0, 0, width, height);
   glClear(GL_DEPTH_BUFFER_BIT);
   if (index_count_ > 0) {
-    set_light(mesh_, camera);
+    set_light(mesh_program(), camera);
+    if (closed_) glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
     glBindVertexArray(mesh_array_);
     glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+    glDisable(GL_CULL_FACE);
   }
   if (point_count_ > 0) {
     set_light(particles_, camera);
@@ -248,11 +276,16 @@ void SceneDrawer::draw(const OrbitCamera& camera, int width, int height) {
   }
   set_light(obstacles_, camera);
   draw_solids(obstacles_, false);
+  glBindVertexArray(empty_array_);
+  const bool sees_floor = floor_ && camera.eye().z() > *floor_;
+  if (sees_floor) {
+    set_light(floor_program_, camera);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  }
   // Last, and far behind all: what is hidden costs nothing.
   set_light(studio_, camera);
   studio_.set("from_clip", Eigen::Matrix4f(camera.projection_view().inverse()));
-  studio_.set("has_floor", floor_ ? 1 : 0);
-  glBindVertexArray(empty_array_);
+  studio_.set("has_floor", sees_floor ? 1 : 0);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glBindVertexArray(0);
   glDisable(GL_DEPTH_TEST);

@@ -17,7 +17,9 @@ namespace mallow::view {
 /// light's shadow.
 class SceneDrawer {
  public:
-  SceneDrawer();
+  /// plain: the driver draws in software, and shadows are to be cheap: harder, and drawn for every second
+  /// picture.
+  explicit SceneDrawer(bool plain);
   ~SceneDrawer();
   SceneDrawer(const SceneDrawer&) = delete;
   SceneDrawer& operator=(const SceneDrawer&) = delete;
@@ -48,7 +50,14 @@ class SceneDrawer {
   void set_light(GlProgram& program, const OrbitCamera& camera);
   void draw_solids(GlProgram& program, bool shadows);
 
-  GlProgram mesh_, particles_, obstacles_, studio_, mesh_shadow_, particle_shadow_, obstacle_shadow_;
+  const bool plain_;
+  const int shadow_size_;  ///< of the map, texels
+  bool skips_shadows_ = false;
+  /// The program for meshes of one finish, or of all where they have several.
+  GlProgram& mesh_program();
+  GlProgram particles_, obstacles_, studio_, floor_program_, mesh_shadow_, particle_shadow_, obstacle_shadow_;
+  std::map<int, std::unique_ptr<GlProgram>> mesh_programs_;  ///< by finish; -1: of all
+  int finish_ = -1;                                          ///< of all bodies
   GLuint mesh_array_ = 0, particle_array_ = 0, empty_array_ = 0;
   GlBuffer vertices_, normals_, vertex_bodies_, indices_;
   GlBuffer points_, point_bodies_, point_values_;
@@ -68,6 +77,7 @@ class SceneDrawer {
   Eigen::Matrix4f to_light_ = Eigen::Matrix4f::Identity();  ///< world to the clip space of the key light
   float shadow_length_ = 1;                                 ///< of a texel of the shadow map [m]
   bool shadow_is_old_ = true;
+  bool closed_ = true;  ///< the mesh is, and its insides are never seen
 };
 
 }  // namespace mallow::view

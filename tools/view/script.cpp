@@ -79,8 +79,9 @@ void Script::begin(Viewer& viewer, std::vector<std::string> words) {
   } else if (what == "key") {
     window.send_key(key_of(words[1]), false);
   } else if (what == "move") {
-    window.send_move(number(1) * static_cast<float>(window.width()),
-                     number(2) * static_cast<float>(window.height()));
+    const Viewer::Area seen = viewer.area();
+    window.send_move(static_cast<float>(seen.left) + number(1) * static_cast<float>(seen.width),
+                     static_cast<float>(seen.top) + number(2) * static_cast<float>(seen.height));
   } else if (what == "press" || what == "release") {
     window.send_button(static_cast<int>(number(1)), what == "press", false);
   } else if (what == "wheel") {

@@ -17,7 +17,7 @@ namespace mallow::view {
 ///   ready                until a scene is built and drawn
 ///   screenshot FILE      the window, a PNG; scene FILE: without panels
 ///   key NAME             "space", "r", "." and so on
-///   move X Y             shares of the window, in [0, 1] from the upper left corner
+///   move X Y             shares of the picture of the scene, in [0, 1] from the upper left corner
 ///   press K, release K   buttons: 0 left, 1 right, 2 middle
 ///   wheel CLICKS
 ///   resize W H, minimise, restore, close, open FILE

@@ -97,6 +97,11 @@ void Session::set_paused(bool paused) {
   changed_ = true;
 }
 
+void Session::set_recording(bool recording) {
+  recording_ = recording;
+  if (simulation_) make_surface();
+}
+
 void Session::set_speed(double speed) {
   speed_ = speed;
   pace_.set_rate(speed * frame_time_ * scene_.render.frames_per_second);

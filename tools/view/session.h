@@ -70,7 +70,7 @@ class Session {
   void go_to(double time);
   void go_back();
   void reset();
-  void set_recording(bool recording) { recording_ = recording; }
+  void set_recording(bool recording);
 
   // What the window shows.
   void show(Drawn drawn, Shown shown);
@@ -111,6 +111,9 @@ class Session {
   Settings settings() const;
   void take_settings(const Settings& settings);
   void apply_rung();
+  /// What the scene says, no finer than moving pictures show; for a film, or above what the scene says, as it
+  /// says.
+  SurfaceConfig surface_to_play() const;
   void make_surface();
   void draw_mesh(Mesh& mesh);
   void fill_particles(Frame& frame);

@@ -164,6 +164,7 @@ void Session::fill(double wall, Frame& frame) {
     frame.mesh = {};
     fill_particles(frame);
   }
+  frame.has_skins = !skins_.empty();
   frame.palette = palette();
   fill_colliders(frame);
   frame.grab.reset();

@@ -1,6 +1,7 @@
 // Settings of a session while it runs, and what its place between realtime and accurate makes of them.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "config/field_tables.h"
 #include "simulation/settings.h"
@@ -8,6 +9,10 @@
 
 namespace mallow::view {
 namespace {
+
+/// Voxels a spacing that surfaces are drawn with while somebody plays: what films ask for is finer than
+/// moving pictures show, and takes longer than their steps.
+constexpr float k_voxels_to_play = 2.7f;
 
 /// What a running simulation takes over of a scene's settings.
 SolverConfig running(const SolverConfig& now, const SolverConfig& wanted) {
@@ -75,9 +80,26 @@ void Session::apply_rung() {
   changed_ = true;
 }
 
+SurfaceConfig Session::surface_to_play() const {
+  const SurfaceConfig& config = scene_.surface;
+  if (governor_.rung() < k_as_written || recording_) return config;
+  float spacing = std::numeric_limits<float>::max(), size = 0;
+  for (const BodyId body : simulation_->bodies()) {
+    const Aabb box = simulation_->bounds(body);
+    spacing = std::min(spacing, simulation_->spacing(body));
+    size = std::max(size, (box.max - box.min).maxCoeff());
+  }
+  SurfaceConfig coarser = config;
+  coarser.voxels_per_spacing = std::min(config.voxels_per_spacing, k_voxels_to_play);
+  const float finest = spacing / k_voxels_to_play;
+  if (config.voxel_size) coarser.voxel_size = std::max(*config.voxel_size, finest);
+  if (config.voxels && size < finest * static_cast<float>(*config.voxels)) coarser.voxels.reset();
+  return coarser;
+}
+
 void Session::make_surface() {
   const Rung& rung = rungs()[static_cast<std::size_t>(governor_.rung())];
-  surface_.emplace(with_voxels(scene_.surface, rung.voxels), skins_, options_.threads);
+  surface_.emplace(with_voxels(surface_to_play(), rung.voxels), skins_, options_.threads);
   changed_ = true;
 }
 

@@ -74,12 +74,11 @@ void draw_section(SettingsModel& settings, const SettingsSection& section, const
 
 void draw_settings(const Frame& frame, SettingsModel& settings, ViewState& state, const Send& send) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  constexpr float k_width = 320;
-  ImGui::SetNextWindowPos(ImVec2(size.x - k_width, 56));
-  ImGui::SetNextWindowSize(ImVec2(k_width, size.y - 56 - 72));
+  ImGui::SetNextWindowPos(ImVec2(size.x - k_settings_width, k_top_height));
+  ImGui::SetNextWindowSize(ImVec2(k_settings_width, size.y - k_top_height - k_time_height));
   ImGui::Begin("settings", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings);
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoResize |
+                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
   draw_alphas(settings, send);
   draw_speed(frame, state, send);
   if (settings.waits_for_rebuild()) {

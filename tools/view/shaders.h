@@ -13,6 +13,8 @@ extern const char* const k_obstacle_vertex;
 extern const char* const k_obstacle_fragment;
 extern const char* const k_studio_vertex;
 extern const char* const k_studio_fragment;
+extern const char* const k_floor_vertex;
+extern const char* const k_floor_fragment;
 extern const char* const k_nothing_fragment;  ///< of shadow maps
 
 }  // namespace mallow::view::shaders

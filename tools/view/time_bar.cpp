@@ -65,10 +65,11 @@ void draw_rewind(const Frame& frame, ViewState& state, float width) {
 
 void draw_time_bar(const Frame& frame, ViewState& state, bool recording, const Send& send) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  constexpr float k_height = 68;
-  ImGui::SetNextWindowPos(ImVec2(0, size.y - k_height));
-  ImGui::SetNextWindowSize(ImVec2(size.x, k_height));
-  ImGui::Begin("time", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::SetNextWindowPos(ImVec2(0, size.y - k_time_height));
+  ImGui::SetNextWindowSize(ImVec2(size.x, k_time_height));
+  ImGui::Begin(
+      "time", nullptr,
+      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings);
   if (toggle(frame.paused ? "Play" : "Pause", !frame.paused)) state.pause = true;
   help_of("Space");
   ImGui::SameLine(0, 4);

@@ -67,8 +67,10 @@ void plot(const char* label, const char* unit, const std::vector<Sample>& sample
 void draw_top_bar(const Frame& frame, ViewState& state, double drawn_per_second) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(0, 0));
-  ImGui::SetNextWindowSize(ImVec2(size.x, 52));
-  ImGui::Begin("top", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::SetNextWindowSize(ImVec2(size.x, k_top_height));
+  ImGui::Begin(
+      "top", nullptr,
+      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings);
   const FrameStats& stats = frame.stats;
   if (ImGui::Button("Scenes")) state.gallery = true;
   ImGui::SameLine();

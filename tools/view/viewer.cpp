@@ -24,6 +24,7 @@ constexpr int k_settling = 3;         ///< pictures after an event, until panels
 Viewer::Viewer(const ViewerOptions& options)
     : options_(options),
       window_(options.window, events()),
+      drawer_(window_.draws_in_software()),
       stepping_(std::make_unique<SteppingThread>(SessionOptions{.threads = options.threads}, Window::wake)) {
   if (options_.samples == 0) options_.samples = window_.draws_in_software() ? 1 : 4;
   if (options.paused) send([](Session& session) { session.set_paused(true); });
@@ -49,8 +50,7 @@ WindowEvents Viewer::events() {
               [this, busy](float x, float y) {
                 busy();
                 const bool was_at_work = mouse_.is_at_work();
-                mouse_.move(x, y, static_cast<float>(window_.width()), static_cast<float>(window_.height()),
-                            camera_, [this](auto command) { send(std::move(command)); });
+                tell_mouse(x, y);
                 stale_ = stale_ || was_at_work;
               },
           .wheel =
@@ -76,7 +76,7 @@ void Viewer::open(const std::filesystem::path& scene) {
 }
 
 Gallery& Viewer::gallery() {
-  if (!gallery_) gallery_ = std::make_unique<Gallery>(options_.scenes);
+  if (!gallery_) gallery_ = std::make_unique<Gallery>(options_.scenes, window_.draws_in_software());
   return *gallery_;
 }
 
@@ -90,6 +90,20 @@ void Viewer::show_gallery() {
 void Viewer::notice(const std::string& text) {
   state_.notice = text;
   state_.notice_until = wall_seconds() + 8;
+}
+
+Viewer::Area Viewer::area() const {
+  const int width = window_.width(), height = window_.height();
+  if (!state_.panels || width <= 2 * k_settings_width || height <= 2 * (k_top_height + k_time_height))
+    return {0, 0, width, height};
+  return {0, k_top_height, width - k_settings_width, height - k_top_height - k_time_height};
+}
+
+void Viewer::tell_mouse(float x, float y) {
+  const Area seen = area();
+  mouse_.move(x - static_cast<float>(seen.left), y - static_cast<float>(seen.top),
+              static_cast<float>(seen.width), static_cast<float>(seen.height), camera_,
+              [this](auto command) { send(std::move(command)); });
 }
 
 bool Viewer::take_frame() {
@@ -110,10 +124,11 @@ bool Viewer::take_frame() {
 }
 
 void Viewer::draw_scene() {
-  picture_.resize(window_.width(), window_.height(), options_.samples);
-  camera_.set_aspect(static_cast<float>(window_.width()) / static_cast<float>(window_.height()));
+  const Area seen = area();
+  picture_.resize(seen.width, seen.height, options_.samples);
+  camera_.set_aspect(static_cast<float>(seen.width) / static_cast<float>(seen.height));
   picture_.bind();
-  drawer_.draw(camera_, window_.width(), window_.height());
+  drawer_.draw(camera_, seen.width, seen.height);
   if (film_ && frame().finished) film_->add(picture_.read());
   stale_ = false;
 }
@@ -128,7 +143,8 @@ void Viewer::draw_next(bool may_wait) {
     window_.poll(k_idle_wait);
     return;
   }
-  if (picture_.width() != window_.width() || picture_.height() != window_.height()) stale_ = true;
+  if (const Area seen = area(); picture_.width() != seen.width || picture_.height() != seen.height)
+    stale_ = true;
   if (may_wait &&
       (!(stale_ || busy_pictures_ > 0 || works) || wall_seconds() < last_picture_ + 0.5 * k_picture_seconds))
     return;
@@ -137,17 +153,22 @@ void Viewer::draw_next(bool may_wait) {
   drawn_.add(last_picture_);
   if (shows_gallery()) {
     gallery().make_thumbnails(last_picture_);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glClearColor(0.09f, 0.10f, 0.12f, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
-  } else {
-    if (stale_) draw_scene();
-    picture_.show();
+  } else if (stale_) {
+    draw_scene();
   }
-  draw_gui();
-  window_.swap();
+  show_picture();
   ++pictures_;
   do_what_was_asked();
+}
+
+void Viewer::show_picture() {
+  // What lies behind panels is cleared, as that costs less than their own background.
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glClearColor(0.09f, 0.10f, 0.12f, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  if (!shows_gallery()) picture_.show(area().left, window_.height() - area().top - area().height);
+  draw_gui();
+  window_.swap();
 }
 
 void Viewer::draw_gui() {
@@ -179,8 +200,10 @@ void Viewer::draw_gui() {
 
 Vec3 Viewer::on_screen(const Vec3& x) const {
   const Eigen::Vector4f clip = camera_.projection_view() * x.homogeneous();
-  return {0.5f * (1 + clip.x() / clip.w()) * static_cast<float>(window_.width()),
-          0.5f * (1 - clip.y() / clip.w()) * static_cast<float>(window_.height()), clip.w()};
+  const Area seen = area();
+  return {static_cast<float>(seen.left) + 0.5f * (1 + clip.x() / clip.w()) * static_cast<float>(seen.width),
+          static_cast<float>(seen.top) + 0.5f * (1 - clip.y() / clip.w()) * static_cast<float>(seen.height),
+          clip.w()};
 }
 
 void Viewer::draw_marks() {
@@ -192,8 +215,10 @@ void Viewer::draw_marks() {
     list.AddCircleFilled(ImVec2(from.x(), from.y()), 5, k_mark);
     list.AddCircleFilled(ImVec2(to.x(), to.y()), 4, k_mark);
   }
+  const auto left = static_cast<float>(area().left), top = static_cast<float>(area().top);
   if (const auto& from = mouse_.cut_from())
-    list.AddLine(ImVec2(from->x(), from->y()), ImVec2(mouse_.x(), mouse_.y()), k_mark, 2.5f);
+    list.AddLine(ImVec2(left + from->x(), top + from->y()), ImVec2(left + mouse_.x(), top + mouse_.y()),
+                 k_mark, 2.5f);
 }
 
 std::array<double, 2> Viewer::measure_drawing(int pictures) {
@@ -201,10 +226,10 @@ std::array<double, 2> Viewer::measure_drawing(int pictures) {
   const std::clock_t processor = std::clock();
   for (int k = 0; k < pictures; ++k) {
     camera_.turn(4, 0);
+    // As while a scene moves.
+    drawer_.take(frame());
     draw_scene();
-    picture_.show();
-    draw_gui();
-    window_.swap();
+    show_picture();
     glFinish();
   }
   return {(wall_seconds() - started) / pictures,

@@ -47,6 +47,11 @@ class Viewer {
   Gallery& gallery();
   bool shows_gallery() const { return !settings_; }
   void send(std::function<void(Session&)> command) { stepping_->send(std::move(command)); }
+  /// The part of the window that shows the scene, in pixels from its upper left corner.
+  struct Area {
+    int left, top, width, height;
+  };
+  Area area() const;
   /// Frames that were taken from the stepping thread, and pictures that were drawn.
   std::uint64_t frames_taken() const { return frames_taken_; }
   std::uint64_t pictures() const { return pictures_; }
@@ -61,6 +66,7 @@ class Viewer {
   void on_key(int key, bool shift, bool repeated);
   bool take_frame();
   void draw_scene();
+  void show_picture();
   void draw_gui();
   void draw_marks();
   void do_what_was_asked();
@@ -68,6 +74,7 @@ class Viewer {
   void notice(const std::string& text);
   void show_gallery();
   Vec3 on_screen(const Vec3& x) const;
+  void tell_mouse(float x, float y);
 
   ViewerOptions options_;
   Window window_;

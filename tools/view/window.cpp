@@ -20,11 +20,11 @@ std::string last_error() {
 void set_style() {
   ImGui::StyleColorsDark();
   ImGuiStyle& style = ImGui::GetStyle();
-  style.WindowRounding = 6;
+  style.WindowRounding = 0;
   style.FrameRounding = 4;
   style.GrabRounding = 4;
   style.WindowBorderSize = 0;
-  style.Colors[ImGuiCol_WindowBg] = ImVec4(0.09f, 0.10f, 0.12f, 0.90f);
+  style.Colors[ImGuiCol_WindowBg] = ImVec4(0.09f, 0.10f, 0.12f, 1);
   style.Colors[ImGuiCol_SliderGrab] = ImVec4(0.98f, 0.62f, 0.22f, 1);
   style.Colors[ImGuiCol_SliderGrabActive] = ImVec4(1, 0.75f, 0.35f, 1);
   style.Colors[ImGuiCol_CheckMark] = ImVec4(0.98f, 0.62f, 0.22f, 1);
