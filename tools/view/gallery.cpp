@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int k_width = 288, k_height = 162;  ///< of a picture
-constexpr int k_pictured_frame = 45;          ///< where most scenes show what they are
+constexpr int k_pictured_frame = 45;          ///< at the earliest; of long scenes at two fifths
 constexpr double k_patience = 6;              ///< [s] for one picture
 
 /// The comment at the beginning of a file, as one line.
@@ -103,6 +103,7 @@ fs::path thumbnail_file(const GalleryScene& scene) {
 struct Gallery::Maker {
   std::size_t scene;
   double started;
+  int pictured_frame;
   SteppingThread thread{SessionOptions{.threads = 1, .rewind_bytes = 1}, {}};
   SceneDrawer drawer;
   OffscreenPicture picture;
@@ -147,7 +148,7 @@ void Gallery::make_thumbnails(double wall) {
     const bool late = wall - maker_->started > k_patience && maker_->built >= 0;
     if (fresh && frame.failed) {
       maker_.reset();
-    } else if (fresh && maker_->built >= 0 && (frame.stats.frame >= k_pictured_frame || late)) {
+    } else if (fresh && maker_->built >= 0 && (frame.stats.frame >= maker_->pictured_frame || late)) {
       finish_thumbnail();
     }
     return;
@@ -158,7 +159,12 @@ void Gallery::make_thumbnails(double wall) {
     try {
       Scene scene = read_scene(scenes_[k].file);
       maker_ = std::unique_ptr<Maker>(
-          new Maker{.scene = k, .started = wall, .drawer = SceneDrawer(false), .picture = {}, .camera = {}});
+          new Maker{.scene = k,
+                    .started = wall,
+                    .pictured_frame = std::max(k_pictured_frame, 2 * scene.run.frames / 5),
+                    .drawer = SceneDrawer(false),
+                    .picture = {},
+                    .camera = {}});
       maker_->thread.open(scene);
       maker_->thread.send(
           [](Session& session) { session.set_speed(std::numeric_limits<double>::infinity()); });

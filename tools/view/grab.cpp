@@ -10,7 +10,7 @@ namespace {
 /// Of the longest step, by the time in which the spring swings by 1 rad: a damped spring is stable below 1.
 constexpr float k_stiffness = 0.35f;
 /// Spacings in a step by step, at most, that the pull adds to velocities.
-constexpr float k_most = 0.15f;
+constexpr float k_most = 0.5f;
 
 /// The row of a particle that may be gone.
 std::optional<std::size_t> row_of(const Simulation& simulation, ParticleId id) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 namespace mallow::view {
 
@@ -12,7 +13,7 @@ class Pace {
   void set_rate(double rate) { rate_ = rate; }
   /// lag: by how much simulated time may be behind at most [s]. time: simulated [s].
   void add_wall(double wall, double time, double lag) {
-    if (last_wall_ >= 0) allowed_ += rate_ * (wall - last_wall_);
+    if (std::isfinite(rate_) && last_wall_ >= 0) allowed_ += rate_ * (wall - last_wall_);
     last_wall_ = wall;
     allowed_ = std::clamp(allowed_, time - lag, time + lag);
   }
@@ -21,7 +22,7 @@ class Pace {
     allowed_ = time;
     last_wall_ = -1;
   }
-  bool allows(double time) const { return allowed_ > time; }
+  bool allows(double time) const { return !std::isfinite(rate_) || allowed_ > time; }
 
  private:
   double rate_ = 1, allowed_ = 0, last_wall_ = -1;

@@ -35,7 +35,7 @@ void Session::save_run(const std::string& folder) {
 }
 
 void Session::open_run(const std::string& folder) {
-  const program::Cache cache = program::Cache::open(folder, program::Cache::Access::read);
+  const program::Cache cache = program::Cache::open_to_resume(folder);
   program::CheckpointedRun saved = program::load_newest_checkpoint(cache, options_.threads);
   grab_.reset();
   surface_.reset();

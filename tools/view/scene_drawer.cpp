@@ -230,7 +230,7 @@ void SceneDrawer::draw_shadows() {
     particle_shadow_.set("projection_view", to_light_);
     particle_shadow_.set("palette", 0);
     particle_shadow_.set("shown", 0);
-    particle_shadow_.set("pixels", 0.5f / shadow_length_);
+    particle_shadow_.set("pixels", 0.8f / shadow_length_);  // a little larger: no light between them
     glBindVertexArray(particle_array_);
     glDrawArrays(GL_POINTS, 0, point_count_);
   }

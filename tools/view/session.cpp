@@ -228,7 +228,7 @@ void Session::show(Drawn drawn, Shown shown) {
 void Session::grab(const Vec3& at, float strength) {
   if (!simulation_) return;
   release();
-  grab_.emplace(*simulation_, at, reach_of(*simulation_), strength);
+  grab_.emplace(*simulation_, at, 1.3f * reach_of(*simulation_), strength);
   touched_ = true;
 }
 
@@ -259,7 +259,7 @@ void Session::throw_ball(const Ray& ray, float speed) {
     ball_material_ = simulation_->add_material(rubber, "ball");
   }
   const float spacing = simulation_->spacing(bodies.front());
-  const float radius = std::max(2.6f * spacing, 0.6f * reach_of(*simulation_));
+  const float radius = std::max(3.6f * spacing, 0.6f * reach_of(*simulation_));
   view::throw_ball(*simulation_, *ball_material_, ray, spacing, {.radius = radius, .speed = speed});
   say("threw a ball");
   touched_ = true;

@@ -24,7 +24,7 @@ constexpr int k_settling = 3;         ///< pictures after an event, until panels
 Viewer::Viewer(const ViewerOptions& options)
     : options_(options),
       window_(options.window, events()),
-      drawer_(window_.draws_in_software()),
+      drawer_(window_.draws_in_software() && options.samples <= 1),
       stepping_(std::make_unique<SteppingThread>(SessionOptions{.threads = options.threads}, Window::wake)) {
   if (options_.samples == 0) options_.samples = window_.draws_in_software() ? 1 : 4;
   if (options.paused) send([](Session& session) { session.set_paused(true); });
