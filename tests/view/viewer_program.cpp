@@ -27,7 +27,7 @@ Played play(const std::vector<std::string>& arguments, const std::string& script
                      " && XDG_CACHE_HOME=" + program::shell_word((scratch() / "cache").string()) +
                      " xvfb-run -a -s '-screen 0 1280x1024x24' timeout 280 " + MALLOW_VIEW + " --script " +
                      program::shell_word(file.string());
-  for (const std::string& argument : arguments) line += " " + program::shell_word(argument);
+  for (const std::string& argument : arguments) line += " '" + argument + "'";
   line += " 2>&1";
   Played played;
   const auto started = std::chrono::steady_clock::now();
