@@ -245,7 +245,7 @@ uniform vec3 middle;
 out vec3 x;
 void main() {
   vec2 corner = vec2(gl_VertexID % 2 == 0 ? -1.0 : 1.0, gl_VertexID < 2 ? -1.0 : 1.0);
-  x = vec3(middle.xy + 2.6 * floor_fade * corner, floor_height);
+  x = vec3(middle.xy + 1.7 * floor_fade * corner, floor_height);
   gl_Position = projection_view * vec4(x, 1.0);
 }
 )";
