@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "colliders/pose.h"
+#include "config/field_tables.h"
 #include "config/validation.h"
 #include "simulation/phases.h"
 #include "simulation/state.h"
@@ -152,6 +153,45 @@ void resolve_settings(Simulation::State& state) {
             : settings.viscosity.value_or(default_viscosity(state.scale, state.scene_step(), body));
     body.elastic_time_step = elastic_time_step(state.config, settings, body.spacing);
   }
+}
+
+bool changes_while_running(std::string_view field) {
+  static constexpr std::string_view k_changing[] = {
+      "time_step_factor", "gravity",     "rotation_iterations", "volume_tolerance", "neighbor_slack",
+      "acoustic_limit",   "sleep_speed", "sleep_time",          "air_temperature",  "memory_limit"};
+  return std::ranges::find(k_changing, field) != std::end(k_changing);
+}
+
+namespace {
+
+void check_kept(const SolverConfig& before, const SolverConfig& now, Checks& checks) {
+  for_fields<SolverConfig>([&](const auto& field) {
+    if constexpr (requires { before.*field.member == now.*field.member; })
+      if (!changes_while_running(field.name) && !(before.*field.member == now.*field.member))
+        checks.problem(std::string("solver.") + field.name,
+                       "cannot change while a simulation runs; build the scene anew with it");
+  });
+}
+
+}  // namespace
+
+void change_solver(Simulation::State& state, const SolverConfig& config) {
+  Checks checks;
+  check(config, checks);
+  check_kept(state.config, config, checks);
+  checks.finish();
+  if (config.time_step)
+    for (const MaterialState& material : state.materials)
+      check_stiffness(config, material.settings, material.name, checks);
+  if (config.time_step) check_moduli(state, config, checks);
+  checks.finish();
+  const bool counted = counts_steps(state.config);
+  if (state.config.gravity != config.gravity) wake_all(state);
+  state.config = config;
+  state.sph.neighbor_slack = config.neighbor_slack;
+  // Checks that were counted in steps go on by time, from now.
+  if (counted && !counts_steps(config)) state.passed_periods = passed_periods(state, state.time);
+  state.prepared = false;
 }
 
 float pressure_coefficient(const Simulation::State& state, const BodyState& body) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/column.h"
@@ -35,6 +36,10 @@ float region_radius(const SolverConfig& config, const Material& material, float 
 /// of every material, μ and Δt_SM of every body. Throws ConfigError where nothing says how long a step is,
 /// where steps are too long for a material's springs, or where a default is beyond single precision.
 void resolve_settings(Simulation::State& state);
+/// How steps are taken from now on: Simulation::set_solver().
+void change_solver(Simulation::State& state, const SolverConfig& config);
+/// Whether a setting of SolverConfig may change while a simulation runs. field: its name in the field table.
+MALLOW_EXPORT bool changes_while_running(std::string_view field);
 /// α, settings -> k of every body in the sums of SPH.
 void resolve_pressures(Simulation::State& state);
 /// k in force.

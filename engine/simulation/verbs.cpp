@@ -89,6 +89,11 @@ void Simulation::set_gravity(const Vec3& gravity) {
   wake_all(*state_);
 }
 
+void Simulation::set_solver(const SolverConfig& config) {
+  state_->refuse_in_callback();
+  change_solver(*state_, config);
+}
+
 void Simulation::set_material(MaterialId id, const Material& settings) {
   state_->refuse_in_callback();
   State& s = *state_;

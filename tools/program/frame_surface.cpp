@@ -17,17 +17,29 @@ FrameSurface::FrameSurface(const SurfaceConfig& config, std::span<Skin> skins, i
     : surfacer_(config, threads), skins_(skins) {}
 
 Mesh FrameSurface::draw(const Simulation& simulation) {
+  Mesh mesh;
+  draw(simulation, mesh);
+  return mesh;
+}
+
+void FrameSurface::draw(const Simulation& simulation, Mesh& mesh) {
   SurfaceParticles particles = surface_particles(simulation);
   std::erase_if(particles.bodies, [&](const SurfaceBody& body) {
     return std::ranges::any_of(skins_, [&](const Skin& skin) { return skin.body() == BodyId{body.body}; });
   });
-  Mesh mesh;
-  if (!particles.bodies.empty()) mesh = surfacer_.draw(particles);
+  if (particles.bodies.empty()) {
+    mesh.vertices.clear();
+    mesh.triangles.clear();
+    mesh.normals.clear();
+    mesh.velocities.clear();
+    mesh.material_ids.clear();
+  } else {
+    mesh = surfacer_.draw(particles);
+  }
   for (Skin& skin : skins_) {
     skin.update(simulation);
     append(skin.find_velocities(simulation), mesh);
   }
-  return mesh;
 }
 
 double enclosed_volume(const Mesh& mesh) {

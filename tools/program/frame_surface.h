@@ -17,6 +17,8 @@ class FrameSurface {
   /// skins: must outlive this.
   FrameSurface(const SurfaceConfig& config, std::span<Skin> skins, int threads);
   Mesh draw(const Simulation& simulation);
+  /// The same into a mesh whose memory is used again.
+  void draw(const Simulation& simulation, Mesh& mesh);
 
  private:
   Surfacer surfacer_;

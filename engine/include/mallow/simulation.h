@@ -180,6 +180,12 @@ class MALLOW_EXPORT Simulation {
   /// [m/s²], finite. What follows from gravity where a config leaves it out stays as the first prepare()
   /// settled it.
   void set_gravity(const Vec3& gravity);
+  /// How steps are taken from now on; take config() and change it. What may change is time_step_factor,
+  /// gravity, rotation_iterations, volume_tolerance, neighbor_slack, acoustic_limit, sleep_speed, sleep_time,
+  /// air_temperature and memory_limit: the rest is what a simulation was made with. Throws ConfigError, and
+  /// changes nothing, where another setting differs, a value is out of range, or steps would be too long for a
+  /// material's springs.
+  void set_solver(const SolverConfig& config);
   /// What all bodies of a material are made of from now on. Reference shapes stay; the regions are built anew
   /// where their radius or stride changes. Throws ConfigError with every value that is out of range.
   void set_material(MaterialId material, const Material& settings);

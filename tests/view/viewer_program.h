@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace mallow::test {
+
+/// What a scripted viewer left behind.
+struct Played {
+  int exit_code = -1;
+  std::string out;  ///< both streams
+  double seconds = 0;
+};
+
+/// Why no window can be opened here; empty where one can.
+std::string why_no_window();
+/// Runs the viewer in a screen of its own. script: lines, see view/script.h.
+Played play(const std::vector<std::string>& arguments, const std::string& script);
+
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<unsigned char> rgb;
+};
+Picture read_png(const std::filesystem::path& file);
+/// A folder for what tests write.
+std::filesystem::path scratch();
+
+}  // namespace mallow::test

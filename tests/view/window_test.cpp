@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <regex>
+#include <string>
+
+#include "view/viewer_program.h"
+
+namespace mallow {
+namespace view_window_test {
+
+using test::Picture;
+using test::play;
+using test::Played;
+using test::read_png;
+using test::scratch;
+
+const std::string k_cube = std::string(MALLOW_DATA_DIR) + "/scenes/cube.toml";
+
+class view_window : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string why = test::why_no_window(); !why.empty()) GTEST_SKIP() << why;
+  }
+};
+
+/// Share of bytes that differ by more than `most`.
+double far_off(const Picture& a, const Picture& b, int most) {
+  if (a.width != b.width || a.height != b.height || a.rgb.empty()) return 1;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < a.rgb.size(); ++k) count += std::abs(a.rgb[k] - b.rgb[k]) > most ? 1 : 0;
+  return static_cast<double>(count) / static_cast<double>(a.rgb.size());
+}
+
+/// The last number behind a word.
+double number_behind(const std::string& text, const std::string& word) {
+  const std::size_t at = text.rfind(word + " ");
+  return at == text.npos ? std::nan("") : std::atof(text.c_str() + at + word.size() + 1);
+}
+
+TEST_F(view_window, draws_the_stored_picture) {
+  const Played played = play({k_cube, "--paused", "--width", "320", "--height", "240", "--samples", "4"},
+                             "ready\npictures 3\nscene drawn.png\nclose\n");
+  ASSERT_EQ(played.exit_code, 0) << played.out;
+  const Picture drawn = read_png(scratch() / "drawn.png");
+  const Picture stored = read_png(std::filesystem::path(MALLOW_VIEW_PICTURES) / "cube.png");
+  EXPECT_LT(far_off(drawn, stored, 16), 0.01) << "drawn: " << scratch() / "drawn.png";
+}
+
+TEST_F(view_window, a_grab_moves_what_it_should) {
+  const std::string fall = "ready\nframes 60\nkey space\npictures 4\nkey space\n";
+  const std::string wait = "frames 40\nkey space\npictures 4\ncenter\nclose\n";
+  const Played free = play({k_cube}, fall + wait);
+  const Played held = play({k_cube}, fall + "move 0.5 0.7\npress 0\nmove 0.5 0.2\n" + wait);
+  ASSERT_EQ(free.exit_code, 0) << free.out;
+  ASSERT_EQ(held.exit_code, 0) << held.out;
+  const std::regex center("center (\\S+) (\\S+) (\\S+)");
+  std::smatch of_free, of_held;
+  ASSERT_TRUE(std::regex_search(free.out, of_free, center)) << free.out;
+  ASSERT_TRUE(std::regex_search(held.out, of_held, center)) << held.out;
+  EXPECT_GT(std::stod(of_held[3]), std::stod(of_free[3]) + 1.0) << "the cube is 8 m high";
+}
+
+TEST_F(view_window, is_resized_minimised_and_closed_while_it_steps) {
+  const Played played =
+      play({k_cube},
+           "ready\nkey =\nresize 640 480\npictures 4\nstatus\nresize 200 150\npictures 4\n"
+           "resize 1000 700\npictures 4\nstatus\nminimise\npictures 2\nrestore\npictures 2\nclose\n");
+  EXPECT_EQ(played.exit_code, 0) << played.out;
+  EXPECT_NE(played.out.find("size 640 480"), std::string::npos) << played.out;
+  EXPECT_NE(played.out.find("size 1000 700"), std::string::npos) << played.out;
+}
+
+TEST_F(view_window, keys_pause_step_go_back_reset_and_save) {
+  const Played played =
+      play({k_cube},
+           "ready\nframes 20\nkey space\npictures 6\nkey .\npictures 4\nkey backspace\npictures 4\n"
+           "status\nkey r\npictures 6\nstatus\nkey p\npictures 4\nkey k\npictures 4\nkey h\npictures 2\n"
+           "key s\npictures 6\nstatus\nkey c\npictures 2\nkey escape\npictures 2\nclose\n");
+  EXPECT_EQ(played.exit_code, 0) << played.out;
+  EXPECT_NE(played.out.find("paused 1"), std::string::npos) << played.out;
+  EXPECT_NE(played.out.find("time 0 frame 0 steps 0"), std::string::npos) << played.out;
+  EXPECT_TRUE(std::filesystem::exists(scratch() / "view_cube" / "checkpoint")) << played.out;
+}
+
+TEST_F(view_window, every_slider_goes_once_through_its_range) {
+  const Played played = play({k_cube, "--width", "320", "--height", "240"}, "ready\nsweep\nstatus\nclose\n");
+  EXPECT_EQ(played.exit_code, 0) << played.out;
+  EXPECT_NE(played.out.find("sweep solver.time_step_factor"), std::string::npos);
+  EXPECT_NE(played.out.find("sweep surface.voxels_per_spacing"), std::string::npos);
+  EXPECT_GT(number_behind(played.out, "steps"), 0) << played.out;
+}
+
+TEST_F(view_window, a_scene_that_is_wrong_is_said_and_ends_with_2) {
+  const Played played = play({"/nonexistent.toml"}, "close\n");
+  EXPECT_EQ(played.exit_code, 2) << played.out;
+  EXPECT_NE(played.out.find("/nonexistent.toml"), std::string::npos) << played.out;
+}
+
+}  // namespace view_window_test
+}  // namespace mallow

@@ -1,0 +1,80 @@
+#include <string>
+
+#include <imgui.h>
+#include "view/panels.h"
+
+namespace mallow::view {
+namespace {
+
+constexpr ImGuiWindowFlags k_quiet = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
+                                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing;
+
+}  // namespace
+
+void draw_message(const Frame& frame, const ViewState& state, double wall) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  std::string text = frame.building ? "building the scene ..." : frame.message;
+  if (text.empty() && wall < state.notice_until) text = state.notice;
+  if (text.empty()) return;
+  ImGui::SetNextWindowPos(ImVec2(16, size.y - 84), ImGuiCond_Always, ImVec2(0, 1));
+  if (frame.failed) ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.42f, 0.10f, 0.08f, 0.95f));
+  ImGui::Begin("message", nullptr, k_quiet | ImGuiWindowFlags_NoInputs);
+  ImGui::PushTextWrapPos(std::min(640.0f, size.x - 360));
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+  if (frame.failed) ImGui::PopStyleColor();
+}
+
+void draw_help(ViewState& state) {
+  if (!state.help) return;
+  ImGui::SetNextWindowPos(ImVec2(16, 64));
+  ImGui::Begin("help", nullptr, k_quiet);
+  ImGui::TextUnformatted(
+      "left button      the tool at hand: 1 grab  2 throw  3 poke  4 cut  5 heat  6 pin\n"
+      "                 beside matter it turns the view\n"
+      "right button     turn the view       middle button, or shift and right: move it\n"
+      "wheel            nearer and farther  Home: the view as it was\n"
+      "Space            pause and play      .  one step\n"
+      "Backspace        back, held: ever farther          R  to the start\n"
+      "[  ]             slower and faster   =  as fast as it goes\n"
+      "P                surface or particles               K  what particles are coloured by\n"
+      "F                record a film       S  save the scene as it stands\n"
+      "C                copy the command line that repeats it\n"
+      "Tab              panels on and off   Escape: scenes  H: this");
+  if (ImGui::Button("Close")) state.help = false;
+  ImGui::End();
+}
+
+void draw_legend(const Frame& frame, const ViewState& state) {
+  if (state.drawn != Drawn::particles || state.shown == Shown::appearance) return;
+  ImGui::SetNextWindowPos(ImVec2(16, 64));
+  ImGui::Begin("legend", nullptr, k_quiet | ImGuiWindowFlags_NoInputs);
+  const auto number = static_cast<std::size_t>(state.shown);
+  if (frame.values.empty()) {
+    ImGui::Text("no %s here", k_shown_names[number]);
+  } else if (state.shown == Shown::body) {
+    ImGui::Text("a colour for each body");
+  } else {
+    ImGui::Text("%s %s", k_shown_names[number], k_shown_units[number]);
+    const ImVec2 start = ImGui::GetCursorScreenPos();
+    constexpr float k_part = 45, k_height = 10;
+    // The stops of the shader, as the screen shows them in the open.
+    constexpr ImU32 k_stops[] = {IM_COL32(48, 52, 122, 255), IM_COL32(38, 121, 173, 255),
+                                 IM_COL32(89, 188, 153, 255), IM_COL32(228, 207, 75, 255),
+                                 IM_COL32(218, 70, 39, 255)};
+    for (int k = 0; k < 4; ++k) {
+      const float x = start.x + k_part * static_cast<float>(k);
+      ImGui::GetWindowDrawList()->AddRectFilledMultiColor(ImVec2(x, start.y),
+                                                          ImVec2(x + k_part, start.y + k_height), k_stops[k],
+                                                          k_stops[k + 1], k_stops[k + 1], k_stops[k]);
+    }
+    ImGui::Dummy(ImVec2(4 * k_part, k_height));
+    ImGui::Text("%-12.4g", static_cast<double>(frame.value_range[0]));
+    ImGui::SameLine(4 * k_part - 40);
+    ImGui::Text("%.4g", static_cast<double>(frame.value_range[1]));
+  }
+  ImGui::End();
+}
+
+}  // namespace mallow::view

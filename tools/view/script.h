@@ -1,0 +1,51 @@
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "view/viewer.h"
+
+namespace mallow::view {
+
+/// Plays a viewer by a text, for tests: a command a line, each begun after a picture was drawn.
+///
+///   frames N             until N frames of the scene have ended since this line
+///   pictures N           until N pictures were drawn
+///   ready                until a scene is built and drawn
+///   screenshot FILE      the window, a PNG; scene FILE: without panels
+///   key NAME             "space", "r", "." and so on
+///   move X Y             shares of the picture of the scene, in [0, 1] from the upper left corner
+///   press K, release K   buttons: 0 left, 1 right, 2 middle
+///   wheel CLICKS
+///   resize W H, minimise, restore, close, open FILE
+///   set KEY SHARE        a setting's slider, as "material[0].alpha"
+///   sweep                every slider once through its range, and back
+///   measure N            draws N pictures and prints what one takes
+///   center               prints the middle of what is seen of bodies
+///   status               prints time, frame, message
+///   thumbnails           until all pictures of the gallery are made
+class Script {
+ public:
+  explicit Script(const std::filesystem::path& file);
+  /// Goes on; false after the last line. Throws ConfigError at a line that is none.
+  bool advance(Viewer& viewer);
+
+ private:
+  void begin(Viewer& viewer, std::vector<std::string> words);
+  void begin_other(Viewer& viewer, const std::vector<std::string>& words);
+  bool is_done(Viewer& viewer);
+  void sweep_next(Viewer& viewer);
+
+  std::deque<std::string> lines_;
+  std::string waiting_;  ///< the command that is not done yet
+  std::uint64_t goal_ = 0;
+  double started_ = 0;
+  std::size_t swept_section_ = 0, swept_field_ = 0;
+  int swept_place_ = 0;
+  std::function<void()> put_back_;  ///< what the swept setting was
+};
+
+}  // namespace mallow::view

@@ -1,0 +1,268 @@
+#include "view/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "mallow/files.h"
+#include "program/view_bounds.h"
+
+namespace mallow::view {
+namespace {
+
+/// Saving states may take this share of wall time.
+constexpr double k_save_share = 0.04;
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Where a state was saved with skins they are chunks of their own.
+std::string skin_chunk(std::size_t number) {
+  return "view.skin." + std::to_string(number);
+}
+
+std::string advice(const Error& error) {
+  std::string text = error.what();
+  if (dynamic_cast<const StepError*>(&error) != nullptr)
+    text +=
+        "\nThe scene stands where it was before this step. Go back (Backspace) or start again (R), "
+        "let go of what is held, or take shorter steps (Speed and accuracy).";
+  return text;
+}
+
+}  // namespace
+
+void Session::open(const Scene& scene) {
+  simulation_.reset();
+  skins_.clear();
+  grab_.reset();
+  simulation_.emplace(build(scene, options_.threads));
+  skins_ = skins(scene, *simulation_, options_.threads);
+  frame_ = first_frame_ = 0;
+  begin(scene);
+}
+
+void Session::begin(Scene scene) {
+  scene_ = std::move(scene);
+  simulation_->prepare();
+  materials_.assign(scene_.materials.size(), std::nullopt);
+  const std::vector<std::size_t> of_body = body_materials(scene_);
+  for (const BodyId body : simulation_->bodies())
+    if (slot_of(body) < of_body.size()) materials_[of_body[slot_of(body)]] = simulation_->material(body);
+  ball_material_.reset();
+  frame_time_ = frame_time(scene_, simulation_->info());
+  if (const ParticleFrame first = snapshot(*simulation_); !first.positions.empty())
+    bounds_ = program::view_bounds(scene_, first);
+  camera_ = render::frame_camera(bounds_, scene_.render, program::visible_colliders(scene_));
+  values_ = {};
+  ring_.clear();
+  samples_.clear();
+  steps_rate_.clear();
+  frames_rate_.clear();
+  time_rate_.clear();
+  phases_.clear();
+  message_.clear();
+  failed_ = finished_ = touched_ = false;
+  single_steps_ = 0;
+  last_ = {};
+  ++scene_number_;
+  ++settings_number_;
+  rung_ = k_as_written;
+  given_up_.clear();
+  apply_rung();
+  set_speed(speed_);
+  pace_.restart(simulation_->time());
+  last_save_ = -1e9;
+  keep_moment(0);
+  changed_ = true;
+}
+
+void Session::run(const std::function<void(Session&)>& command) {
+  try {
+    command(*this);
+  } catch (const std::exception& error) {
+    say(error.what());
+    ++settings_number_;  // a setting that was refused is what it was
+  }
+  changed_ = true;
+}
+
+void Session::set_paused(bool paused) {
+  paused_ = paused;
+  if (!paused) failed_ = false;
+  if (simulation_) pace_.restart(simulation_->time());
+  changed_ = true;
+}
+
+void Session::set_recording(bool recording) {
+  recording_ = recording;
+  if (simulation_) make_surface();
+}
+
+void Session::set_speed(double speed) {
+  speed_ = speed;
+  pace_.set_rate(speed * frame_time_ * scene_.render.frames_per_second);
+}
+
+bool Session::advance(double wall) {
+  if (!simulation_ || failed_ || waits_for_film()) return false;
+  if (single_steps_ == 0) {
+    if (paused_) return false;
+    pace_.add_wall(wall, simulation_->time(), 1.5 * frame_time_);
+    if (!recording_ && !pace_.allows(simulation_->time())) return false;
+  }
+  try {
+    take_step(wall);
+  } catch (const Error& error) {
+    failed_ = paused_ = true;
+    message_ = advice(error);
+  }
+  single_steps_ = std::max(0, single_steps_ - 1);
+  changed_ = true;
+  return true;
+}
+
+void Session::take_step(double wall) {
+  const double before = simulation_->time();
+  const auto started = Clock::now();
+  last_ = simulation_->step_towards(frame_end());
+  frame_seconds_ += seconds_since(started);
+  steps_rate_.add(wall);
+  time_rate_.add(wall, simulation_->time() - before);
+  phases_.add(last_.seconds);
+  if (simulation_->time() < frame_end()) return;
+  ++frame_;
+  finished_ = true;
+  frames_rate_.add(wall);
+  keep_moment(wall);
+  if (governor_.add_frame(frame_seconds_)) apply_rung();
+  frame_seconds_ = 0;
+}
+
+void Session::keep_moment(double wall) {
+  if (wall - last_save_ < save_time_.mean() / k_save_share) return;
+  const auto started = Clock::now();
+  Moment moment{simulation_->time(), simulation_->step_count(), frame_, settings(), simulation_->save()};
+  for (std::size_t k = 0; k < skins_.size(); ++k)
+    moment.state.chunks.push_back({skin_chunk(k), skins_[k].save()});
+  ring_.add(std::move(moment));
+  save_time_.add(wall, seconds_since(started));
+  last_save_ = wall;
+}
+
+Settings Session::settings() const {
+  Settings settings{scene_.solver, {}, governor_.rung()};
+  for (const SceneMaterial& material : scene_.materials) settings.materials.push_back(material.material);
+  return settings;
+}
+
+/// What a restored simulation has already.
+void Session::take_settings(const Settings& settings) {
+  scene_.solver = settings.solver;
+  for (std::size_t k = 0; k < settings.materials.size(); ++k)
+    scene_.materials[k].material = settings.materials[k];
+  governor_.set_rung(settings.rung);
+  rung_ = settings.rung;
+  given_up_ = describe(rungs()[static_cast<std::size_t>(rung_)]);
+  ++settings_number_;
+}
+
+void Session::restore(const Moment& moment) {
+  simulation_.emplace(Simulation::restore(moment.state, options_.threads));
+  surface_.reset();
+  skins_.clear();
+  while (const std::string* bytes = moment.state.find(skin_chunk(skins_.size())))
+    skins_.push_back(Skin::restore(*bytes, options_.threads));
+  frame_ = moment.frame;
+  take_settings(moment.settings);
+  make_surface();
+  values_ = {};
+  samples_.clear();
+  failed_ = finished_ = false;
+  frame_seconds_ = 0;
+  if (grab_) grab_->act_on(*simulation_);
+  pace_.restart(simulation_->time());
+  message_.clear();
+  changed_ = true;
+}
+
+void Session::go_to(double time) {
+  if (!simulation_ || ring_.empty()) return;
+  paused_ = true;
+  restore(ring_[ring_.find(time)]);
+}
+
+void Session::go_back() {
+  if (!simulation_ || ring_.empty()) return;
+  std::size_t place = ring_.find(simulation_->time());
+  if (ring_[place].step >= simulation_->step_count() && place > 0) --place;
+  paused_ = true;
+  restore(ring_[place]);
+}
+
+void Session::reset() {
+  if (!simulation_ || ring_.empty()) return;
+  // Settings of now are kept: they are what somebody wants to see from the start.
+  const Scene settings = scene_;
+  const int rung = governor_.rung();
+  const Moment start = ring_[0];
+  restore(start);
+  ring_.clear();
+  touched_ = false;
+  last_save_ = -1e9;
+  for (std::size_t k = 0; k < settings.materials.size(); ++k) set_material(k, settings.materials[k]);
+  set_solver(settings.solver);
+  set_rung(rung);
+  keep_moment(0);
+}
+
+void Session::show(Drawn drawn, Shown shown) {
+  drawn_ = drawn;
+  shown_ = shown;
+  changed_ = true;
+}
+
+void Session::grab(const Vec3& at, float strength) {
+  if (!simulation_) return;
+  release();
+  grab_.emplace(*simulation_, at, 1.3f * reach_of(*simulation_), strength);
+  touched_ = true;
+}
+
+void Session::release() {
+  if (!grab_) return;
+  Grab::release(*simulation_);
+  grab_.reset();
+}
+
+void Session::act(const std::function<std::string(Simulation&)>& verb) {
+  if (!simulation_) return;
+  say(verb(*simulation_));
+  touched_ = true;
+}
+
+void Session::throw_ball(const Ray& ray, float speed) {
+  if (!simulation_) return;
+  const std::vector<BodyId> bodies = simulation_->bodies();
+  if (bodies.empty()) throw ConfigError("throw", "there is no body that tells how large a ball should be");
+  if (!ball_material_) {
+    Material rubber = simulation_->material_settings(simulation_->material(bodies.front()));
+    rubber.alpha = 0;
+    rubber.alpha_by_temperature.reset();
+    rubber.plastic_yield.reset();
+    rubber.plastic_yield_by_temperature.reset();
+    rubber.plastic_creep.reset();
+    rubber.update_threshold.reset();
+    ball_material_ = simulation_->add_material(rubber, "ball");
+  }
+  const float spacing = simulation_->spacing(bodies.front());
+  const float radius = std::max(3.6f * spacing, 0.6f * reach_of(*simulation_));
+  view::throw_ball(*simulation_, *ball_material_, ray, spacing, {.radius = radius, .speed = speed});
+  say("threw a ball");
+  touched_ = true;
+}
+
+}  // namespace mallow::view

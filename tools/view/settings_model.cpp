@@ -1,0 +1,169 @@
+#include "view/settings_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <type_traits>
+
+#include "cli/scene_changes.h"
+#include "mallow/materials.h"
+#include "program/shell_word.h"
+#include "scene/scene_fields.h"
+#include "simulation/settings.h"
+#include "view/slider_span.h"
+
+namespace mallow::view {
+namespace {
+
+using Kind = SettingsSection::Kind;
+using scene_file::BoundField;
+using scene_file::BoundFields;
+
+BoundFields joined(BoundFields first, const BoundFields& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+std::string element(const char* list, std::size_t index) {
+  return list + ('[' + std::to_string(index) + ']');
+}
+
+}  // namespace
+
+SettingsModel::SettingsModel(const Scene& scene) : original_(scene), scene_(scene) {
+  const auto add = [&](Kind kind, std::size_t index, std::string path, std::string title,
+                       BoundFields fields) {
+    sections_.push_back({kind, index, std::move(path), std::move(title), std::move(fields)});
+  };
+  const auto add_list = [&](Kind kind, const char* key, auto& list, const auto& fields_of) {
+    for (std::size_t k = 0; k < list.size(); ++k)
+      add(kind, k, element(key, k), element(key, k), fields_of(list[k]));
+  };
+  for (std::size_t k = 0; k < scene_.materials.size(); ++k)
+    add(Kind::material, k, element("material", k), scene_.materials[k].name,
+        scene_file::fields(scene_.materials[k]));
+  add(Kind::solver, 0, "solver", "solver", scene_file::fields(scene_.solver));
+  add(Kind::surface, 0, "surface", "surface", scene_file::fields(scene_.surface));
+  add(Kind::run, 0, "run", "run", scene_file::fields(scene_.run));
+  add(Kind::render, 0, "render", "render", scene_file::fields(scene_.render));
+  add_list(Kind::body, "body", scene_.bodies,
+           [](SceneBody& body) { return joined(scene_file::fields(body), scene_file::fields(body.source)); });
+  add_list(Kind::collider, "collider", scene_.colliders,
+           [](SceneCollider& collider) { return scene_file::fields(collider); });
+  add_list(Kind::emitter, "emitter", scene_.emitters,
+           [](SceneEmitter& emitter) { return scene_file::fields(emitter); });
+  add_list(Kind::pin, "pin", scene_.pins,
+           [](ScenePin& pin) { return joined(scene_file::fields(pin), scene_file::fields(pin.box)); });
+  add_list(Kind::sink, "sink", scene_.sinks,
+           [](SceneSink& sink) { return joined(scene_file::fields(sink), scene_file::fields(sink.box)); });
+}
+
+bool SettingsModel::acts_at_once(const SettingsSection& section, const BoundField& field) {
+  const std::string_view name = field.name;
+  switch (section.kind) {
+    case Kind::solver:
+      return changes_while_running(name);
+    case Kind::material:
+      return name != "name" && name != "temperature";
+    case Kind::surface:
+    case Kind::run:
+      return true;
+    case Kind::render:
+      return name == "field_of_view";
+    default:
+      return false;
+  }
+}
+
+std::function<void(Session&)> SettingsModel::command(const SettingsSection& section,
+                                                     const BoundField& field) {
+  if (!acts_at_once(section, field)) {
+    waits_ = waits_ || section.kind != Kind::render;
+    return {};
+  }
+  switch (section.kind) {
+    case Kind::solver:
+      return [solver = scene_.solver](Session& session) { session.set_solver(solver); };
+    case Kind::material:
+      return [index = section.index, material = scene_.materials[section.index]](Session& session) {
+        session.set_material(index, material);
+      };
+    case Kind::surface:
+      return [surface = scene_.surface](Session& session) { session.set_surface(surface); };
+    case Kind::run:
+      return [run = scene_.run](Session& session) { session.set_run(run); };
+    default:
+      return {};
+  }
+}
+
+void SettingsModel::take(const Frame& frame) {
+  if (frame.settings_number == settings_number_) return;
+  settings_number_ = frame.settings_number;
+  // What waits to be rebuilt is kept: the frame does not know of it.
+  for_fields<SolverConfig>([&](const auto& setting) {
+    if (changes_while_running(setting.name)) scene_.solver.*setting.member = frame.solver.*setting.member;
+  });
+  for (std::size_t k = 0; k < std::min(frame.materials.size(), scene_.materials.size()); ++k) {
+    const auto temperature = scene_.materials[k].material.temperature;
+    scene_.materials[k].material = frame.materials[k];
+    scene_.materials[k].material.temperature = temperature;
+  }
+}
+
+std::function<void(Session&)> SettingsModel::take_preset(std::size_t material, const std::string& preset) {
+  const MaterialPreset* const found = find_preset(preset);
+  if (found == nullptr || material >= scene_.materials.size()) return {};
+  SceneMaterial& target = scene_.materials[material];
+  target.material = found->material;
+  target.color = found->appearance.color;
+  target.finish = found->appearance.finish;
+  return [material, settings = target](Session& session) { session.set_material(material, settings); };
+}
+
+bool SettingsModel::set_share(const BoundField& field, double share) {
+  const auto set = [&]<class T>(T& value) {
+    const double wanted = value_at(slider_span(field.range, static_cast<double>(value)), share);
+    if constexpr (std::is_integral_v<T>)
+      value = static_cast<T>(std::lround(wanted));
+    else
+      value = static_cast<T>(wanted);
+    return true;
+  };
+  return std::visit(
+      [&]<class T>(T* target) {
+        if constexpr (std::is_same_v<T, int> || std::is_same_v<T, float>) {
+          return set(*target);
+        } else if constexpr (std::is_same_v<T, std::optional<int>> ||
+                             std::is_same_v<T, std::optional<float>> ||
+                             std::is_same_v<T, std::optional<double>>) {
+          if (!*target) *target = static_cast<typename T::value_type>(std::max(1.0, field.range.lowest));
+          return set(**target);
+        } else if constexpr (std::is_same_v<T, Schedule>) {
+          float value = target->at(0);
+          set(value);
+          *target = value;
+          return true;
+        } else if constexpr (std::is_same_v<T, Vec3>) {
+          for (float& component : *target) set(component);
+          return true;
+        } else if constexpr (std::is_same_v<T, bool>) {
+          *target = share >= 0.5;
+          return true;
+        } else {
+          return false;
+        }
+      },
+      field.target);
+}
+
+std::string SettingsModel::command_line() const {
+  std::string line = "mallow run " + program::shell_word(scene_.file.string());
+  for (const cli::SceneChange& change : cli::scene_changes(original_, scene_)) {
+    if (change.now.empty()) continue;  // left out again: no --set says that
+    line += " --set " + program::shell_word(change.key + "=" + change.now);
+  }
+  return line;
+}
+
+}  // namespace mallow::view

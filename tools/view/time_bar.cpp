@@ -1,0 +1,114 @@
+#include <cmath>
+#include <limits>
+
+#include <imgui.h>
+#include "view/panels.h"
+
+namespace mallow::view {
+namespace {
+
+/// A button that shows that it is on.
+bool toggle(const char* label, bool is_on) {
+  if (is_on) ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.75f, 0.42f, 0.10f, 1));
+  const bool pressed = ImGui::Button(label);
+  if (is_on) ImGui::PopStyleColor();
+  return pressed;
+}
+
+void help_of(const char* text) {
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+}
+
+void draw_tools(ViewState& state) {
+  for (std::size_t k = 0; k < k_tool_names.size(); ++k) {
+    if (k > 0) ImGui::SameLine(0, 4);
+    if (toggle(k_tool_names[k], state.tool == static_cast<Tool>(k))) state.tool = static_cast<Tool>(k);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%zu: %s", k + 1, k_tool_docs[k]);
+  }
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(90);
+  ImGui::SliderFloat("##strength", &state.strength, 0.1f, 10, "x %.2g", ImGuiSliderFlags_Logarithmic);
+  help_of("strength of what the mouse does");
+}
+
+void draw_shown(ViewState& state, const Send& send) {
+  const Drawn drawn = state.drawn;
+  const Shown shown = state.shown;
+  if (toggle("surface", drawn == Drawn::surface)) state.drawn = Drawn::surface;
+  ImGui::SameLine(0, 4);
+  if (toggle("particles", drawn == Drawn::particles)) state.drawn = Drawn::particles;
+  help_of("P: surface or particles");
+  ImGui::SameLine(0, 4);
+  ImGui::SetNextItemWidth(110);
+  int number = static_cast<int>(shown);
+  if (ImGui::Combo("##shown", &number, k_shown_names.data(), static_cast<int>(k_shown_names.size()))) {
+    state.shown = static_cast<Shown>(number);
+    state.drawn = Drawn::particles;
+  }
+  help_of("what particles are coloured by");
+  if (state.drawn != drawn || state.shown != shown)
+    send([now = state.drawn, what = state.shown](Session& session) { session.show(now, what); });
+}
+
+void draw_rewind(const Frame& frame, ViewState& state, float width) {
+  const FrameStats& stats = frame.stats;
+  ImGui::SetNextItemWidth(width);
+  double time = stats.time;
+  const double low = stats.oldest, high = std::max(stats.newest, stats.time);
+  if (ImGui::SliderScalar("##time", ImGuiDataType_Double, &time, &low, &high, "%.3f s")) state.go_to = time;
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("%zu saved states, %.0f MB: drag to go back; what follows is the same to the last bit",
+                      stats.moments, static_cast<double>(stats.moment_bytes) / 1e6);
+}
+
+}  // namespace
+
+void draw_time_bar(const Frame& frame, ViewState& state, bool recording, const Send& send) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(0, size.y - k_time_height));
+  ImGui::SetNextWindowSize(ImVec2(size.x, k_time_height));
+  ImGui::Begin(
+      "time", nullptr,
+      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings);
+  if (toggle(frame.paused ? "Play" : "Pause", !frame.paused)) state.pause = true;
+  help_of("Space");
+  ImGui::SameLine(0, 4);
+  state.step |= ImGui::Button("Step");
+  help_of(". (period): one step");
+  ImGui::SameLine(0, 4);
+  state.back |= ImGui::Button("Back");
+  help_of("Backspace: to the saved state before this one");
+  ImGui::SameLine(0, 4);
+  state.reset |= ImGui::Button("Reset");
+  help_of("R: to the start, with the settings as they are now");
+  ImGui::SameLine();
+  draw_rewind(frame, state, std::max(120.0f, size.x - 620));
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(110);
+  float speed = static_cast<float>(state.speed);
+  bool changed = ImGui::SliderFloat("##speed", &speed, 0.05f, 4, "speed %.2f", ImGuiSliderFlags_Logarithmic);
+  help_of("[ and ]: slow motion; 1 is the pace of a film");
+  state.speed = static_cast<double>(speed);
+  ImGui::SameLine();
+  changed |= ImGui::Checkbox("as fast as it goes", &state.as_fast_as_possible);
+  if (changed)
+    send([now = state.as_fast_as_possible ? std::numeric_limits<double>::infinity()
+                                          : state.speed](Session& session) { session.set_speed(now); });
+  draw_tools(state);
+  ImGui::SameLine(0, 24);
+  draw_shown(state, send);
+  ImGui::SameLine(0, 24);
+  if (toggle(recording ? "Stop film" : "Film", recording)) state.film = true;
+  help_of("F: record a film, every frame of the scene once");
+  ImGui::SameLine(0, 4);
+  state.save |= ImGui::Button("Save");
+  help_of("S: the scene as it stands, in a folder that mallow run --resume goes on from");
+  ImGui::SameLine(0, 4);
+  state.copy |= ImGui::Button("Copy command");
+  help_of("C: the command line that repeats this scene with these settings");
+  ImGui::SameLine(0, 4);
+  if (ImGui::Button("?")) state.help = !state.help;
+  ImGui::End();
+}
+
+}  // namespace mallow::view

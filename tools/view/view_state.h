@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "view/frame.h"
+#include "view/frame_governor.h"
+
+namespace mallow::view {
+
+/// What the left button does.
+enum class Tool : std::uint8_t { grab, throw_ball, poke, cut, heat, pin };
+inline constexpr std::array<const char*, 6> k_tool_names = {"grab", "throw", "poke", "cut", "heat", "pin"};
+inline constexpr std::array<const char*, 6> k_tool_docs = {
+    "take hold of matter and pull it",
+    "throw a ball of rubber from where you are",
+    "hit what is under the mouse",
+    "draw a line: a layer two spacings thick is cut out along it",
+    "warm what is under the mouse: it melts where it carries no heat",
+    "hold what is under the mouse in place"};
+
+/// What panels and hand have set, and what they ask the viewer for.
+struct ViewState {
+  Drawn drawn = Drawn::surface;
+  Shown shown = Shown::appearance;
+  Tool tool = Tool::grab;
+  float strength = 1;  ///< of what tools do
+  double speed = 1;    ///< of the pace of a film
+  bool as_fast_as_possible = false;
+  bool panels = true, help = false;
+  int rung = k_as_written;
+  bool keeps_rate = false;  ///< the governor holds target
+  float target = 30;        ///< frames a second
+  std::string notice;       ///< a line at the bottom, for some seconds
+  double notice_until = 0;  ///< [s] of wall time
+
+  // Asked for in this picture; the viewer clears them.
+  bool pause = false, step = false, reset = false, back = false, film = false, save = false, copy = false,
+       rebuild = false, gallery = false, camera = false, release_pins = false;
+  std::optional<double> go_to;  ///< [s]
+};
+
+}  // namespace mallow::view

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "view/camera.h"
+#include "view/film_recorder.h"
+#include "view/gallery.h"
+#include "view/mouse.h"
+#include "view/offscreen_picture.h"
+#include "view/panels.h"
+#include "view/scene_drawer.h"
+#include "view/settings_model.h"
+#include "view/stepping_thread.h"
+#include "view/window.h"
+
+namespace mallow::view {
+
+struct ViewerOptions {
+  std::filesystem::path scene;   ///< a scene file, or the folder of a run; empty: the gallery
+  std::filesystem::path scenes;  ///< folder of the gallery
+  std::vector<std::string> overrides;
+  int threads = 1;
+  int samples = 0;  ///< a pixel; 0: 4, or 1 where the driver draws in software
+  Window::Options window;
+  bool paused = false;
+};
+
+/// The window's side: takes frames of the stepping thread, draws them and the panels, and turns what the hand
+/// does into commands.
+class Viewer {
+ public:
+  explicit Viewer(const ViewerOptions& options);
+
+  bool is_open() const { return !window_.should_close(); }
+  /// Takes events and draws a picture where something has changed. may_wait: until then.
+  void draw_next(bool may_wait);
+
+  void open(const std::filesystem::path& scene);
+  Window& window() { return window_; }
+  const Frame& frame() { return stepping_->frame(); }
+  OrbitCamera& camera() { return camera_; }
+  ViewState& state() { return state_; }
+  SettingsModel* settings() { return settings_.get(); }
+  Gallery& gallery();
+  bool shows_gallery() const { return !settings_; }
+  void send(std::function<void(Session&)> command) { stepping_->send(std::move(command)); }
+  /// The part of the window that shows the scene, in pixels from its upper left corner.
+  struct Area {
+    int left, top, width, height;
+  };
+  Area area() const;
+  /// Frames that were taken from the stepping thread, and pictures that were drawn.
+  std::uint64_t frames_taken() const { return frames_taken_; }
+  std::uint64_t pictures() const { return pictures_; }
+  /// Of the scene alone, without panels.
+  render::Image scene_picture() { return picture_.read(); }
+  /// Draws the scene again and again, and gives wall and processor time of one picture [s].
+  std::array<double, 2> measure_drawing(int pictures);
+  std::size_t triangles() const { return drawer_.triangles(); }
+
+ private:
+  WindowEvents events();
+  void on_key(int key, bool shift, bool repeated);
+  bool take_frame();
+  void draw_scene();
+  void show_picture();
+  void draw_gui();
+  void draw_marks();
+  void do_what_was_asked();
+  void toggle_film();
+  void notice(const std::string& text);
+  void show_gallery();
+  Vec3 on_screen(const Vec3& x) const;
+  void tell_mouse(float x, float y);
+
+  ViewerOptions options_;
+  Window window_;
+  SceneDrawer drawer_;
+  OffscreenPicture picture_;
+  OrbitCamera camera_;
+  Mouse mouse_;
+  ViewState state_;
+  std::unique_ptr<Gallery> gallery_;
+  std::unique_ptr<SettingsModel> settings_;
+  std::optional<FilmRecorder> film_;
+  Rate drawn_;
+  int scene_ = -1;         ///< that is drawn, see Frame
+  bool is_run_ = false;    ///< the scene is the folder of a run
+  bool stale_ = true;      ///< the picture of the scene is
+  int busy_pictures_ = 0;  ///< that are drawn after the last event, so that panels settle
+  double last_picture_ = 0;
+  std::uint64_t frames_taken_ = 0, pictures_ = 0;
+  std::unique_ptr<SteppingThread> stepping_;  // last: its thread wakes the window
+};
+
+}  // namespace mallow::view
