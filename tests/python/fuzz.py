@@ -6,10 +6,12 @@ fuzz.last. Threads use the same objects at the same time.
 import faulthandler
 import os
 import random
+import resource
 import sys
 import tempfile
 import threading
 import time
+import warnings
 
 import mallow
 import numpy
@@ -118,6 +120,8 @@ class Fuzzer:
                 else:
                     setattr(value, name, self.value())
                 repr(value)
+            elif name == "advance":  # as long as one asks for
+                value.advance(self.random.uniform(0, 2))
             elif name != "_fields":
                 self.call(getattr(value, name), f"{type(value).__name__}.{name}")
         except ALLOWED:
@@ -128,7 +132,11 @@ class Fuzzer:
         stop = time.monotonic() + seconds
         background = threading.Thread(target=self.disturb, args=(stop,))
         background.start()
+        watched = 0
         while time.monotonic() < stop:
+            if self.calls >= watched:
+                faulthandler.dump_traceback_later(60, exit=True)
+                watched = self.calls + 200
             pick = self.random.random()
             if pick < 0.2:
                 function = self.random.choice(self.functions)
@@ -146,6 +154,7 @@ class Fuzzer:
             if self.random.random() < 0.0005:
                 self.fill()
         background.join()
+        faulthandler.cancel_dump_traceback_later()
 
     def matching(self):
         """A class with keywords that it has: more of these calls come through."""
@@ -172,6 +181,8 @@ def main():
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 10
     seed = int(sys.argv[2]) if len(sys.argv) > 2 else 1
     faulthandler.enable()
+    warnings.simplefilter("ignore")
+    resource.setrlimit(resource.RLIMIT_AS, (12 << 30, 12 << 30))  # what asks for more gets MemoryError
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder if len(sys.argv) < 4 else sys.argv[3])
         fuzzer = Fuzzer(seed)

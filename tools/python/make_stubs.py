@@ -59,7 +59,9 @@ def argument(text):
 def indented(text, depth):
     pad = "    " * depth
     body = text.replace("\\", "\\\\").replace('"""', "'''").strip()
-    return f'{pad}"""' + body.replace("\n", "\n" + pad).rstrip() + '"""\n'
+    if body.endswith('"'):
+        body += " "
+    return f'{pad}"""' + body.replace("\n", "\n" + pad) + '"""\n'
 
 
 def function(name, value, depth, is_static=False):

@@ -7,13 +7,6 @@ import mallow
 SCENE = """
 [solver]
 gravity = [0, 0, -9.81]
-[[material]]
-name = "jelly"
-preset = "jelly"
-color = [0.8, 0.1, 0.1]
-[[material]]
-name = "dough"
-preset = "dough"
 [[body]]
 material = "jelly"
 box = { count = [8, 8, 8], spacing = 0.02, corner = [-0.08, -0.08, 0.3] }

@@ -1,34 +1,41 @@
-"""A bunny of chocolate, or a head where the bunny's mesh is not there, stands on a hot plate and melts from below.
-heat_bunny.py [PNG] [MESH]"""
+"""A bunny of chocolate, or a head where the bunny's mesh is not there, stands on a hot plate, melts from below, and sets
+again when the plate turns cold. heat_bunny.py [PNG]"""
 import sys
 from pathlib import Path
 
 import mallow
 
 picture = sys.argv[1] if len(sys.argv) > 1 else "bunny.png"
-mesh = Path(sys.argv[2]) if len(sys.argv) > 2 else Path("data/meshes/bunny.ply")
-shape = mallow.mesh_shape(mallow.read_mesh(mesh)) if mesh.exists() else mallow.moai_shape()
-rotate = [90, 0, 0] if mesh.exists() else [0, 0, 0]
-body = mallow.sample(mallow.place(shape, mallow.Placement(rotate=rotate, size=0.1, center=[0, 0, 0.055])),
-                     mallow.Sampling(count=3000))
+scenes = Path(__file__).resolve().parents[3] / "data" / "scenes"
+scene = mallow.read_scene(scenes / "chocolate_bunny.toml", ["solver.support_radius=0.0126"])
+source = scene.bodies[0].source
+sampling = source.sampling.replace(spacing=0.006)
+if (scenes / source.file).exists():
+    scene.bodies[0].source = source.replace(sampling=sampling)
+else:
+    scene.bodies[0].source = mallow.ImplicitSource("moai", sampling, source.placement.replace(rotate=[0, 0, 0]))
+simulation = mallow.build(scene)
+bunny, plate = simulation.bodies()[0], simulation.collider_ids()[0]
+print(f"{simulation.particle_count} particles")
 
-chocolate = mallow.find_preset("chocolate")
-material = chocolate.material
-print("chocolate:", material)
-material.temperature = 290
-material.conductivity = 20  # a hundred times as fast as chocolate, so that a second shows it
-simulation = mallow.Simulation(mallow.SolverConfig(gravity=[0, 0, -9.81]))
-simulation.add_collider(mallow.Collider(friction=0.5, temperature=360))
-bunny = simulation.add_body(body, material, "bunny")
-top = simulation.positions[:, 2].max()
-simulation.advance(2)
-height, kelvins = simulation.positions[:, 2], simulation.temperatures
-low, high = kelvins[height < 0.02].mean(), kelvins[height > 0.06].mean()
-print(f"{simulation.heat(bunny):.0f} J; near the plate {low:.0f} K, far from it {high:.0f} K")
-assert low > high + 5 and high < 320, "it is hot where it touches the plate"
+
+def tell():
+    kelvins, height = simulation.temperatures, simulation.positions[:, 2]
+    solidus = scene.materials[0].material.solidus
+    print(f"{simulation.time:.0f} s: {simulation.heat(bunny):6.0f} J, from {kelvins.min():.0f} to {kelvins.max():.0f} K, "
+          f"{100 * (kelvins > solidus).mean():.0f} % above the solidus, {1000 * height.max():.0f} mm high")
+    return kelvins.copy(), height.copy()
+
+
+_, first = tell()
+simulation.set_temperature(plate, 370)
+simulation.advance(3)
+kelvins, height = tell()
+assert kelvins[height < 0.01].mean() > kelvins[height > 0.04].mean() + 5, "it is hot where it touches the plate"
 
 if hasattr(mallow, "Renderer"):
-    surface = mallow.Surfacer().draw(simulation)
-    camera = mallow.frame_camera(mallow.bounds(surface))
-    renderer = mallow.Renderer(mallow.RenderConfig(width=480, height=360))
-    mallow.write_png(picture, renderer.render(surface, [chocolate.appearance], [], camera))
+    scene.render.width, scene.render.height = 480, 300
+    mallow.render(scene, simulation, file=picture)
+simulation.set_temperature(plate, 270)
+simulation.advance(1)
+assert tell()[0].max() < kelvins.max(), "it cools"

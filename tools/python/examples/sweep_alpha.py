@@ -16,7 +16,7 @@ def drop(alpha):
     simulation = mallow.Simulation(mallow.SolverConfig(time_step=0.15))
     simulation.add_collider(mallow.Collider(friction=0.3))
     cube = mallow.sample(mallow.Lattice(count=[10, 10, 10], spacing=1, corner=[-5, -5, 5]))
-    simulation.add_body(cube, mallow.Material(alpha=alpha))
+    simulation.add_body(cube, mallow.Material(alpha=alpha, update_threshold=3, viscosity=0.5))
     simulation.advance(40)
     low, high = numpy.quantile(simulation.positions, [0.02, 0.98], axis=0)
     return max(high[:2] - low[:2]), high[2]
