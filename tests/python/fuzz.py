@@ -6,6 +6,7 @@ fuzz.last. Threads use the same objects at the same time.
 import faulthandler
 import os
 import random
+import re
 import resource
 import sys
 import tempfile
@@ -76,12 +77,54 @@ class Fuzzer:
             mallow, int, lambda *arguments: None, lambda *arguments: 1.0, self.fail, [self.number(), self.number()],
             os.path.join(self.folder, "file"), "/nowhere/file.ply", self.random.choice(self.classes)])
 
+    def of_type(self, kind):
+        """A value of the type that a signature names, most times."""
+        kind = re.sub(r"^(Optional\[|Union\[)|\]$", "", kind.replace("mallow._mallow.", "").replace("mallow.", ""))
+        kind = self.random.choice(kind.split(", ")) if not kind.startswith(("Callable", "List")) else kind
+        if kind == "float":
+            return self.random.choice([0.1, 0.5, 1.0, 2.0, self.random.uniform(0, 3), self.number()])
+        if kind == "int":
+            return self.random.choice([0, 1, 2, 8, self.number()])
+        if kind == "bool":
+            return self.random.random() < 0.5
+        if kind == "Vector":
+            return [self.random.uniform(-6, 12) for _ in range(3)]
+        if kind == "numpy.ndarray":
+            simulations = [value for value in self.pool if isinstance(value, mallow.Simulation)]
+            try:
+                picked = self.random.choice(simulations)
+                return self.random.choice([picked.ids[::3], picked.ids[:1], picked.positions, picked.ids, self.array()])
+            except (IndexError, mallow.Error):
+                return self.array()
+        if kind.startswith("Callable"):
+            return self.random.choice([self.fail, lambda *arguments: None, lambda *arguments: self.random.uniform(-1, 1)])
+        if kind.startswith("List["):
+            return [self.of_type(kind[5:]) for _ in range(self.random.randint(0, 3))]
+        if kind in ("str", "os.PathLike"):
+            return self.random.choice(["cube", "jelly", os.path.join(self.folder, "file"), "file.ply"])
+        found = [value for value in self.pool if type(value).__name__ == kind]
+        made = getattr(mallow, kind, None)
+        try:
+            return self.random.choice(found) if found and self.random.random() < 0.8 else made()
+        except ALLOWED:
+            return self.value()
+
+    def fitting(self, function):
+        """Arguments as one of the signatures has them, most of them."""
+        signatures = re.findall(r"^(?:\d+\. )?\w+\((.*)\) -> ", getattr(function, "__doc__", None) or "", re.M)
+        signatures = [text for text in signatures if not text.startswith("*args")]
+        if not signatures or self.random.random() < 0.2:
+            return [self.value() for _ in range(self.random.choice([0, 1, 1, 2, 2, 3, 4]))]
+        parts = [part for part in re.split(r", (?=\w+: )", self.random.choice(signatures)) if ": " in part]
+        kinds = [part.split(": ", 1)[1].split(" = ")[0] for part in parts if not part.startswith("self: ")]
+        return [self.of_type(kind) if self.random.random() < 0.9 else self.value() for kind in kinds]
+
     @staticmethod
     def fail(*arguments):
         raise ValueError("on purpose")
 
     def call(self, function, name):
-        arguments = [self.value() for _ in range(self.random.choice([0, 1, 1, 2, 2, 3, 4]))]
+        arguments = self.fitting(function)
         self.log.seek(0)
         self.log.truncate()
         self.log.write(f"{name} {[repr(argument)[:200] for argument in arguments]}\n")

@@ -21,8 +21,8 @@
 #include "mallow/simulation.h"
 #include "mallow/vec3.h"
 
-/// Arrays of NumPy: what goes in is checked and copied, what comes out is a copy, or a view that keeps what it
-/// shows.
+/// Arrays of NumPy: what goes in is checked and copied, what comes out is a copy, or a view that keeps what
+/// it shows.
 namespace mallow::python {
 namespace py = pybind11;
 
@@ -56,8 +56,9 @@ py::array column_view(const VectorColumns<Scalar>& columns) {
   if (columns.size() == 0) return sealed(py::array_t<float>(std::vector<py::ssize_t>{0, 3}));
   const float* const x = columns.x().data();
   const py::ssize_t stride = columns.y().data() - x;
-  py::array array = view_of(x, {static_cast<py::ssize_t>(columns.size()), 3},
-                            {sizeof(float), stride * static_cast<py::ssize_t>(sizeof(float))}, keep_column(x));
+  py::array array =
+      view_of(x, {static_cast<py::ssize_t>(columns.size()), 3},
+              {sizeof(float), stride * static_cast<py::ssize_t>(sizeof(float))}, keep_column(x));
   return std::is_const_v<Scalar> ? sealed(array) : array;
 }
 
@@ -84,7 +85,8 @@ std::optional<py::array> numbers_of(py::handle source) {
   }
   const char kind = array.dtype().kind();
   const bool is_whole = kind == 'i' || kind == 'u';
-  const bool fits = std::is_floating_point_v<Scalar> ? is_whole || kind == 'f' : is_whole || array.size() == 0;
+  const bool fits =
+      std::is_floating_point_v<Scalar> ? is_whole || kind == 'f' : is_whole || array.size() == 0;
   if (!fits) {
     if (is_array) refuse_type(array, std::is_floating_point_v<Scalar> ? "real numbers" : "whole numbers");
     return {};
@@ -94,8 +96,8 @@ std::optional<py::array> numbers_of(py::handle source) {
       const auto least = array.attr("min")(), most = array.attr("max")();
       if (least.attr("__lt__")(0).template cast<bool>() ||
           most.attr("__gt__")(std::numeric_limits<Scalar>::max()).template cast<bool>())
-        throw py::value_error("whole numbers from 0 to " + std::to_string(std::numeric_limits<Scalar>::max()) +
-                              " are allowed here");
+        throw py::value_error("whole numbers from 0 to " +
+                              std::to_string(std::numeric_limits<Scalar>::max()) + " are allowed here");
     }
   return array;
 }

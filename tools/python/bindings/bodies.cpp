@@ -61,9 +61,7 @@ void bind_implicit_shapes(py::module_& module) {
   module.def("implicit_shape", &implicit_shape, py::arg("name"), doc("implicit_shape"));
   module.def(
       "implicit_shape_names",
-      [] {
-        return std::vector<std::string>(implicit_shape_names().begin(), implicit_shape_names().end());
-      },
+      [] { return std::vector<std::string>(implicit_shape_names().begin(), implicit_shape_names().end()); },
       doc("implicit_shape_names"));
   module.def("place", py::overload_cast<const ImplicitShape&, const Placement&>(&place), py::arg("shape"),
              py::arg("placement"), doc("place"));

@@ -89,10 +89,11 @@ void bind_errors(py::module_& module) {
                               py::make_tuple(all.error, builtin(PyExc_ValueError)));
   all.io = make_exception(module, "IoError", doc("IoError"), all.error);
   all.step = make_exception(module, "StepError", doc("StepError"), all.error);
-  all.busy = make_exception(module, "BusyError",
-                            "An object is in use by another thread, or by the call that a callback came from: one "
-                            "thread may use an object at a time. The other thread is not disturbed.",
-                            all.error);
+  all.busy =
+      make_exception(module, "BusyError",
+                     "An object is in use by another thread, or by the call that a callback came from: one "
+                     "thread may use an object at a time. The other thread is not disturbed.",
+                     all.error);
   for (const py::object& type : {all.config, all.io}) {
     type.attr("problems") = py::tuple();
     tell(type, Problem{});

@@ -86,9 +86,8 @@ void bind_particles(py::module_& module) {
   module.def(
       "points_vdb",
       [](const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities,
-         const std::vector<std::uint32_t>& bodies, float voxel_size, int threads) {
-        return py::bytes(points_vdb(positions, velocities, bodies, voxel_size, threads));
-      },
+         const std::vector<std::uint32_t>& bodies, float voxel_size,
+         int threads) { return py::bytes(points_vdb(positions, velocities, bodies, voxel_size, threads)); },
       py::arg("positions"), py::arg("velocities"), py::arg("bodies"), py::arg("voxel_size"),
       py::arg("threads") = 0, doc("points_vdb"));
 }
@@ -106,12 +105,12 @@ void bind_mesh_files(py::module_& module) {
       py::arg("file"), py::kw_only(), py::arg("origin"), doc("read_mesh#2"));
   module.def(
       "write_mesh_ply",
-      [](const Path& file, const MeshObject& mesh) { write_mesh_ply(file, mesh.checked()); },
-      py::arg("file"), py::arg("mesh"), doc("write_mesh_ply"));
+      [](const Path& file, const MeshObject& mesh) { write_mesh_ply(file, mesh.checked()); }, py::arg("file"),
+      py::arg("mesh"), doc("write_mesh_ply"));
   module.def(
       "write_mesh_vtp",
-      [](const Path& file, const MeshObject& mesh) { write_mesh_vtp(file, mesh.checked()); },
-      py::arg("file"), py::arg("mesh"), doc("write_mesh_vtp"));
+      [](const Path& file, const MeshObject& mesh) { write_mesh_vtp(file, mesh.checked()); }, py::arg("file"),
+      py::arg("mesh"), doc("write_mesh_vtp"));
   module.def(
       "write_mesh_obj",
       [](const Path& file, const MeshObject& mesh, UpAxis up, const Bodies& bodies,
@@ -122,8 +121,8 @@ void bind_mesh_files(py::module_& module) {
       py::arg("file"), py::arg("mesh"), py::arg("up") = UpAxis::z, py::arg("bodies") = Bodies{},
       py::arg("material_library") = "", doc("write_mesh_obj"));
   module.def(
-      "write_mtl", [](const Path& file, const Bodies& bodies) { write_mtl(file, bodies); },
-      py::arg("file"), py::arg("bodies"), doc("write_mtl"));
+      "write_mtl", [](const Path& file, const Bodies& bodies) { write_mtl(file, bodies); }, py::arg("file"),
+      py::arg("bodies"), doc("write_mtl"));
   module.def(
       "write_mesh_glb",
       [](const Path& file, const MeshObject& mesh, const Bodies& bodies) {
@@ -132,8 +131,9 @@ void bind_mesh_files(py::module_& module) {
       py::arg("file"), py::arg("mesh"), py::arg("bodies"), doc("write_mesh_glb"));
   module.def(
       "write_animation_glb",
-      [](const Path& file, const MeshObject& mesh, const std::vector<MeshPose>& poses,
-         const Bodies& bodies) { write_animation_glb(file, mesh.checked(), poses, bodies); },
+      [](const Path& file, const MeshObject& mesh, const std::vector<MeshPose>& poses, const Bodies& bodies) {
+        write_animation_glb(file, mesh.checked(), poses, bodies);
+      },
       py::arg("file"), py::arg("mesh"), py::arg("poses"), py::arg("bodies"), doc("write_animation_glb"));
 }
 
@@ -153,12 +153,10 @@ void bind_series(py::module_& module) {
       "write_mesh_usda",
       [](const Path& file, const MeshObject& mesh, const Bodies& bodies, const UsdOptions& options,
          std::optional<int> frame) { write_mesh_usda(file, mesh.checked(), bodies, options, frame); },
-      py::arg("file"), py::arg("mesh"), py::arg("bodies"),
-      py::arg_v("options", UsdOptions{}, "UsdOptions()"), py::arg("frame") = std::nullopt,
-      doc("write_mesh_usda"));
+      py::arg("file"), py::arg("mesh"), py::arg("bodies"), py::arg_v("options", UsdOptions{}, "UsdOptions()"),
+      py::arg("frame") = std::nullopt, doc("write_mesh_usda"));
   module.def(
-      "write_pvd",
-      [](const Path& file, const std::vector<TimedFile>& frames) { write_pvd(file, frames); },
+      "write_pvd", [](const Path& file, const std::vector<TimedFile>& frames) { write_pvd(file, frames); },
       py::arg("file"), py::arg("frames"), doc("write_pvd"));
   module.def("usda_manifest", &usda_manifest, py::arg("series"), doc("usda_manifest"));
   module.def(

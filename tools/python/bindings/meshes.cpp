@@ -16,7 +16,8 @@ Mesh MeshObject::checked() const {
                                                 std::to_string(count));
   const auto require = [&](const char* name, std::size_t size) {
     if (size != 0 && size != count)
-      throw ConfigError(std::string("mesh.") + name, std::to_string(size) + " are not allowed: none, or one for each of " +
+      throw ConfigError(std::string("mesh.") + name, std::to_string(size) +
+                                                         " are not allowed: none, or one for each of " +
                                                          std::to_string(count) + " vertices");
   };
   require("normals", m.normals.size());
@@ -42,8 +43,8 @@ py::array shown(const MeshObject& mesh, const std::vector<T> Mesh::*column, py::
 }
 
 template <class Scalar, class T>
-void column(py::class_<MeshObject>& mesh, const char* name, std::vector<T> Mesh::*member,
-            py::ssize_t columns, const char* text) {
+void column(py::class_<MeshObject>& mesh, const char* name, std::vector<T> Mesh::*member, py::ssize_t columns,
+            const char* text) {
   mesh.def_property(
       name, [member, columns](const MeshObject& self) { return shown<Scalar, T>(self, member, columns); },
       [member](MeshObject& self, std::vector<T> values) { self.set(member, std::move(values)); }, text);
@@ -76,8 +77,7 @@ void bind_mesh(py::module_& module) {
 void bind_meshes(py::module_& module) {
   bind_mesh(module);
   module.def(
-      "bounds", [](const MeshObject& mesh) { return bounds(mesh.mesh()); }, py::arg("mesh"),
-      doc("bounds#9"));
+      "bounds", [](const MeshObject& mesh) { return bounds(mesh.mesh()); }, py::arg("mesh"), doc("bounds#9"));
   module.def(
       "place",
       [](const MeshObject& mesh, const Placement& placement, const std::optional<Aabb>& whole) {

@@ -8,8 +8,8 @@
 
 namespace mallow::python {
 
-/// The columns of a mesh: its own, or those that a Surfacer or Skin drew last, which `keeper` keeps until they
-/// are taken over. Arrays show them where they lie and keep the cell.
+/// The columns of a mesh: its own, or those that a Surfacer or Skin drew last, which `keeper` keeps until
+/// they are taken over. Arrays show them where they lie and keep the cell.
 struct MeshCell {
   Mesh own;
   const Mesh* seen = &own;

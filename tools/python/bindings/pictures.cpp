@@ -21,7 +21,8 @@ render::Image image_of(const py::array& array) {
   if (array.dtype().kind() != 'u' || array.itemsize() != 1) refuse_type(array, "bytes");
   if (array.ndim() != 3 || array.shape(2) != 3) refuse_shape(array, "height x width x 3");
   const auto plain = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>::ensure(array);
-  return {static_cast<int>(plain.shape(1)), static_cast<int>(plain.shape(0)),
+  return {static_cast<int>(plain.shape(1)),
+          static_cast<int>(plain.shape(0)),
           {plain.data(), plain.data() + plain.size()}};
 }
 
@@ -74,7 +75,8 @@ void bind_renderer(py::module_& module) {
              const std::vector<std::uint32_t> bodies, const Palette palette, const Colliders colliders,
              const render::Camera camera) {
             if (!bodies.empty() && bodies.size() != positions.size())
-              throw ConfigError("bodies", std::to_string(bodies.size()) + " are not allowed: none, or one for each of " +
+              throw ConfigError("bodies", std::to_string(bodies.size()) +
+                                              " are not allowed: none, or one for each of " +
                                               std::to_string(positions.size()) + " positions");
             if (!(radius > 0)) throw ConfigError("radius", "must be a number > 0");
             return self.draw([&](render::Renderer& renderer) {
@@ -109,14 +111,14 @@ void bind_pictures(py::module_& module) {
       },
       py::arg("file"), py::arg("image"), doc("render.write_png"));
   module.def(
-      "body_appearances",
-      [](const py::object& scene) { return program::body_appearances(scene_of(scene)); }, py::arg("scene"),
+      "body_appearances", [](const py::object& scene) { return program::body_appearances(scene_of(scene)); },
+      py::arg("scene"),
       "The appearance of each body of a scene: that of its material, with a colour of a palette where that "
       "names none.");
   module.def(
       "visible_colliders",
-      [](const py::object& scene) { return program::visible_colliders(scene_of(scene)); },
-      py::arg("scene"), "The colliders of a scene that are seen.");
+      [](const py::object& scene) { return program::visible_colliders(scene_of(scene)); }, py::arg("scene"),
+      "The colliders of a scene that are seen.");
   module.def(
       "view_bounds",
       [](const py::object& scene, SimulationCell& cell) {
@@ -124,7 +126,8 @@ void bind_pictures(py::module_& module) {
         return program::view_bounds(scene_of(scene), snapshot(cell.simulation));
       },
       py::arg("scene"), py::arg("simulation"),
-      "What a camera has to have in view through a whole film, as far as the simulation's first frame and the "
+      "What a camera has to have in view through a whole film, as far as the simulation's first frame and "
+      "the "
       "scene tell.");
 }
 

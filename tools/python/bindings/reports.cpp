@@ -188,8 +188,10 @@ void bind_queries(py::module_& module) {
       .field("end", &Simulation::Rows::end)
       .done()
       .def(
-          "slice", [](const Simulation::Rows& rows) { return py::slice(
-              static_cast<py::ssize_t>(rows.begin), static_cast<py::ssize_t>(rows.end), 1); },
+          "slice",
+          [](const Simulation::Rows& rows) {
+            return py::slice(static_cast<py::ssize_t>(rows.begin), static_cast<py::ssize_t>(rows.end), 1);
+          },
           "For arrays: simulation.positions[simulation.rows(body).slice()].");
 }
 

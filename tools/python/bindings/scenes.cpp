@@ -133,7 +133,8 @@ void bind_elements(py::module_& module) {
       .field("material", &SceneBody::material, "", "a name")
       .field("group", &SceneBody::group, "", "a name")
       .field("merges", &SceneBody::merges)
-      .field("source", &SceneBody::source, "", "a Lattice, SphereSource, MeshSource, PointsSource or ImplicitSource")
+      .field("source", &SceneBody::source, "",
+             "a Lattice, SphereSource, MeshSource, PointsSource or ImplicitSource")
       .field("velocity", &SceneBody::velocity)
       .field("paint", &SceneBody::paint, "", "a list of ScenePaint")
       .field("skin", &SceneBody::skin, "", "a path")
@@ -180,7 +181,7 @@ void bind_scene(py::module_& module) {
   py::class_<SceneObject> scene(module, "Scene", doc("Scene"));
   const auto part = [&](const char* name, auto member) {
     scene.def_property(
-        name, [member](SceneObject& self) -> auto& { return self.rest.*member; },
+        name, [member](SceneObject & self) -> auto& { return self.rest.*member; },
         [member](SceneObject& self, const std::decay_t<decltype(self.rest.*member)>& value) {
           self.rest.*member = value;
         },
@@ -197,7 +198,8 @@ void bind_scene(py::module_& module) {
         auto made = std::make_unique<SceneObject>(Scene{});
         const py::object seen = py::cast(made.get(), py::return_value_policy::reference);
         for (const auto& [name, value] : parts) {
-          if (!py::hasattr(seen, name)) throw py::type_error("Scene has no field " + name.cast<std::string>());
+          if (!py::hasattr(seen, name))
+            throw py::type_error("Scene has no field " + name.cast<std::string>());
           seen.attr(name) = value;
         }
         return made;
@@ -231,14 +233,13 @@ void bind_reading(py::module_& module) {
       "parse_scene",
       [](const std::string& text, const std::filesystem::path& file,
          const std::vector<std::string>& overrides, bool allow_outside_paths) {
-        return SceneObject(
-            parse_scene(text, file, overrides, {.allow_outside_paths = allow_outside_paths}));
+        return SceneObject(parse_scene(text, file, overrides, {.allow_outside_paths = allow_outside_paths}));
       },
       py::arg("text"), py::arg("file") = "scene.toml", py::arg("overrides") = std::vector<std::string>{},
       py::arg("allow_outside_paths") = false, doc("parse_scene"));
   module.def(
-      "print_scene", [](const SceneObject& scene) { return print_scene(scene.scene()); },
-      py::arg("scene"), doc("print_scene"));
+      "print_scene", [](const SceneObject& scene) { return print_scene(scene.scene()); }, py::arg("scene"),
+      doc("print_scene"));
   module.def("describe_scene_keys", &describe_scene_keys, doc("describe_scene_keys"));
   module.def(
       "named_files",

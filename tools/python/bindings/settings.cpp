@@ -17,10 +17,9 @@ void bind_choices(py::module_& module) {
   choice<BodyContact>(module, "BodyContact",
                       {{"constraint", BodyContact::constraint}, {"pressure", BodyContact::pressure}});
   choice<Arithmetic>(module, "Arithmetic", {{"exact", Arithmetic::exact}, {"native", Arithmetic::native}});
-  choice<InstructionLevel>(module, "InstructionLevel",
-                           {{"baseline", InstructionLevel::baseline},
-                            {"v3", InstructionLevel::v3},
-                            {"v4", InstructionLevel::v4}});
+  choice<InstructionLevel>(
+      module, "InstructionLevel",
+      {{"baseline", InstructionLevel::baseline}, {"v3", InstructionLevel::v3}, {"v4", InstructionLevel::v4}});
   choice<Finish>(module, "Finish",
                  {{"jelly", Finish::jelly},
                   {"clay", Finish::clay},
@@ -31,10 +30,9 @@ void bind_choices(py::module_& module) {
                       {{"blended", SurfaceKind::blended},
                        {"anisotropic", SurfaceKind::anisotropic},
                        {"spheres", SurfaceKind::spheres}});
-  choice<Quality>(module, "Quality",
-                  {{"realtime", Quality::realtime},
-                   {"balanced", Quality::balanced},
-                   {"accurate", Quality::accurate}});
+  choice<Quality>(
+      module, "Quality",
+      {{"realtime", Quality::realtime}, {"balanced", Quality::balanced}, {"accurate", Quality::accurate}});
   choice<TimeStepSource>(module, "TimeStepSource",
                          {{"given", TimeStepSource::given},
                           {"gravity", TimeStepSource::gravity},
@@ -42,10 +40,7 @@ void bind_choices(py::module_& module) {
                           {"modulus", TimeStepSource::modulus}});
   module.def("best_instruction_level", &best_instruction_level, doc("best_instruction_level"));
   module.def(
-      "qualities",
-      [] {
-        return std::vector<Quality>(qualities().begin(), qualities().end());
-      },
+      "qualities", [] { return std::vector<Quality>(qualities().begin(), qualities().end()); },
       doc("qualities"));
   module.def(
       "name", [](InstructionLevel level) { return name(level); }, py::arg("value"), doc("name"));
@@ -116,8 +111,7 @@ void bind_configs(py::module_& module) {
              py::arg("factor"), doc("at_time_step"));
   module.def("with_quality", py::overload_cast<const SolverConfig&, Quality>(&with_quality),
              py::arg("config"), py::arg("quality"), doc("with_quality"));
-  module.def("with_quality",
-             py::overload_cast<const Material&, const SolverConfig&, Quality>(&with_quality),
+  module.def("with_quality", py::overload_cast<const Material&, const SolverConfig&, Quality>(&with_quality),
              py::arg("material"), py::arg("config"), py::arg("quality"), doc("with_quality#2"));
   module.def("with_quality", py::overload_cast<const SurfaceConfig&, Quality>(&with_quality),
              py::arg("config"), py::arg("quality"), doc("with_quality#3"));
@@ -138,8 +132,8 @@ void bind_presets(py::module_& module) {
       .def("__repr__", [](const MaterialPreset& preset) {
         return std::string("MaterialPreset(") + preset.name + ": " + preset.about + ")";
       });
-  py::module_ materials = module.def_submodule(
-      "materials", "A material of every preset by its name, as in materials.jelly().");
+  py::module_ materials =
+      module.def_submodule("materials", "A material of every preset by its name, as in materials.jelly().");
   py::list presets;
   for (const MaterialPreset& preset : material_presets()) {
     presets.append(py::cast(&preset, py::return_value_policy::reference));

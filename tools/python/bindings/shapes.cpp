@@ -42,8 +42,7 @@ void bind_heavy_shapes(py::module_& module) {
   py::class_<ConvexHull>(module, "ConvexHull", doc("ConvexHull"))
       .def_readonly("inside", &ConvexHull::inside, doc("ConvexHull.inside"));
   module.def(
-      "convex_hull",
-      [](const std::vector<Vec3>& points, bool inside) { return convex_hull(points, inside); },
+      "convex_hull", [](const std::vector<Vec3>& points, bool inside) { return convex_hull(points, inside); },
       py::arg("points"), py::arg("inside") = false, doc("convex_hull"));
   Struct<DistanceGrid>(module, "DistanceGrid", Change::frozen)
       .field("origin", &DistanceGrid::origin)

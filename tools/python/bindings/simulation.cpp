@@ -115,17 +115,14 @@ void bind_steps(SimulationClass& simulation) {
           "restore",
           [](SavedState saved, int threads, std::shared_ptr<Executor> executor) {
             const py::gil_scoped_release release;
-            return std::make_shared<SimulationCell>(
-                Simulation::restore(saved, threads, std::move(executor)));
+            return std::make_shared<SimulationCell>(Simulation::restore(saved, threads, std::move(executor)));
           },
-          py::arg("saved"), py::arg("threads") = 0, py::arg("executor") = nullptr,
-          doc("Simulation.restore"));
+          py::arg("saved"), py::arg("threads") = 0, py::arg("executor") = nullptr, doc("Simulation.restore"));
 }
 
 void bind_simulation(py::module_& module) {
   bind_force_input(module);
-  SimulationClass simulation(module, "Simulation", doc("Simulation"),
-                             py::custom_type_setup(&collect_cycles));
+  SimulationClass simulation(module, "Simulation", doc("Simulation"), py::custom_type_setup(&collect_cycles));
   simulation.attr("Rows") = module.attr("Rows");
   py::delattr(module, "Rows");
   simulation

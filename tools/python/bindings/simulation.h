@@ -25,7 +25,8 @@ class Use {
     if (object.depth > 0 && object.by != here)
       throw BusyError(std::string(what) + " is in use by another thread: one may use it at a time");
     if (object.depth > 0 && !nested)
-      throw ConfigError(what, "is in the middle of a step: its force callback may read it, and change nothing");
+      throw ConfigError(what,
+                        "is in the middle of a step: its force callback may read it, and change nothing");
     ++object.depth;
     object.by = here;
   }

@@ -10,8 +10,7 @@ void bind_bodies(SimulationClass& simulation) {
   simulation
       .def("add_material", verb(&Simulation::add_material), py::arg("material"), py::arg("name") = "",
            doc("Simulation.add_material"))
-      .def("add_body",
-           verb(py::overload_cast<const Body&, MaterialId, std::string>(&Simulation::add_body)),
+      .def("add_body", verb(py::overload_cast<const Body&, MaterialId, std::string>(&Simulation::add_body)),
            py::arg("body"), py::arg("material"), py::arg("name") = "", doc("Simulation.add_body"))
       .def("add_body",
            verb(py::overload_cast<const Body&, const Material&, std::string>(&Simulation::add_body)),
@@ -43,8 +42,7 @@ void bind_surroundings(SimulationClass& simulation) {
       .def("remove_sink", verb(&Simulation::remove_sink), py::arg("sink"), doc("Simulation.remove_sink"))
       .def("pin", verb(py::overload_cast<const Aabb&, const Vec3&>(&Simulation::pin)), py::arg("region"),
            py::arg("velocity") = k_zero, doc("Simulation.pin"))
-      .def("pin",
-           verb(py::overload_cast<std::span<const ParticleId>, const Vec3&>(&Simulation::pin)),
+      .def("pin", verb(py::overload_cast<std::span<const ParticleId>, const Vec3&>(&Simulation::pin)),
            py::arg("ids"), py::arg("velocity") = k_zero, doc("Simulation.pin#2"))
       .def("unpin", verb(&Simulation::unpin), py::arg("pin"), doc("Simulation.unpin"))
       .def("move_pin", verb(&Simulation::move_pin), py::arg("pin"), py::arg("way"), py::arg("seconds"),
@@ -53,25 +51,21 @@ void bind_surroundings(SimulationClass& simulation) {
            py::arg("angular_velocity"), doc("Simulation.set_twist"))
       .def("set_pose", verb(&Simulation::set_pose), py::arg("collider"), py::arg("pose"),
            py::arg("seconds") = 0.0, doc("Simulation.set_pose"))
-      .def("set_gravity", verb(&Simulation::set_gravity), py::arg("gravity"),
-           doc("Simulation.set_gravity"));
+      .def("set_gravity", verb(&Simulation::set_gravity), py::arg("gravity"), doc("Simulation.set_gravity"));
 }
 
 void bind_matter(SimulationClass& simulation) {
   simulation
       .def("set_material", verb(&Simulation::set_material), py::arg("material"), py::arg("settings"),
            doc("Simulation.set_material"))
-      .def("set_alpha",
-           verb(py::overload_cast<MaterialId, const AlphaSchedule&>(&Simulation::set_alpha)),
+      .def("set_alpha", verb(py::overload_cast<MaterialId, const AlphaSchedule&>(&Simulation::set_alpha)),
            py::arg("material"), py::arg("alpha"), doc("Simulation.set_alpha"))
-      .def("set_alpha",
-           verb(py::overload_cast<std::span<const ParticleId>, float>(&Simulation::set_alpha)),
+      .def("set_alpha", verb(py::overload_cast<std::span<const ParticleId>, float>(&Simulation::set_alpha)),
            py::arg("ids"), py::arg("alpha"), doc("Simulation.set_alpha#2"))
       .def("set_stiffness", verb(&Simulation::set_stiffness), py::arg("ids"), py::arg("stiffness"),
            doc("Simulation.set_stiffness"))
       .def("set_temperature",
-           verb(py::overload_cast<ColliderId, const std::optional<Schedule>&>(
-               &Simulation::set_temperature)),
+           verb(py::overload_cast<ColliderId, const std::optional<Schedule>&>(&Simulation::set_temperature)),
            py::arg("collider"), py::arg("temperature"), doc("Simulation.set_temperature#2"))
       .def("set_temperature",
            verb(py::overload_cast<std::span<const ParticleId>, float>(&Simulation::set_temperature)),
@@ -80,8 +74,7 @@ void bind_matter(SimulationClass& simulation) {
 
 void bind_motion(SimulationClass& simulation) {
   simulation
-      .def("set_velocity",
-           verb(py::overload_cast<ColliderId, const Vec3&>(&Simulation::set_velocity)),
+      .def("set_velocity", verb(py::overload_cast<ColliderId, const Vec3&>(&Simulation::set_velocity)),
            py::arg("collider"), py::arg("velocity"), doc("Simulation.set_velocity"))
       .def("set_velocity", verb(py::overload_cast<PinId, const Vec3&>(&Simulation::set_velocity)),
            py::arg("pin"), py::arg("velocity"), doc("Simulation.set_velocity#2"))
@@ -96,11 +89,9 @@ void bind_motion(SimulationClass& simulation) {
            doc("Simulation.set_position"))
       .def("add_impulse", verb(py::overload_cast<BodyId, const Vec3&>(&Simulation::add_impulse)),
            py::arg("body"), py::arg("impulse"), doc("Simulation.add_impulse"))
-      .def("add_impulse",
-           verb(py::overload_cast<const Vec3&, float, const Vec3&>(&Simulation::add_impulse)),
+      .def("add_impulse", verb(py::overload_cast<const Vec3&, float, const Vec3&>(&Simulation::add_impulse)),
            py::arg("center"), py::arg("radius"), py::arg("impulse"), doc("Simulation.add_impulse#2"))
-      .def("enable", verb(&Simulation::enable), py::arg("body"), py::arg("enabled"),
-           doc("Simulation.enable"))
+      .def("enable", verb(&Simulation::enable), py::arg("body"), py::arg("enabled"), doc("Simulation.enable"))
       .def("wake", verb(&Simulation::wake), py::arg("body"), doc("Simulation.wake"))
       .def("set_user_data", verb(&Simulation::set_user_data), py::arg("body"), py::arg("data"),
            doc("Simulation.set_user_data"));
@@ -109,8 +100,7 @@ void bind_motion(SimulationClass& simulation) {
       .def("report_contacts",
            verb(py::overload_cast<BodyId, std::optional<double>>(&Simulation::report_contacts)),
            py::arg("body"), py::arg("hit_impulse") = k_never, doc("Simulation.report_contacts#2"))
-      .def("report_contacts",
-           verb(py::overload_cast<std::optional<double>>(&Simulation::report_contacts)),
+      .def("report_contacts", verb(py::overload_cast<std::optional<double>>(&Simulation::report_contacts)),
            py::arg("hit_impulse") = k_never, doc("Simulation.report_contacts"));
 }
 

@@ -76,9 +76,8 @@ void bind_of_particles(SimulationClass& simulation) {
           py::arg("body"), doc("Simulation.rotations"))
       .def("nearest_particle", query(&Simulation::nearest_particle), py::arg("point"),
            doc("Simulation.nearest_particle"))
-      .def("particles_in",
-           query(py::overload_cast<const Aabb&>(&Simulation::particles_in, py::const_)), py::arg("box"),
-           doc("Simulation.particles_in"))
+      .def("particles_in", query(py::overload_cast<const Aabb&>(&Simulation::particles_in, py::const_)),
+           py::arg("box"), doc("Simulation.particles_in"))
       .def("particles_in",
            query(py::overload_cast<const Vec3&, float>(&Simulation::particles_in, py::const_)),
            py::arg("center"), py::arg("radius"), doc("Simulation.particles_in#2"));

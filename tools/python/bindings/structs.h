@@ -58,7 +58,8 @@ class Struct {
     const std::string of = path_ + "." + name;
     const auto set = [=](T& self, py::handle value) { self.*member = convert<M>(value, of, wanted); };
     if (change_ == Change::live)
-      add(name, getter(member), [set](T& self, const py::object& value) { set(self, value); }, text);
+      add(
+          name, getter(member), [set](T& self, const py::object& value) { set(self, value); }, text);
     else
       add(name, getter(member), nullptr, text);
     settings().push_back({name, set});
@@ -187,8 +188,8 @@ class Struct {
 
 /// A choice of the library: "jelly" stands for Finish.jelly.
 template <class E>
-py::enum_<E> choice(py::handle scope, const char* name, std::initializer_list<std::pair<const char*, E>> values,
-                    const std::string& in = "") {
+py::enum_<E> choice(py::handle scope, const char* name,
+                    std::initializer_list<std::pair<const char*, E>> values, const std::string& in = "") {
   const std::string path = in + name;
   py::enum_<E> bound(scope, name, doc(path));
   std::string names;
