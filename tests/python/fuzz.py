@@ -163,8 +163,8 @@ class Fuzzer:
                 else:
                     setattr(value, name, self.value())
                 repr(value)
-            elif name == "advance":  # as long as one asks for
-                value.advance(self.random.uniform(0, 2))
+            elif name == "advance":  # takes as long as one asks for
+                value.advance(self.random.choice([0, -1, float("nan"), 2 * value.step().time_step]))
             elif name != "_fields":
                 self.call(getattr(value, name), f"{type(value).__name__}.{name}")
         except ALLOWED:
