@@ -88,6 +88,24 @@ TEST(column, has_zeros_in_the_cache_line_behind_its_last_block) {
   }
 }
 
+TEST(column, memory_that_is_kept_outlives_it_and_is_not_handed_out_again) {
+  std::shared_ptr<const void> first, second;
+  const float* seen = nullptr;
+  {
+    Column<float> column(1000);
+    column[999] = 7;
+    seen = column.data();
+    first = keep_column(seen);
+    second = keep_column(seen);
+    column.resize(5000);
+    EXPECT_NE(column.data(), seen);
+    EXPECT_EQ(column[999], 7.0f);
+  }
+  first.reset();
+  for (int i = 0; i < 20; ++i) EXPECT_NE(Column<float>(1000).data(), seen);
+  EXPECT_EQ(seen[999], 7.0f);
+}
+
 TEST(vector_column, keeps_all_three_axes_when_the_stride_changes) {
   VectorColumn column(3);
   for (std::size_t i = 0; i < 3; ++i) column.set(i, Vec3(1, 2, 3) * static_cast<float>(i + 1));

@@ -1,0 +1,38 @@
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "docs.h"
+#include "mallow/version.h"
+#include "parts.h"
+
+namespace mallow::python {
+
+const char* doc(std::string_view name) {
+  const auto found = std::ranges::lower_bound(docs(), name, {}, &Doc::name);
+  if (found == docs().end() || found->name != name)
+    throw std::logic_error("no header declares " + std::string(name));
+  return found->text;
+}
+
+}  // namespace mallow::python
+
+PYBIND11_MODULE(_mallow, module) {
+  using namespace mallow::python;
+  module.doc() = "Fast animation of viscoelastic materials: the library of C++ under the same names.";
+  module.attr("__version__") = mallow::version();
+  module.def("version", &mallow::version, doc("version"));
+  bind_errors(module);
+  bind_settings(module);
+  bind_shapes(module);
+  bind_bodies(module);
+  bind_reports(module);
+  bind_simulation(module);
+  bind_meshes(module);
+  bind_surfaces(module);
+  bind_scenes(module);
+  bind_files(module);
+#ifdef MALLOW_PYTHON_RENDER
+  bind_pictures(module);
+#endif
+}
