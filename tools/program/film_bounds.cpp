@@ -1,6 +1,7 @@
 #include "program/film_bounds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 
@@ -136,6 +137,12 @@ Aabb FilmBounds::box(const Scene& scene, float spacing) const {
   add_colliders(room, last_time_, box);
   box.min.z() = std::max(box.min.z(), lowest);
   return box;
+}
+
+Aabb bounds_now(const Scene& scene, Simulation& simulation) {
+  float spacing = std::numeric_limits<float>::infinity();
+  for (const BodyInfo& body : simulation.info().bodies) spacing = std::min(spacing, body.spacing);
+  return FilmBounds(snapshot(simulation)).box(scene, std::isfinite(spacing) ? spacing : 0.0f);
 }
 
 }  // namespace mallow::program

@@ -23,6 +23,9 @@ class FilmBounds {
   double last_time_ = 0;  ///< [s]
 };
 
+/// What a picture of a simulation as it is now has to have in view.
+Aabb bounds_now(const Scene& scene, Simulation& simulation);
+
 /// The colliders of a scene that are seen.
 std::vector<Collider> visible_colliders(const Scene& scene);
 

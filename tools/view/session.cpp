@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "mallow/files.h"
-#include "program/view_bounds.h"
+#include "program/film_bounds.h"
 
 namespace mallow::view {
 namespace {
@@ -54,8 +54,7 @@ void Session::begin(Scene scene) {
     if (slot_of(body) < of_body.size()) materials_[of_body[slot_of(body)]] = simulation_->material(body);
   ball_material_.reset();
   frame_time_ = frame_time(scene_, simulation_->info());
-  if (const ParticleFrame first = snapshot(*simulation_); !first.positions.empty())
-    bounds_ = program::view_bounds(scene_, first);
+  bounds_ = program::bounds_now(scene_, *simulation_);
   camera_ = render::frame_camera(bounds_, scene_.render, program::visible_colliders(scene_));
   values_ = {};
   ring_.clear();

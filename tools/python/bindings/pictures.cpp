@@ -2,7 +2,7 @@
 #include "meshes.h"
 #include "parts.h"
 #include "program/body_appearances.h"
-#include "program/view_bounds.h"
+#include "program/film_bounds.h"
 #include "render/renderer.h"
 
 namespace mallow::python {
@@ -120,15 +120,13 @@ void bind_pictures(py::module_& module) {
       [](const py::object& scene) { return program::visible_colliders(scene_of(scene)); }, py::arg("scene"),
       "The colliders of a scene that are seen.");
   module.def(
-      "view_bounds",
+      "bounds_now",
       [](const py::object& scene, SimulationCell& cell) {
         const Use use = reading(cell);
-        return program::view_bounds(scene_of(scene), snapshot(cell.simulation));
+        return program::bounds_now(scene_of(scene), cell.simulation);
       },
       py::arg("scene"), py::arg("simulation"),
-      "What a camera has to have in view through a whole film, as far as the simulation's first frame and "
-      "the "
-      "scene tell.");
+      "What a picture of a simulation as it is now has to have in view.");
 }
 
 }  // namespace mallow::python

@@ -13,7 +13,7 @@ def render(scene, simulation, mesh=None, file=None, camera=None, threads=0):
         mesh = _mallow.Surfacer(scene.surface, threads).draw(simulation)
     colliders = _mallow.visible_colliders(scene)
     if camera is None:
-        camera = _mallow.frame_camera(_mallow.view_bounds(scene, simulation), scene.render, colliders)
+        camera = _mallow.frame_camera(_mallow.bounds_now(scene, simulation), scene.render, colliders)
     image = _mallow.Renderer(scene.render, threads).render(mesh, _mallow.body_appearances(scene), colliders, camera)
     if file is not None:
         _mallow.write_png(file, image)
