@@ -72,6 +72,13 @@ void check(const SurfaceParticles& particles) {
   each("ids", particles.ids.size());
   check_bodies(particles, checks);
   check_finite("positions", particles.positions, checks);
+  // Their squares are finite, and so is all that is made of them.
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 x = particles.positions[i];
+    if (!x.allFinite() || x.cwiseAbs().maxCoeff() <= 1e15f) continue;
+    checks.problem(element("positions", i), "is farther than 1e15 from 0");
+    break;
+  }
   check_finite("velocities", particles.velocities, checks);
   checks.finish();
 }

@@ -73,6 +73,10 @@ class Arguments(unittest.TestCase):
         with self.assertRaises(TypeError):
             simulation.set_velocity(ids, numpy.zeros(3, complex))
 
+    def test_points_too_far_away_to_draw(self):
+        with self.assertRaisesRegex(mallow.ConfigError, "farther than"):
+            mallow.surface([[-1e20, 1e20, 0]], 1, threads=2)
+
     def test_strides_and_dtypes_do_not_matter(self):
         points = numpy.arange(60, dtype=numpy.int16).reshape(3, 20).T[::-2]
         body = mallow.Body(positions=points, spacing=1)
