@@ -9,6 +9,7 @@
 #include "cli/run_command.h"
 #include "cli/sample_command.h"
 #include "cli/surface_command.h"
+#include "cli/tradeoff_command.h"
 #include "mallow/scene.h"
 #include "mallow/version.h"
 #include "program/parse_and_run.h"
@@ -26,6 +27,8 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
   add_render_command(app);
   add_export_command(app);
   add_compare_command(app);
+  add_tradeoff_command(app);
+  add_tune_command(app);
   app.add_subcommand("keys", "Print every key that a scene file may hold")->callback([] {
     std::fputs(mallow::describe_scene_keys().c_str(), stdout);
   });
