@@ -62,6 +62,21 @@ std::string reference_remark(const Reference& reference) {
          (reference.converged ? "" : ", as half the budget ended it");
 }
 
+std::string chaos_remark(const Study& study) {
+  const std::string moved = study.last_bit ? "one position moved by its last bit moves particles by " +
+                                                 number(study.last_bit->rms) + " h"
+                                           : "the budget was too small to move one position by its last bit";
+  if (!study.chaotic)
+    return (study.last_bit ? "not chaotic: " : "whether it is chaotic is not known: ") + moved;
+  std::string text = "the motion is chaotic: " + moved;
+  if (!study.reference.differences.empty())
+    text += ", the last halving of steps by " + number(study.reference.differences.back()) + " h";
+  text += ". So settings are judged by height, spread and centre over the last quarter";
+  if (study.last_bit_late)
+    text += ", which the last bit moves by " + number(study.last_bit_late->shape()) + " h";
+  return text;
+}
+
 }  // namespace
 
 std::string number(double value, int digits) {
@@ -83,17 +98,7 @@ std::vector<std::string> remarks(const Study& study) {
                   std::to_string(study.threads) + (study.threads == 1 ? " thread, " : " threads, ") +
                   number(study.spent) + " s in all");
   lines.push_back(reference_remark(study.reference));
-  if (!study.last_bit)
-    lines.push_back("whether the motion is chaotic is not known: the budget was too small");
-  else if (study.chaotic)
-    lines.push_back("the motion is chaotic: one position moved by its last bit moves particles by " +
-                    number(study.last_bit->rms) +
-                    " h, as much as settings do. So settings are judged by height, spread and centre over "
-                    "the last quarter, which the last bit moves by " +
-                    number(study.last_bit_late->shape()) + " h");
-  else
-    lines.push_back("not chaotic: one position moved by its last bit moves particles by " +
-                    number(study.last_bit->rms) + " h");
+  lines.push_back(chaos_remark(study));
   if (!study.left_out.empty()) lines.push_back("left out, as the budget ended: " + joined(study.left_out));
   if (!study.failed.empty()) lines.push_back("could not be run: " + joined(study.failed));
   return lines;
