@@ -25,7 +25,8 @@ box = { count = [4, 4, 4], spacing = 1.0, corner = [0.0, 0.0, 0.0] }
 [[pin]]
 box = { min = [0.0, 0.0, 3.0], max = [4.0, 4.0, 4.0] }
 [run]
-frames = 20
+frames = 10
+frame_time = 0.6
 )";
 /// A fluid that splashes: its particles go their own ways.
 const char* const k_splash = R"(

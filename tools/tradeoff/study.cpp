@@ -24,6 +24,8 @@ constexpr int k_moments = 24;
 constexpr double k_little = 0.1;
 /// Part of the settings' errors from which on the last bit's is told.
 constexpr double k_chaos = 0.5;
+/// Below this order of convergence, halving the step leads nowhere.
+constexpr double k_no_order = 0.5;
 constexpr double k_late = 0.75;
 constexpr float k_shortest_factor = 0.01f;
 
@@ -271,8 +273,12 @@ class Maker {
       row.late = motion_error(row.motion, reference, k_late, pixel);
       errors.push_back(row.error.rms);
     }
-    study_.chaotic =
-        study_.last_bit && study_.last_bit->rms >= k_chaos * median(errors) && study_.last_bit->rms > 0;
+    const double typical = k_chaos * median(errors);
+    const Reference& found = study_.reference;
+    const bool converges =
+        found.differences.size() < 2 || found.order.value_or(1) > k_no_order || found.error < typical;
+    const bool parts = study_.last_bit && study_.last_bit->rms >= typical;
+    study_.chaotic = typical > 0 && (parts || !converges);
     for (const std::size_t i : pareto_front(study_.trades())) study_.rows[i].on_front = true;
   }
 

@@ -59,6 +59,8 @@ struct Study {
   double spent = 0;  ///< [s]
   Reference reference;
   std::vector<Row> rows;  ///< the scene as it is first
+  /// One position moved by its last bit moves particles by as much as settings do, or halving the step
+  /// brings them to no place.
   bool chaotic = false;
   std::optional<MotionError> last_bit;       ///< what moving one position by its last bit does
   std::optional<MotionError> last_bit_late;  ///< the same in the last quarter
