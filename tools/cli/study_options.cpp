@@ -7,7 +7,10 @@
 #include <cstdio>
 
 #include "mallow/errors.h"
+#include "mallow/files.h"
 #include "program/interrupt.h"
+#include "program/output_files.h"
+#include "tradeoff/page.h"
 
 namespace mallow::cli {
 namespace {
@@ -81,6 +84,25 @@ tradeoff::StudyOptions study_options(const StudyArguments& arguments, const Scen
   program::watch_for_interrupt();
   options.stop = [] { return program::interrupted() != 0; };
   return options;
+}
+
+void check_study_files(const std::filesystem::path& folder, const Scene& scene) {
+  const program::InputFiles inputs(scene);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw IoError({folder.string(), 0, 0, "--out", "cannot be made: " + error.message()});
+  for (const char* name : {"tradeoff.csv", "tradeoff.json", "index.html"}) {
+    program::check_writable(folder / name);
+    inputs.refuse(folder / name, "--out");
+  }
+}
+
+void write_study(const std::filesystem::path& folder, const tradeoff::Study& study,
+                 const std::optional<tradeoff::Picked>& picked) {
+  write_whole(folder / "tradeoff.csv", tradeoff::to_csv(study));
+  write_whole(folder / "tradeoff.json", tradeoff::to_json(study, picked));
+  write_whole(folder / "index.html",
+              tradeoff::to_page(study, picked ? std::optional(picked->row) : std::nullopt));
 }
 
 }  // namespace mallow::cli

@@ -2,51 +2,28 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include "cli/study_options.h"
-#include "mallow/errors.h"
-#include "mallow/files.h"
 #include "program/failure.h"
 #include "program/interrupt.h"
-#include "program/output_files.h"
-#include "tradeoff/page.h"
 #include "tradeoff/tables.h"
 
 namespace mallow::cli {
 namespace {
-namespace fs = std::filesystem;
 
 struct TradeoffOptions {
   StudyArguments study;
   std::string out;
 };
 
-/// The files of the folder, none of which is an input.
-void check_files(const fs::path& folder, const Scene& scene) {
-  const program::InputFiles inputs(scene);
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw IoError({folder.string(), 0, 0, "--out", "cannot be made: " + error.message()});
-  for (const char* name : {"tradeoff.csv", "tradeoff.json", "index.html"}) {
-    program::check_writable(folder / name);
-    inputs.refuse(folder / name, "--out");
-  }
-}
-
 void run(const TradeoffOptions& options) {
   const Scene scene = read_scene(options.study.scene);
   const tradeoff::StudyOptions study_with = study_options(options.study, scene);
-  if (!options.out.empty()) check_files(options.out, scene);
+  if (!options.out.empty()) check_study_files(options.out, scene);
   try {
     const tradeoff::Study study = tradeoff::study(scene, study_with);
-    if (!options.out.empty()) {
-      const fs::path folder = options.out;
-      write_whole(folder / "tradeoff.csv", tradeoff::to_csv(study));
-      write_whole(folder / "tradeoff.json", tradeoff::to_json(study));
-      write_whole(folder / "index.html", tradeoff::to_page(study));
-    }
+    if (!options.out.empty()) write_study(options.out, study);
     std::fputs(tradeoff::to_text(study).c_str(), stdout);
   } catch (const tradeoff::Stopped&) {
     throw program::Interrupted("interrupted; nothing is written", program::interrupted());

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 struct TuneOptions {
   StudyArguments study;
   std::string frame, error;
-  std::string write;
+  std::string write, out;
 };
 
 /// The limit that a setting has to keep.
@@ -69,6 +69,7 @@ void tune(const TuneOptions& options, const Scene& scene, const tradeoff::StudyO
   const tradeoff::Row& row = study.rows[pick->index];
   std::printf("%s: %s: %s; on a second run %s\n", confirmed ? "pick" : "nearest", row.setting.name.c_str(),
               described(study, row).c_str(), described(study, again).c_str());
+  if (!options.out.empty()) write_study(options.out, study, tradeoff::Picked{pick->index, confirmed, again});
   const std::string lines = tradeoff::lines_to_paste(scene, row.setting.scene);
   std::printf("%s", lines.empty() ? "# the scene as it is\n" : lines.c_str());
   if (!confirmed)
@@ -95,6 +96,7 @@ void run(const TuneOptions& options) {
     program::InputFiles(scene).refuse(options.write, "--write");
     program::check_writable(options.write);
   }
+  if (!options.out.empty()) check_study_files(options.out, scene);
   try {
     tune(options, scene, study_with, limit);
   } catch (const tradeoff::Stopped&) {
@@ -117,6 +119,7 @@ void add_tune_command(CLI::App& app) {
       ->excludes(frame);
   command->add_option("--write", options->write,
                       "Write the scene at the pick to this file, with every value in it");
+  command->add_option("--out", options->out, "Folder for the files that 'mallow tradeoff' writes");
   command->footer(
       "Measures as 'mallow tradeoff' does, picks, and runs the pick once more.\n"
       "Exit codes: 0 the pick holds, 1 none does, 2 the input is wrong.");

@@ -156,7 +156,7 @@ std::string to_csv(const Study& study) {
   return text;
 }
 
-std::string to_json(const Study& study) {
+std::string to_json(const Study& study, const std::optional<Picked>& picked) {
   Json rows = Json::array();
   for (const std::size_t i : by_cost(study)) {
     const Row& row = study.rows[i];
@@ -192,6 +192,11 @@ std::string to_json(const Study& study) {
   if (study.last_bit)
     json["last_bit"] = {{"all", to_json(*study.last_bit, study)},
                         {"last_quarter", to_json(*study.last_bit_late, study)}};
+  if (picked)
+    json["pick"] = {{"setting", study.rows[picked->row].setting.name},
+                    {"holds", picked->holds},
+                    {"frame_seconds", picked->again.frame_seconds()},
+                    {"error_h", study.error(picked->again)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

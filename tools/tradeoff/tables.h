@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "tradeoff/study.h"
@@ -12,7 +13,13 @@ std::string to_text(const Study& study);
 std::vector<std::string> remarks(const Study& study);
 /// A row for each setting.
 std::string to_csv(const Study& study);
-std::string to_json(const Study& study);
+/// What `mallow tune` settled on.
+struct Picked {
+  std::size_t row = 0;
+  bool holds = false;  ///< false: the nearest
+  Row again;           ///< a second run of it
+};
+std::string to_json(const Study& study, const std::optional<Picked>& picked = {});
 /// Indices of rows, cheapest first.
 std::vector<std::size_t> by_cost(const Study& study);
 /// "%.3g" and the like.
