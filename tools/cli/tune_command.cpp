@@ -121,7 +121,10 @@ void add_tune_command(CLI::App& app) {
                       "Write the scene at the pick to this file, with every value in it");
   command->add_option("--out", options->out, "Folder for the files that 'mallow tradeoff' writes");
   command->footer(
-      "Measures as 'mallow tradeoff' does, picks, and runs the pick once more.\n"
+      "Measures as 'mallow tradeoff' does, picks, and runs the pick once more. How well a surface follows "
+      "its\n"
+      "particles is not measured: a quality with a coarser one is the cheaper for it, but with "
+      "--no-surface.\n"
       "Exit codes: 0 the pick holds, 1 none does, 2 the input is wrong.");
   command->callback([options] { run(*options); });
 }
