@@ -35,8 +35,8 @@ struct Motion {
   std::vector<double> frame_seconds = {};  ///< wall time of the steps of each frame [s]
   std::vector<double> draw_seconds = {};   ///< that MotionPlan::draw took at each moment after the first [s]
   double other_seconds = 0;                ///< wall time of building, measuring and the like [s]
-  std::int64_t steps = 0;
-  std::string failure = {};  ///< why a step could not be taken, or the simulation not be built
+  std::int64_t steps = 0;                  ///< taken
+  std::string failure = {};                ///< why a step could not be taken, or the simulation not be built
 
   /// Wall time of the steps of a frame in the mean [s]; NaN where there is none.
   double seconds_per_frame() const;
