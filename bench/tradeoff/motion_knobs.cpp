@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "harness/statistics.h"
+#include "mallow/tuning.h"
 #include "program/run_report.h"
 #include "tradeoff/errors.h"
-#include "tradeoff/pareto.h"
 
 namespace mallow::bench {
 namespace {
@@ -104,7 +104,7 @@ std::vector<Json> measure_motion(const std::string& scene_name, const std::files
         ms[i].push_back(milliseconds_per_second(scenes[i], settings.duration, threads));
     }
   }
-  std::vector<Choice> choices;
+  std::vector<Trade> choices;
   for (std::size_t i = 0; i < all.size(); ++i) {
     choices.push_back({NAN, NAN});
     if (!rows[i].contains("errors")) continue;

@@ -5,8 +5,8 @@
 #include "harness/statistics.h"
 #include "mallow/quality.h"
 #include "mallow/surface.h"
+#include "mallow/tuning.h"
 #include "tradeoff/mesh_distance.h"
-#include "tradeoff/pareto.h"
 
 namespace mallow::bench {
 namespace {
@@ -58,7 +58,7 @@ std::vector<Json> measure_surfaces(const std::string& scene_name, const Scene& s
   for (std::size_t f = 0; f < 2; ++f) references[f] = surface(frames[f], spacing, finest, threads);
 
   std::vector<Json> rows;
-  std::vector<Choice> choices;
+  std::vector<Trade> choices;
   for (const SurfaceSetting& setting : make_settings(scene.surface, small)) {
     std::vector<double> ms;
     double mean_distance = 0, hausdorff = 0, triangles = 0;

@@ -11,6 +11,7 @@
 #include "cli/surface_command.h"
 #include "cli/sweep_command.h"
 #include "cli/view_command.h"
+#include "cli/tradeoff_command.h"
 #include "mallow/scene.h"
 #include "mallow/version.h"
 #include "program/parse_and_run.h"
@@ -30,6 +31,8 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
   add_compare_command(app);
   add_sweep_command(app);
   add_view_command(app);
+  add_tradeoff_command(app);
+  add_tune_command(app);
   app.add_subcommand("keys", "Print every key that a scene file may hold")->callback([] {
     std::fputs(mallow::describe_scene_keys().c_str(), stdout);
   });

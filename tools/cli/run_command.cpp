@@ -15,7 +15,6 @@
 #include "cli/film_options.h"
 #include "cli/messages.h"
 #include "cli/pictures.h"
-#include "cli/scene_changes.h"
 #include "cli/scene_options.h"
 #include "cli/summary.h"
 #include "mallow/errors.h"
@@ -34,6 +33,7 @@
 #include "program/run_loop.h"
 #include "program/run_plan.h"
 #include "program/run_report.h"
+#include "program/scene_changes.h"
 #include "program/series.h"
 #include "program/shell_word.h"
 #include "program/stills.h"
@@ -178,7 +178,7 @@ bool counts_when_resumed(const std::string& key) {
 void take_changes(const Scene& now, bool own, const std::string& file, Scene& scene) {
   std::string said;
   bool put_back = false;
-  for (const SceneChange& change : scene_changes(scene, now)) {
+  for (const program::SceneChange& change : program::scene_changes(scene, now)) {
     if (change.key == "run.frames") continue;  // to go on longer is no change of what is there
     const auto text = [](const std::string& value) { return value.empty() ? "left out" : value; };
     said += "\n  " + change.key + " is " + text(change.now) + ", was " + text(change.before) +

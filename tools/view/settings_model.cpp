@@ -5,7 +5,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "cli/scene_changes.h"
+#include "program/scene_changes.h"
 #include "mallow/materials.h"
 #include "program/shell_word.h"
 #include "scene/scene_fields.h"
@@ -159,7 +159,7 @@ bool SettingsModel::set_share(const BoundField& field, double share) {
 
 std::string SettingsModel::command_line() const {
   std::string line = "mallow run " + program::shell_word(scene_.file.string());
-  for (const cli::SceneChange& change : cli::scene_changes(original_, scene_)) {
+  for (const program::SceneChange& change : program::scene_changes(original_, scene_)) {
     if (change.now.empty()) continue;  // left out again: no --set says that
     line += " --set " + program::shell_word(change.key + "=" + change.now);
   }

@@ -5,7 +5,7 @@
 
 #include "mallow/scene.h"
 
-namespace mallow::cli {
+namespace mallow::program {
 
 /// A key of a scene whose value is another one than before.
 struct SceneChange {
@@ -16,4 +16,4 @@ struct SceneChange {
 /// In the order of the scene file. Paths count as different where they are written differently.
 std::vector<SceneChange> scene_changes(const Scene& before, const Scene& now);
 
-}  // namespace mallow::cli
+}  // namespace mallow::program

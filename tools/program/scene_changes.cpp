@@ -1,11 +1,11 @@
-#include "cli/scene_changes.h"
+#include "program/scene_changes.h"
 
 #include <algorithm>
 #include <map>
 #include <sstream>
 #include <utility>
 
-namespace mallow::cli {
+namespace mallow::program {
 namespace {
 
 using Values = std::vector<std::pair<std::string, std::string>>;
@@ -46,4 +46,4 @@ std::vector<SceneChange> scene_changes(const Scene& before, const Scene& now) {
   return changes;
 }
 
-}  // namespace mallow::cli
+}  // namespace mallow::program

@@ -1,0 +1,135 @@
+#include "tradeoff/study.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "mallow/errors.h"
+#include "program/failure.h"
+#include "tradeoff/page.h"
+#include "tradeoff/tables.h"
+
+namespace mallow::study_test {
+
+/// A jelly cube that swings under gravity beside nothing: as smooth as motions are.
+const char* const k_smooth = R"(
+[solver]
+time_step = 0.15
+[[material]]
+name = "jelly"
+elastic_time_step = 0.3
+[[body]]
+material = "jelly"
+box = { count = [4, 4, 4], spacing = 1.0, corner = [0.0, 0.0, 0.0] }
+[[pin]]
+box = { min = [0.0, 0.0, 3.0], max = [4.0, 4.0, 4.0] }
+[run]
+frames = 10
+frame_time = 0.6
+)";
+/// A fluid that splashes: its particles go their own ways.
+const char* const k_splash = R"(
+[solver]
+gravity = [0.0, 0.0, -9.81]
+[[material]]
+name = "water"
+alpha = 1.0
+rest_density = 1000.0
+[[body]]
+material = "water"
+box = { count = [6, 6, 10], spacing = 0.02, corner = [0.0, 0.0, 0.1] }
+[[collider]]
+box = { min = [0.0, 0.0, 0.0], max = [0.4, 0.25, 9.0], inside = true }
+[run]
+frames = 90
+frame_time = 0.033
+)";
+
+Scene scene(const char* text, std::vector<std::string> overrides = {}) {
+  return parse_scene(text, "scene.toml", overrides);
+}
+
+TEST(tradeoff_study, smooth_motion_converges_at_order_one) {
+  const tradeoff::Study study =
+      tradeoff::study(scene(k_smooth), {.budget = 3, .threads = 1, .repeats = 1, .surface = false});
+  ASSERT_TRUE(study.reference.order);
+  EXPECT_NEAR(*study.reference.order, 1, 0.15);
+  EXPECT_TRUE(study.reference.converged);
+  EXPECT_FALSE(study.chaotic);
+  ASSERT_TRUE(study.last_bit);
+  EXPECT_LT(study.last_bit->rms, 1e-3);
+  // Shorter steps are nearer, longer ones farther off.
+  const auto error = [&](const char* name) {
+    const auto row = std::ranges::find(study.rows, name, [](const auto& r) { return r.setting.name; });
+    return row == study.rows.end() ? -1 : study.error(*row);
+  };
+  EXPECT_GT(error("time_step_factor x 2"), 1.5 * error("as it is"));
+  EXPECT_LT(error("time_step_factor x 0.5"), 0.7 * error("as it is"));
+}
+
+TEST(tradeoff_study, chaotic_motion_is_told_and_judged_by_its_shape) {
+  const tradeoff::Study study =
+      tradeoff::study(scene(k_splash), {.budget = 5, .threads = 1, .repeats = 1, .surface = false});
+  ASSERT_TRUE(study.last_bit);
+  EXPECT_TRUE(study.chaotic) << tradeoff::to_text(study) << study.last_bit->rms << " h of "
+                             << study.rows.front().error.rms << " h";
+  EXPECT_EQ(study.error(study.rows.front()), study.rows.front().late.shape());
+  EXPECT_NE(tradeoff::to_text(study).find("the motion is chaotic"), std::string::npos);
+}
+
+TEST(tradeoff_study, budget_is_kept_and_what_it_left_out_is_said) {
+  const auto start = std::chrono::steady_clock::now();
+  const tradeoff::Study study =
+      tradeoff::study(scene(k_smooth, {"body[0].box.count=[12, 12, 12]", "run.frames=400"}),
+                      {.budget = 2, .threads = 1, .repeats = 100, .surface = false});
+  const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_LT(spent, 2.4);
+  EXPECT_LT(study.frames, study.all_frames);
+  EXPECT_NE(tradeoff::to_text(study).find("of 400 frames"), std::string::npos);
+}
+
+TEST(tradeoff_study, same_setting_again_is_off_by_the_same_bits) {
+  const tradeoff::StudyOptions options{.budget = 1, .threads = 1, .repeats = 1, .surface = true};
+  const tradeoff::Study study = tradeoff::study(scene(k_smooth), options);
+  const tradeoff::Row& row = study.rows.back();
+  EXPECT_EQ(tradeoff::run_again(study, row.setting, options).error.rms, row.error.rms);
+}
+
+TEST(tradeoff_study, measures_and_settings_of_users_are_told) {
+  const Scene smooth = scene(k_smooth);
+  Scene denser = smooth;
+  denser.solver.rotation_iterations = 1;
+  const tradeoff::Study study = tradeoff::study(
+      smooth,
+      {.budget = 1, .threads = 1, .repeats = 1, .extra = {{"fewer", denser}}, .measures = {"height(0)"}});
+  EXPECT_NE(tradeoff::to_csv(study).find("\"height(0)\""), std::string::npos);
+  EXPECT_NE(tradeoff::to_csv(study).find("\"fewer\""), std::string::npos);
+  const std::string page = tradeoff::to_page(study);
+  EXPECT_NE(page.find("<svg"), std::string::npos);
+  EXPECT_EQ(page.find("src="), std::string::npos);  // it needs no other file
+}
+
+TEST(tradeoff_study, wrong_measures_are_refused_with_what_there_is) {
+  for (const char* text : {"height", "length(0)", "height(nobody)"}) {
+    try {
+      tradeoff::study(scene(k_smooth), {.budget = 1, .measures = {text}});
+      ADD_FAILURE() << text;
+    } catch (const ConfigError& error) {
+      EXPECT_EQ(error.problems().front().field, "--measure");
+      EXPECT_NE(std::string(error.what()).find(text), std::string::npos);
+    }
+  }
+}
+
+TEST(tradeoff_study, settings_that_cannot_run_are_told_with_why) {
+  Scene bad = scene(k_smooth);
+  bad.solver.time_step_factor = 4;
+  bad.materials.front().material.elastic_time_step = 1e-3f;
+  const tradeoff::Study study =
+      tradeoff::study(scene(k_smooth), {.budget = 1, .threads = 1, .repeats = 1, .extra = {{"bad", bad}}});
+  ASSERT_EQ(study.failed.size(), 1u);
+  EXPECT_TRUE(study.failed.front().starts_with("bad: "));
+}
+
+}  // namespace mallow::study_test

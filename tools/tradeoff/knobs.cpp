@@ -1,0 +1,178 @@
+#include "tradeoff/knobs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "mallow/errors.h"
+#include "program/scene_changes.h"
+
+namespace mallow::tradeoff {
+namespace {
+
+constexpr int k_default_iterations = 2;
+
+Scene at_stride(Scene scene, int factor) {
+  for (SceneMaterial& material : scene.materials) material.material.region_stride *= factor;
+  return scene;
+}
+
+Scene native(Scene scene) {
+  scene.solver.arithmetic = Arithmetic::native;
+  return scene;
+}
+
+int iterations(const Scene& scene) {
+  if (scene.solver.volume_iterations) return *scene.solver.volume_iterations;
+  return std::ranges::any_of(scene.materials,
+                             [](const SceneMaterial& m) { return m.material.plastic_yield.has_value(); })
+             ? k_default_iterations
+             : 0;
+}
+
+Scene at_iterations(Scene scene, int iterations) {
+  scene.solver.volume_iterations = iterations;
+  return scene;
+}
+
+/// Bodies that are boxes and balls with cells `factor` times as large, in the same box; nothing where there
+/// are others.
+std::optional<Scene> coarser(Scene scene, float factor) {
+  if (!scene.emitters.empty() || scene.bodies.empty()) return std::nullopt;
+  for (SceneBody& body : scene.bodies) {
+    if (auto* box = std::get_if<Lattice>(&body.source)) {
+      const Lattice before = *box;
+      box->spacing *= factor;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const float size = static_cast<float>(before.count[a]) * before.spacing;
+        box->count[a] = static_cast<int>(std::lround(size / box->spacing));
+        if (box->count[a] < 2) return std::nullopt;
+        box->corner[static_cast<Eigen::Index>(a)] +=
+            0.5f * (size - static_cast<float>(box->count[a]) * box->spacing);
+      }
+    } else if (auto* ball = std::get_if<SphereSource>(&body.source)) {
+      if (ball->sampling.spacing) *ball->sampling.spacing *= factor;
+      if (ball->sampling.count)
+        *ball->sampling.count =
+            std::max(8, static_cast<int>(static_cast<float>(*ball->sampling.count) / std::pow(factor, 3.0f)));
+    } else {
+      return std::nullopt;
+    }
+  }
+  if (scene.solver.support_radius) *scene.solver.support_radius *= factor;
+  for (SceneMaterial& material : scene.materials) {
+    if (material.material.region_radius) *material.material.region_radius *= factor;
+    if (material.material.particle_mass && !material.material.rest_density)
+      *material.material.particle_mass *= factor * factor * factor;
+  }
+  return scene;
+}
+
+}  // namespace
+
+SceneTraits traits(const SimulationInfo& info) {
+  return {.regions = std::ranges::any_of(info.bodies, [](const BodyInfo& body) { return body.regions > 0; }),
+          .sums = info.sph || info.volume_iterations > 0};
+}
+
+std::vector<Setting> settings_around(const Scene& scene, const SceneTraits& traits) {
+  std::vector<Setting> settings;
+  const auto add = [&](const std::string& name, const Scene& changed, double cost) {
+    settings.push_back({.name = name, .scene = changed, .cost = cost});
+  };
+  const auto add_quality = [&](Quality quality, double cost) {
+    settings.push_back(
+        {std::string("quality ") + name(quality), with_quality(scene, quality), cost, quality});
+  };
+  const auto steps = [&](float factor) { return at_time_step(scene, factor); };
+  add("time_step_factor x 2", steps(2), 0.5);
+  add_quality(Quality::realtime, 0.6);
+  if (traits.regions) add("region_stride x 2", at_stride(scene, 2), 0.7);
+  add("time_step_factor x 1.5", steps(1.5f), 0.67);
+  add_quality(Quality::balanced, 0.8);
+  if (traits.sums) add("arithmetic native", native(scene), 0.9);
+  if (traits.regions) {
+    add("time_step_factor x 2, region_stride x 2", at_stride(steps(2), 2), 0.4);
+    add("time_step_factor x 1.5, region_stride x 2", at_stride(steps(1.5f), 2), 0.5);
+    add("region_stride x 3", at_stride(scene, 3), 0.6);
+  }
+  if (traits.sums) add("time_step_factor x 1.5, arithmetic native", native(steps(1.5f)), 0.6);
+  add("time_step_factor x 0.5", steps(0.5f), 2);
+  add_quality(Quality::accurate, 2);
+  if (traits.regions) add("time_step_factor x 0.5, region_stride x 2", at_stride(steps(0.5f), 2), 1.4);
+  if (const int n = iterations(scene); n > 0) {
+    add("volume_iterations " + std::to_string(n - 1), at_iterations(scene, n - 1), 0.9);
+    add("volume_iterations " + std::to_string(n + 1), at_iterations(scene, n + 1), 1.1);
+  } else {
+    add("volume_iterations 1", at_iterations(scene, 1), 1.3);
+  }
+  if (const auto coarse = coarser(scene, 1.25f)) add("spacing x 1.25", *coarse, 0.45);
+  std::erase_if(settings,
+                [&](const Setting& setting) { return print_scene(setting.scene) == print_scene(scene); });
+  return settings;
+}
+
+Scene finest(const Scene& scene, float factor) {
+  Scene result = scene;
+  result.solver.time_step_factor = scene.solver.time_step_factor * factor;
+  for (SceneMaterial& material : result.materials) material.material.region_stride = 1;
+  return result;
+}
+
+Knob parse_knob(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const auto bad = [&]() -> ConfigError {
+    return {"--knob",
+            "'" + text + "' is not allowed: KEY=VALUE,VALUE,..., like solver.time_step_factor=0.5,2"};
+  };
+  if (equals == text.npos || equals == 0) throw bad();
+  Knob knob{.key = text.substr(0, equals), .values = {""}};
+  int depth = 0;
+  bool quoted = false;
+  for (const char c : text.substr(equals + 1)) {
+    if (c == '"') quoted = !quoted;
+    if (!quoted && (c == '[' || c == '{')) ++depth;
+    if (!quoted && (c == ']' || c == '}')) --depth;
+    if (c == ',' && depth == 0 && !quoted)
+      knob.values.emplace_back();
+    else
+      knob.values.back() += c;
+  }
+  if (std::ranges::any_of(knob.values, &std::string::empty)) throw bad();
+  return knob;
+}
+
+std::vector<Setting> turned(const Scene& scene, const Knob& knob, const std::vector<std::string>& overrides,
+                            bool allow_outside_paths) {
+  std::vector<Setting> settings;
+  for (const std::string& value : knob.values) {
+    std::vector<std::string> all = overrides;
+    all.push_back(knob.key + "=" + value);
+    settings.push_back({.name = all.back(),
+                        .scene = read_scene(scene.file, all, {.allow_outside_paths = allow_outside_paths})});
+  }
+  return settings;
+}
+
+std::string lines_to_paste(const Scene& scene, const Scene& setting) {
+  std::string text, section;
+  for (const program::SceneChange& change : program::scene_changes(scene, setting)) {
+    const std::size_t dot = change.key.find('.');
+    const std::string where = change.key.substr(0, dot);
+    if (where != section) {
+      section = where;
+      const std::size_t bracket = where.find('[');
+      if (!text.empty()) text += '\n';
+      text += bracket == where.npos
+                  ? "[" + where + "]\n"
+                  : "# in [[" + where.substr(0, bracket) + "]] " +
+                        std::to_string(std::stoi(where.substr(bracket + 1)) + 1) + " of them\n";
+    }
+    const std::string key = change.key.substr(dot + 1);
+    text += change.now.empty() ? "# without " + key + "\n" : key + " = " + change.now + "\n";
+  }
+  return text;
+}
+
+}  // namespace mallow::tradeoff

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "tradeoff/study.h"
+
+namespace mallow::tradeoff {
+
+/// What a study found, in words and a table, cheapest first.
+std::string to_text(const Study& study);
+/// What there is to know about the reference, chaos, and what was left out: a sentence each.
+std::vector<std::string> remarks(const Study& study);
+/// A row for each setting.
+std::string to_csv(const Study& study);
+/// What `mallow tune` settled on.
+struct Picked {
+  std::size_t row = 0;
+  bool holds = false;  ///< false: the nearest
+  Row again;           ///< a second run of it
+};
+std::string to_json(const Study& study, const std::optional<Picked>& picked = {});
+/// Indices of rows, cheapest first.
+std::vector<std::size_t> by_cost(const Study& study);
+/// "%.3g" and the like.
+std::string number(double value, int digits = 3);
+
+}  // namespace mallow::tradeoff
