@@ -1,134 +1,324 @@
 #include "tradeoff/study.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
-#include <map>
+#include <limits>
+#include <memory>
 
-#include "mallow/files.h"
+#include "program/failure.h"
+#include "program/film_bounds.h"
+#include "program/frame_surface.h"
 #include "program/machine.h"
-#include "program/view_bounds.h"
 #include "render/viewport.h"
-#include "tradeoff/measures.h"
-#include "tradeoff/text.h"
 
 namespace mallow::tradeoff {
-
-Study run_study(const Scene& scene, const StudyOptions& options) {
-  SceneKnobOptions knob_options = options.knobs;
-  knob_options.threads = program::resolve_threads(knob_options.threads);
-  Study study{SceneKnobs(scene, knob_options), {}, {}, {}, knob_options.threads};
-  TuningConfig& config = study.config;
-  config.frame_time = frame_time(scene, study.knobs.info());
-  config.frames = std::max(1, options.frames ? std::min(*options.frames, scene.run.frames) : scene.run.frames);
-  config.budget = options.budget;
-  config.repeats = options.repeats;
-  config.combinations = options.combinations;
-  config.stop = options.stop;
-  config.progress = options.progress;
-  const Simulation simulation = build(scene, study.threads);
-  config.measures = make_measures(options.measures, simulation, scene, study.threads);
-  study.view = program::view_bounds(scene, snapshot(simulation));
-  const render::Camera camera =
-      render::frame_camera(study.view, scene.render, program::visible_colliders(scene));
-  const render::Viewport viewport(camera, scene.render.width, scene.render.height);
-  config.pixel = [viewport](const Vec3& x) { return viewport.pixel(x); };
-  study.result = measure_tradeoff(study.knobs, config);
-  return study;
-}
-
-std::vector<program::SceneChange> changes_of(const Study& study, const TuningChoice& choice) {
-  const TuningChoice own(choice.size(), -1);
-  return program::scene_changes(study.knobs.at(own), study.knobs.at(choice));
-}
-
-std::string lines_to_paste(const Study& study, const TuningChoice& choice) {
-  std::string lines, section;
-  for (const program::SceneChange& change : changes_of(study, choice)) {
-    const std::size_t dot = change.key.rfind('.');
-    std::string here = change.key.substr(0, dot);
-    if (here != section) {
-      lines += lines.empty() ? "" : "\n";
-      const std::size_t bracket = here.find('[');
-      const std::string note = bracket == here.npos ? "" : "  # " + here;
-      lines += bracket == here.npos ? "[" + here + "]" : "[[" + here.substr(0, bracket) + "]]";
-      lines += note + "\n";
-      section = std::move(here);
-    }
-    const std::string key = change.key.substr(dot + 1);
-    lines += change.now.empty() ? "# leave out " + key + "\n" : key + " = " + change.now + "\n";
-  }
-  return lines.empty() ? "# nothing to change\n" : lines;
-}
-
-double parse_duration(const std::string& text, const std::string& field) {
-  static const std::map<std::string, double> k_units = {
-      {"", 1}, {"s", 1}, {"ms", 1e-3}, {"m", 60}, {"min", 60}, {"h", 3600}};
-  double value = 0;
-  std::size_t used = 0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  const auto unit = k_units.find(text.substr(used));
-  if (used == 0 || unit == k_units.end() || !(value > 0) || !std::isfinite(value))
-    throw ConfigError(field, "'" + text + "' is no time above 0: 60s, 5m, 1h, 250ms");
-  return value * unit->second;
-}
-
 namespace {
 
-std::string chaos_of(const TuningResult& result) {
-  if (!result.chaotic)
-    return format("Two runs that differ in the last bit of some places part by %.3g h: places can be compared.",
-                  result.twin);
-  std::string text = format(
-      "The motion is chaotic: two runs that differ in the last bit of some places part by %.3g h, as much as "
-      "the settings do",
-      result.twin);
-  if (result.parted_at) text += format(", from frame %d on", *result.parted_at);
-  return text +
-         format(
-             ". So means over the last third of the frames are compared in place of places: height, spread and "
-             "centre of mass, the largest of them. Those two runs differ by %.3g h in that; less tells nothing.",
-             result.twin_statistic);
+constexpr double k_reference_share = 0.5;  ///< of the budget
+constexpr double k_first_share = 0.06;     ///< that the scene as it is may take
+constexpr double k_settings_share = 0.85;  ///< by which first runs of settings have begun
+constexpr int k_moments = 24;
+/// The reference is converged where its last halving moved particles by less than this share of what the
+/// scene as it is is off.
+constexpr double k_little = 0.1;
+/// Part of the settings' errors from which on the last bit's is told.
+constexpr double k_chaos = 0.5;
+/// Below this order of convergence, halving the step leads nowhere.
+constexpr double k_no_order = 0.5;
+constexpr double k_late = 0.75;
+constexpr float k_shortest_factor = 0.01f;
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::string convergence_of(const TuningResult& result) {
-  if (result.levels.empty()) return "There was no time for a reference.";
-  const TuningLevel& finest = result.levels.back();
-  std::string text = format("The reference takes %lld steps of %.4g s in the mean",
-                            static_cast<long long>(finest.steps), finest.time_step);
-  if (result.order) text += format("; in ever shorter steps it converges with order %.2f", *result.order);
-  text += format(", and is about %.2g h from its limit", result.reference_error);
-  if (!result.converged)
-    text += result.order && *result.order < 0.3
-                ? ". Differences do not shrink: it has not converged, and errors below their size tell nothing"
-                : ". That is not far below the errors themselves: a longer budget finds a finer one";
-  return text + ".";
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::ranges::sort(values);
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
+
+/// One particle of each body gets so little speed that the first step moves it by its last bits.
+void move_by_last_bit(Simulation& simulation) {
+  simulation.prepare();
+  const float step = simulation.info().longest_step;
+  for (const BodyId body : simulation.bodies()) {
+    const auto [begin, end] = simulation.rows(body);
+    if (begin == end) continue;
+    const std::size_t row = begin + (end - begin) / 2;
+    const ParticleId id = simulation.ids()[row];
+    Vec3 velocity = simulation.velocities()[row];
+    const float x = std::max(std::abs(simulation.positions()[row].x()), simulation.spacing(body));
+    velocity.x() += 2 * (std::nextafter(x, std::numeric_limits<float>::infinity()) - x) / step;
+    simulation.set_velocity(std::vector<ParticleId>{id}, velocity);
+  }
+}
+
+/// The pixels of the scene's camera.
+PixelOf camera_of(const Scene& scene, const Motion& motion) {
+  program::FilmBounds film;
+  for (const MotionMoment& moment : motion.moments) film.add(moment.particles);
+  const float h = motion.spacings.empty() ? 1 : *std::ranges::min_element(motion.spacings);
+  const auto camera =
+      render::frame_camera(film.box(scene, h), scene.render, program::visible_colliders(scene));
+  return [viewport = render::Viewport(camera, scene.render.width, scene.render.height)](
+             const Vec3& x) -> std::optional<Eigen::Vector2d> {
+    const auto pixel = viewport.pixel(x);
+    if (!pixel) return std::nullopt;
+    return Eigen::Vector2d(pixel->cast<double>());
+  };
+}
+
+/// Runs settings of one scene, all in the same way.
+class Runner {
+ public:
+  Runner(const StudyOptions& options, int frames, double frame_time)
+      : options_(options), threads_(program::resolve_threads(options.threads)) {
+    plan_.frames = frames;
+    plan_.frame_time = frame_time;
+    plan_.moments = k_moments;
+  }
+
+  /// deadline: when it ends as it is, by now(); drawn: its surface is drawn, and timed, at each moment.
+  Motion run(const Scene& scene, double deadline, bool drawn, bool last_bit = false) {
+    MotionPlan plan = plan_;
+    plan.stop = [&] {
+      if (options_.stop && options_.stop()) throw Stopped{};
+      return now() > deadline;
+    };
+    std::vector<Skin> skins;
+    std::optional<program::FrameSurface> surface;
+    if (drawn) plan.draw = [&](const Simulation& simulation) { surface->draw(simulation); };
+    return record_motion(
+        [&] {
+          Simulation simulation = build(scene, threads_);
+          if (drawn) {
+            skins = mallow::skins(scene, simulation, threads_);
+            surface.emplace(scene.surface, skins, threads_);
+          }
+          if (last_bit) move_by_last_bit(simulation);
+          return simulation;
+        },
+        plan);
+  }
+
+  MotionPlan& plan() { return plan_; }
+  int threads() const { return threads_; }
+
+ private:
+  const StudyOptions& options_;
+  int threads_;
+  MotionPlan plan_;
+};
+
+/// A study under way.
+class Maker {
+ public:
+  Maker(const Scene& scene, const StudyOptions& options) : scene_(scene), options_(options), start_(now()) {}
+
+  Study make() {
+    run_plain();
+    find_reference();
+    run_settings();
+    run_last_bit();
+    repeat();
+    judge();
+    study_.spent = now() - start_;
+    return std::move(study_);
+  }
+
+ private:
+  double left(double share = 1) const { return share * options_.budget - (now() - start_); }
+  void say(const std::string& what) const {
+    if (options_.progress) options_.progress(what);
+  }
+
+  /// Begins with all frames; where they would take too long, as many as were reached are all.
+  void run_plain() {
+    say("the scene as it is");
+    std::vector<std::function<double(Simulation&)>> measures;
+    {
+      Simulation simulation = build(scene_, program::resolve_threads(options_.threads));
+      simulation.prepare();
+      const SimulationInfo info = simulation.info();
+      traits_ = traits(info);
+      study_.frame_time = frame_time(scene_, info);
+      for (const std::string& text : options_.measures) {
+        measures.push_back(parse_measure(text, simulation).value);
+        study_.measures.push_back(text);
+      }
+    }
+    study_.scene = scene_.file.string();
+    study_.all_frames = std::max(1, scene_.run.frames);
+    runner_.emplace(options_, study_.all_frames, study_.frame_time);
+    runner_->plan().measures = std::move(measures);
+    study_.threads = runner_->threads();
+    const double begin = now();
+    Motion motion = runner_->run(scene_, begin + k_first_share * options_.budget, options_.surface);
+    if (!motion.failure.empty()) throw program::RunFailure(motion.failure);
+    study_.frames = static_cast<int>(motion.frame_seconds.size());
+    if (study_.frames == 0)
+      throw program::RunFailure("the budget is too small: one frame takes longer than " +
+                                std::to_string(k_first_share * options_.budget) +
+                                " s; give more by --budget");
+    if (study_.frames < study_.all_frames) {
+      runner_->plan().frames = study_.frames;
+      motion = runner_->run(scene_, now() + options_.budget, options_.surface);  // with moments at its end
+    }
+    plain_cost_ = now() - begin;
+    if (study_.frames < study_.all_frames) plain_cost_ *= 0.5;
+    add_row({.name = "as it is", .scene = scene_}, std::move(motion));
+  }
+
+  void add_row(const Setting& setting, Motion motion) {
+    Row row{.setting = setting, .motion = std::move(motion)};
+    row.seconds.push_back(row.motion.seconds_per_frame());
+    row.drawing.push_back(row.motion.draw_seconds_per_frame());
+    study_.rows.push_back(std::move(row));
+  }
+
+  /// Halves the step until that changes little. Steps alone cost more, not drawing.
+  void find_reference() {
+    Reference& reference = study_.reference;
+    const bool is_finest = print_scene(finest(scene_, 1)) == print_scene(scene_);
+    const double begin = now();
+    double factor = 1, cost = plain_cost_;
+    Motion before = is_finest ? study_.rows.front().motion : run_finest(1);
+    if (!is_finest) cost = now() - begin;
+    reference.factors.push_back(1);
+    reference.motion = before;
+    while (static_cast<float>(factor) * scene_.solver.time_step_factor > 2 * k_shortest_factor &&
+           2 * cost < left(k_reference_share)) {
+      factor /= 2;
+      const double started = now();
+      say("reference, steps of 1/" + std::to_string(static_cast<int>(1 / factor)));
+      Motion motion = run_finest(factor);
+      cost = now() - started;
+      if (!motion.failure.empty() || motion.moments.size() != before.moments.size()) break;
+      reference.factors.push_back(factor);
+      reference.differences.push_back(motion_error(before, motion).rms);
+      reference.factor = factor;
+      reference.motion = motion;
+      before = std::move(motion);
+      const double off = motion_error(study_.rows.front().motion, reference.motion).rms;
+      reference.converged = reference.differences.back() < k_little * off;
+      if (reference.converged) break;
+    }
+    reference.order = convergence_order(reference.differences);
+    if (!reference.differences.empty()) {
+      // What is left of a geometric series; with no order known, as much as the last difference.
+      const double ratio = reference.order && *reference.order > 0.2 ? std::exp2(*reference.order) : 2;
+      reference.error = reference.differences.back() / (ratio - 1);
+    }
+  }
+
+  Motion run_finest(double factor) {
+    return runner_->run(finest(scene_, static_cast<float>(factor)), start_ + options_.budget, false);
+  }
+
+  void run_settings() {
+    std::vector<Setting> settings = options_.extra;
+    for (Setting& setting : settings_around(scene_, traits_)) settings.push_back(std::move(setting));
+    for (const Setting& setting : settings) {
+      // The last bit is still to come, which is one more run.
+      if (setting.cost * plain_cost_ + plain_cost_ > left(k_settings_share)) {
+        study_.left_out.push_back(setting.name);
+        continue;
+      }
+      say(setting.name);
+      Motion motion = runner_->run(setting.scene, start_ + options_.budget, options_.surface);
+      if (motion.failure.empty() && static_cast<int>(motion.frame_seconds.size()) == study_.frames)
+        add_row(setting, std::move(motion));
+      else if (motion.failure.empty())
+        study_.left_out.push_back(setting.name);
+      else
+        study_.failed.push_back(setting.name + ": " + motion.failure);
+    }
+  }
+
+  void run_last_bit() {
+    if (plain_cost_ > left()) return;
+    say("one position moved by its last bit");
+    const Motion& plain = study_.rows.front().motion;
+    const Motion moved = runner_->run(scene_, start_ + options_.budget, false, true);
+    if (!moved.failure.empty() || moved.moments.size() != plain.moments.size()) return;
+    study_.last_bit = motion_error(moved, plain);
+    study_.last_bit_late = motion_error(moved, plain, k_late);
+  }
+
+  /// Timed runs, of all settings in turn, until the budget or their number is reached.
+  void repeat() {
+    for (int repeat = 1; repeat < options_.repeats; ++repeat) {
+      say("run " + std::to_string(repeat + 1) + " of every setting");
+      for (Row& row : study_.rows) {
+        const double cost = row.motion.other_seconds + row.seconds.front() * study_.frames +
+                            row.drawing.front() * static_cast<double>(row.motion.draw_seconds.size());
+        if (1.2 * cost > left()) continue;
+        const Motion motion = runner_->run(row.setting.scene, start_ + options_.budget, options_.surface);
+        if (static_cast<int>(motion.frame_seconds.size()) != study_.frames) continue;
+        row.seconds.push_back(motion.seconds_per_frame());
+        row.drawing.push_back(motion.draw_seconds_per_frame());
+      }
+    }
+  }
+
+  void judge() {
+    const Motion& reference = study_.reference.motion;
+    const PixelOf pixel = camera_of(scene_, study_.rows.front().motion);
+    std::vector<double> errors;
+    for (Row& row : study_.rows) {
+      row.error = motion_error(row.motion, reference, 0, pixel);
+      row.late = motion_error(row.motion, reference, k_late, pixel);
+      errors.push_back(row.error.rms);
+    }
+    const double typical = k_chaos * median(errors);
+    const Reference& found = study_.reference;
+    const bool converges =
+        found.differences.size() < 2 || found.order.value_or(1) > k_no_order || found.error < typical;
+    const bool parts = study_.last_bit && study_.last_bit->rms >= typical;
+    study_.chaotic = typical > 0 && (parts || !converges);
+    for (const std::size_t i : pareto_front(study_.trades())) study_.rows[i].on_front = true;
+  }
+
+  const Scene& scene_;
+  const StudyOptions& options_;
+  double start_;
+  std::optional<Runner> runner_;
+  SceneTraits traits_;
+  double plain_cost_ = 0;  ///< wall time of a run as it is [s]
+  Study study_;
+};
 
 }  // namespace
 
-std::vector<std::string> findings(const Study& study) {
-  const TuningResult& result = study.result;
-  std::vector<std::string> lines;
-  lines.push_back(format("%d frame%s of %.4g s, %zu settings, %d thread%s, %.1f s in all%s.", result.frames,
-                         result.frames == 1 ? "" : "s", study.config.frame_time, result.rows.size(),
-                         study.threads, study.threads == 1 ? "" : "s", result.seconds,
-                         result.interrupted ? "; it was interrupted" : ""));
-  if (result.rows.empty()) return lines;
-  lines.push_back(convergence_of(result));
-  lines.push_back(chaos_of(result));
-  if (!result.left_out.empty()) {
-    std::string text = "The budget had no time for: ";
-    for (std::size_t i = 0; i < result.left_out.size(); ++i)
-      text += (i == 0 ? "" : "; ") + result.left_out[i];
-    lines.push_back(text + ".");
-  }
-  return lines;
+double Row::median_seconds() const {
+  return median(seconds);
+}
+double Row::median_drawing() const {
+  return median(drawing);
+}
+
+std::vector<Trade> Study::trades() const {
+  std::vector<Trade> trades;
+  for (const Row& row : rows) trades.push_back({row.frame_seconds(), error(row)});
+  return trades;
+}
+
+Study study(const Scene& scene, const StudyOptions& options) {
+  return Maker(scene, options).make();
+}
+
+Row run_again(const Study& study, const Setting& setting, const StudyOptions& options) {
+  Runner runner(options, study.frames, study.frame_time);
+  Row row{.setting = setting,
+          .motion = runner.run(setting.scene, std::numeric_limits<double>::infinity(), options.surface)};
+  row.seconds.push_back(row.motion.seconds_per_frame());
+  row.drawing.push_back(row.motion.draw_seconds_per_frame());
+  row.error = motion_error(row.motion, study.reference.motion);
+  row.late = motion_error(row.motion, study.reference.motion, k_late);
+  return row;
 }
 
 }  // namespace mallow::tradeoff

@@ -5,44 +5,80 @@
 #include <string>
 #include <vector>
 
-#include "mallow/scene_tuning.h"
-#include "program/scene_changes.h"
-#include "render/renderer.h"
+#include "mallow/tuning.h"
+#include "tradeoff/knobs.h"
+#include "tradeoff/measures.h"
 
 namespace mallow::tradeoff {
 
+/// What is to be found out.
 struct StudyOptions {
-  SceneKnobOptions knobs;
-  std::vector<std::string> measures = {};  ///< see make_measures()
-  double budget = 60;                      ///< wall time of measuring [s]
-  int repeats = 3;
-  int combinations = 16;
-  std::optional<int> frames = {};  ///< of the scene's, from the first on
-  std::function<bool()> stop = {};
-  std::function<void(const std::string&)> progress = {};
+  double budget = 60;  ///< wall time of all runs [s], > 0
+  int threads = 0;     ///< as in SolverConfig
+  int repeats = 9;     ///< timed runs of a setting, at most, >= 1
+  bool surface = true;
+  std::vector<Setting> extra = {};         ///< of the user's knobs; they come first
+  std::vector<std::string> measures = {};  ///< for parse_measure()
+  std::function<void(const std::string& what)> progress = {};
+  std::function<bool()> stop = {};  ///< asked before every step: true ends all, with Stopped
+};
+/// Thrown where StudyOptions::stop says so.
+struct Stopped {};
+
+/// A setting that was run.
+struct Row {
+  Setting setting;
+  Motion motion;                     ///< the first run
+  std::vector<double> seconds = {};  ///< of a frame's steps in the mean, for each run [s]
+  std::vector<double> drawing = {};  ///< of its surface [s]
+  MotionError error = {};            ///< of all moments
+  MotionError late = {};             ///< of the last quarter
+  bool on_front = false;
+
+  double median_seconds() const;  ///< steps [s]
+  double median_drawing() const;  ///< [s]
+  double frame_seconds() const { return median_seconds() + median_drawing(); }
 };
 
-/// A scene that was measured.
+/// The reference and how it was found.
+struct Reference {
+  double factor = 1;                ///< of the scene's own step
+  std::vector<double> factors;      ///< that were tried
+  std::vector<double> differences;  ///< RMS between successive ones [h]
+  std::optional<double> order;
+  double error = 0;        ///< what it may be off itself, by its order [h]
+  bool converged = false;  ///< false: the budget's half ended it
+  Motion motion;
+};
+
 struct Study {
-  SceneKnobs knobs;
-  TuningConfig config;
-  TuningResult result;
-  Aabb view;  ///< what the camera has to have in view
-  int threads;
+  std::string scene;
+  int frames = 0, all_frames = 0;  ///< run of those that the scene has
+  double frame_time = 0;           ///< [s]
+  int threads = 1;
+  double spent = 0;  ///< [s]
+  Reference reference;
+  std::vector<Row> rows;  ///< the scene as it is first
+  /// One position moved by its last bit moves particles by as much as settings do, or halving the step
+  /// brings them to no place.
+  bool chaotic = false;
+  std::optional<MotionError> last_bit;       ///< what moving one position by its last bit does
+  std::optional<MotionError> last_bit_late;  ///< the same in the last quarter
+  std::vector<std::string> left_out;         ///< settings that the budget did not reach
+  std::vector<std::string> failed;           ///< settings, each with why
+  std::vector<std::string> measures;         ///< names
+
+  /// What settings are judged by [h]: the RMS of positions or, where the motion is chaotic, that of shape in
+  /// the last quarter.
+  double error(const Row& row) const { return chaotic ? row.late.shape() : row.error.rms; }
+  /// Cost: of a frame [s].
+  std::vector<Trade> trades() const;
 };
 
-/// Throws ConfigError and what the scene throws as it is.
-Study run_study(const Scene& scene, const StudyOptions& options);
-
-/// What a choice changes in the scene.
-std::vector<program::SceneChange> changes_of(const Study& study, const TuningChoice& choice);
-/// The same as lines to paste into the scene (TOML).
-std::string lines_to_paste(const Study& study, const TuningChoice& choice);
-
-/// "60s", "5m", "1.5h", "250ms"; a bare number is seconds. Throws ConfigError that names `field`.
-double parse_duration(const std::string& text, const std::string& field);
-
-/// What is said of a motion in a sentence each: frames, threads, convergence, chaos, what was left out.
-std::vector<std::string> findings(const Study& study);
+/// Runs a scene at settings around its own. Throws what building the scene as it is throws, and RunFailure
+/// where it cannot be run.
+Study study(const Scene& scene, const StudyOptions& options);
+/// One more run of a setting, as those of the study were; error and time of it.
+Row run_again(const Study& study, const Setting& setting, const StudyOptions& options);
 
 }  // namespace mallow::tradeoff

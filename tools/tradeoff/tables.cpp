@@ -1,158 +1,203 @@
 #include "tradeoff/tables.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "mallow/version.h"
 #include "program/machine.h"
-#include "program/run_report.h"
-#include "tradeoff/text.h"
 
 namespace mallow::tradeoff {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+struct Range {
+  double least = 0, most = 0;  ///< of a frame's steps [s]
+};
+Range range(const Row& row) {
+  const auto [least, most] = std::ranges::minmax(row.seconds);
+  return {least, most};
+}
+
+Json to_json(const MotionError& error, const Study& study) {
+  Json json = {{"median_h", error.median},       {"rms_h", error.rms},       {"worst_h", error.worst},
+               {"worst_time", error.worst_time}, {"height_h", error.height}, {"spread_h", error.spread},
+               {"center_h", error.center},       {"volume", error.volume},   {"energy", error.energy},
+               {"unmatched", error.unmatched}};
+  if (error.median_pixels) json["median_pixels"] = *error.median_pixels;
+  if (error.worst_pixels) json["worst_pixels"] = *error.worst_pixels;
+  for (std::size_t m = 0; m < std::min(study.measures.size(), error.measures.size()); ++m)
+    json["measures"][study.measures[m]] = error.measures[m];
+  return json;
+}
+
 std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == text.npos) return text;
   std::string result = "\"";
   for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
   return result + '"';
 }
 
-std::string overrides_of(const Study& study, const TuningRow& row) try {
+std::string padded(const std::string& text, std::size_t width) {
+  return text.size() < width ? text + std::string(width - text.size(), ' ') : text;
+}
+
+/// Names, a comma between each.
+std::string joined(const std::vector<std::string>& names, const char* comma = "; ") {
   std::string text;
-  for (const program::SceneChange& change : changes_of(study, row.choice))
-    text += (text.empty() ? "" : "; ") + change.key + '=' + change.now;
+  for (const std::string& name : names) text += (text.empty() ? "" : comma) + name;
   return text;
-} catch (const ConfigError&) {
-  return "";  // a setting that cannot be made
 }
 
-Json to_json(const TuningSpread& spread) {
-  return {{"median", spread.median}, {"lowest", spread.lowest}, {"highest", spread.highest}};
+std::string reference_remark(const Reference& reference) {
+  std::string text = "reference: steps of " + number(reference.factor) + " times the scene's";
+  if (reference.differences.empty())
+    return text + "; no halving of them fitted into the budget, so errors are from the scene as it is";
+  text += ", each halving moved particles by ";
+  std::vector<std::string> differences;
+  for (const double difference : reference.differences) differences.push_back(number(difference) + " h");
+  text += joined(differences, ", ");
+  if (reference.order) text += "; order of convergence " + number(*reference.order, 2);
+  return text + "; itself off by about " + number(reference.error) + " h" +
+         (reference.converged ? "" : ", as half the budget ended it");
 }
 
-Json row_json(const Study& study, const TuningRow& row) {
-  Json json = {{"setting", row.setting.name},
-               {"changes", overrides_of(study, row)},
-               {"on_front", row.on_front},
-               {"failure", row.failure}};
-  if (!row.failure.empty()) return json;
-  json["particles"] = row.particles;
-  json["steps"] = row.steps;
-  json["frame_seconds"] = to_json(row.frame);
-  json["mean_frame_seconds"] = to_json(row.mean);
-  json["drawing_seconds"] = row.drawing;
-  json["repeats"] = row.repeats;
-  json["error_h"] = row.error;
-  json["rms_h"] = row.errors.rms;
-  json["median_h"] = row.errors.median;
-  json["worst_h"] = row.errors.worst;
-  if (row.errors.pixels) json["rms_pixels"] = *row.errors.pixels;
-  if (row.errors.worst_pixels) json["worst_pixels"] = *row.errors.worst_pixels;
-  json["drawing_error_h"] = row.drawing_error;
-  for (std::size_t m = 0; m < row.errors.measures.size(); ++m) {
-    const TuningMeasure& measure = study.result.measures[m];
-    json["measures"][measure.name] = {{"unit", measure.unit},
-                                      {"rms", row.errors.measures[m]},
-                                      {"mean_of_last_third", row.errors.statistics[m]}};
-  }
-  json["state_hash"] = program::hash_text(row.state_hash);
-  return json;
+std::string chaos_remark(const Study& study) {
+  const std::string moved = study.last_bit ? "one position moved by its last bit moves particles by " +
+                                                 number(study.last_bit->rms) + " h"
+                                           : "the budget was too small to move one position by its last bit";
+  if (!study.chaotic)
+    return (study.last_bit ? "not chaotic: " : "whether it is chaotic is not known: ") + moved;
+  std::string text = "the motion is chaotic: " + moved;
+  if (!study.reference.differences.empty())
+    text += ", the last halving of steps by " + number(study.reference.differences.back()) + " h";
+  text += ". So settings are judged by height, spread and centre over the last quarter";
+  if (study.last_bit_late)
+    text += ", which the last bit moves by " + number(study.last_bit_late->shape()) + " h";
+  return text;
 }
 
 }  // namespace
 
-std::vector<std::size_t> by_cost(std::span<const TuningRow> rows) {
-  const std::vector<TuningPoint> points = points_of(rows);
-  std::vector<std::size_t> order(rows.size());
+std::string number(double value, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+std::vector<std::size_t> by_cost(const Study& study) {
+  std::vector<std::size_t> order(study.rows.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return points[i].cost; });
+  std::ranges::sort(order, {}, [&](std::size_t i) { return study.rows[i].frame_seconds(); });
   return order;
 }
 
-std::string csv_of(const Study& study) {
+std::vector<std::string> remarks(const Study& study) {
+  std::vector<std::string> lines;
+  lines.push_back(std::to_string(study.frames) + " of " + std::to_string(study.all_frames) + " frames, " +
+                  std::to_string(study.threads) + (study.threads == 1 ? " thread, " : " threads, ") +
+                  number(study.spent) + " s in all");
+  lines.push_back(reference_remark(study.reference));
+  lines.push_back(chaos_remark(study));
+  if (!study.left_out.empty()) lines.push_back("left out, as the budget ended: " + joined(study.left_out));
+  if (!study.failed.empty()) lines.push_back("could not be run: " + joined(study.failed));
+  return lines;
+}
+
+std::string to_text(const Study& study) {
+  std::size_t width = 8;
+  for (const Row& row : study.rows) width = std::max(width, row.setting.name.size());
+  std::string text = "  " + padded("setting", width) +
+                     "  steps [ms]          range  surface [ms]  error [h]  median   worst  worst [px]  "
+                     "height [h]   volume   energy";
+  for (const std::string& measure : study.measures) text += "  " + measure;
+  text += '\n';
+  for (const std::size_t i : by_cost(study)) {
+    const Row& row = study.rows[i];
+    const Range times = range(row);
+    char line[320];
+    std::snprintf(line, sizeof line,
+                  "  %10.3f  %6.3f..%6.3f  %12.3f  %9.3g %7.2g %7.2g  %10.3g  %10.2g %8.2g %8.2g",
+                  1e3 * row.median_seconds(), 1e3 * times.least, 1e3 * times.most, 1e3 * row.median_drawing(),
+                  study.error(row), row.error.median, row.error.worst, row.error.worst_pixels.value_or(0),
+                  row.error.height, row.error.volume, row.error.energy);
+    text += (row.on_front ? "* " : "  ") + padded(row.setting.name, width) + line;
+    for (const double measure : row.error.measures) text += "  " + number(measure);
+    text += '\n';
+  }
+  text += "* on the front: nothing that costs no more is as near to the reference\n";
+  for (const std::string& line : remarks(study)) text += line + '\n';
+  return text;
+}
+
+std::string to_csv(const Study& study) {
   std::string text =
-      "setting,changes,on_front,particles,steps,frame [ms],frame_lowest [ms],frame_highest [ms],mean_frame "
-      "[ms],drawing [ms],repeats,error [h],rms [h],median [h],worst [h],rms [pixels],worst [pixels],"
-      "drawing_error [h]";
-  for (const TuningMeasure& m : study.result.measures)
-    text += ',' + quoted(m.name + " [" + m.unit + "]") + ',' + quoted("mean " + m.name + " [" + m.unit + "]");
-  text += ",failure\n";
-  for (const TuningRow& row : study.result.rows) {
-    text += quoted(row.setting.name) + ',' + quoted(overrides_of(study, row)) + ',' +
-            (row.on_front ? "1" : "0") + ',';
-    const bool ran = row.failure.empty();
-    if (ran)
-      text += format("%zu,%lld,%.6g,%.6g,%.6g,%.6g,%.6g,%d,%.6g,%.6g,%.6g,%.6g,", row.particles,
-                     static_cast<long long>(row.steps), 1e3 * row.frame.median, 1e3 * row.frame.lowest,
-                     1e3 * row.frame.highest, 1e3 * row.mean.median, 1e3 * row.drawing, row.repeats, row.error,
-                     row.errors.rms, row.errors.median, row.errors.worst);
-    else
-      text += std::string(12, ',');
-    text += ran && row.errors.pixels ? format("%.6g,%.6g,", *row.errors.pixels, *row.errors.worst_pixels) : ",,";
-    text += ran ? format("%.6g", row.drawing_error) : "";
-    for (std::size_t m = 0; m < study.result.measures.size(); ++m)
-      text += m < row.errors.measures.size()
-                  ? format(",%.6g,%.6g", row.errors.measures[m], row.errors.statistics[m])
-                  : ",,";
-    text += ',' + quoted(row.failure) + '\n';
+      "setting,on_front,runs,steps_ms,steps_ms_least,steps_ms_most,surface_ms,frame_ms,error_h,median_h,rms_"
+      "h,"
+      "worst_h,median_px,worst_px,height_h,spread_h,center_h,late_shape_h,volume,energy";
+  for (const std::string& measure : study.measures) text += ',' + quoted(measure);
+  text += '\n';
+  for (const std::size_t i : by_cost(study)) {
+    const Row& row = study.rows[i];
+    const Range times = range(row);
+    text += quoted(row.setting.name) + (row.on_front ? ",1," : ",0,") + std::to_string(row.seconds.size());
+    for (const double value :
+         {1e3 * row.median_seconds(), 1e3 * times.least, 1e3 * times.most, 1e3 * row.median_drawing(),
+          1e3 * row.frame_seconds(), study.error(row), row.error.median, row.error.rms, row.error.worst})
+      text += ',' + number(value, 6);
+    for (const auto& pixels : {row.error.median_pixels, row.error.worst_pixels})
+      text += ',' + (pixels ? number(*pixels, 6) : std::string());
+    for (const double value : {row.error.height, row.error.spread, row.error.center, row.late.shape(),
+                               row.error.volume, row.error.energy})
+      text += ',' + number(value, 6);
+    for (const double value : row.error.measures) text += ',' + number(value, 6);
+    text += '\n';
   }
   return text;
 }
 
-nlohmann::ordered_json json_of(const Study& study, const std::optional<Goal>& goal,
-                               const std::optional<Pick>& pick) {
-  const TuningResult& result = study.result;
-  Json json = {{"scene", study.knobs.own().file.string()},
-               {"version", version()},
-               {"machine", program::machine_json()},
+std::string to_json(const Study& study, const std::optional<Picked>& picked) {
+  Json rows = Json::array();
+  for (const std::size_t i : by_cost(study)) {
+    const Row& row = study.rows[i];
+    rows.push_back({{"setting", row.setting.name},
+                    {"on_front", row.on_front},
+                    {"frame_seconds", row.seconds},
+                    {"surface_seconds", row.drawing},
+                    {"steps", row.motion.steps},
+                    {"error_h", study.error(row)},
+                    {"errors", to_json(row.error, study)},
+                    {"last_quarter", to_json(row.late, study)},
+                    {"paste", lines_to_paste(study.rows.front().setting.scene, row.setting.scene)}});
+  }
+  const Reference& reference = study.reference;
+  Json json = {{"scene", study.scene},
+               {"frames", study.frames},
+               {"all_frames", study.all_frames},
+               {"frame_time", study.frame_time},
                {"threads", study.threads},
-               {"frames", result.frames},
-               {"frame_time", study.config.frame_time},
-               {"budget", study.config.budget},
-               {"seconds", result.seconds},
-               {"interrupted", result.interrupted},
-               {"left_out", result.left_out},
-               {"findings", findings(study)}};
-  json["reference"] = {{"converged", result.converged}, {"error_h", result.reference_error}};
-  if (result.order) json["reference"]["order"] = *result.order;
-  for (const TuningLevel& level : result.levels) {
-    Json& added = json["reference"]["levels"].emplace_back(
-        Json{{"time_step", level.time_step}, {"steps", level.steps}, {"difference_h", level.difference}});
-    if (level.order) added["order"] = *level.order;
-  }
-  json["chaos"] = {{"chaotic", result.chaotic}, {"twin_h", result.twin}, {"twin_statistic_h", result.twin_statistic}};
-  if (result.parted_at) json["chaos"]["parted_at_frame"] = *result.parted_at;
-  json["settings"] = Json::array();
-  for (const TuningRow& row : result.rows) json["settings"].push_back(row_json(study, row));
-  if (goal && pick)
-    json["pick"] = {{"goal", to_string(*goal)},
-                    {"setting", result.rows[pick->row].setting.name},
-                    {"holds", pick->holds},
-                    {"again_frame_seconds", to_json(pick->again.frame)},
-                    {"same_bits", pick->again.state_hash == result.rows[pick->row].state_hash},
-                    {"tried", pick->tried}};
-  return json;
-}
-
-std::string text_table(const Study& study) {
-  const std::vector<TuningRow>& rows = study.result.rows;
-  std::string text = format("%-58s %10s %19s %8s %9s %9s\n", "setting", "ms a frame", "range", "error h",
-                            "pixels", "speed");
-  for (const std::size_t i : by_cost(rows)) {
-    const TuningRow& row = rows[i];
-    const bool preset = row.setting.name.starts_with("quality ");
-    if (!row.failure.empty() || row.repeats == 0 || !(row.on_front || i == 0 || preset)) continue;
-    std::string name = (row.on_front ? "* " : "  ") + row.setting.name;
-    text += format("%-58s %10.4g %8.4g .. %7.4g %8.3g %9s %8.2fx\n", name.c_str(), 1e3 * row.frame.median,
-                   1e3 * row.frame.lowest, 1e3 * row.frame.highest, row.error,
-                   row.errors.pixels ? format("%.3g", *row.errors.pixels).c_str() : "-",
-                   rows.front().frame.median / row.frame.median);
-  }
-  return text;
+               {"machine", program::machine_json()},
+               {"seconds", study.spent},
+               {"reference",
+                {{"factor", reference.factor},
+                 {"factors", reference.factors},
+                 {"differences_h", reference.differences},
+                 {"order", reference.order ? Json(*reference.order) : Json()},
+                 {"error_h", reference.error},
+                 {"converged", reference.converged}}},
+               {"chaotic", study.last_bit ? Json(study.chaotic) : Json()},
+               {"left_out", study.left_out},
+               {"failed", study.failed},
+               {"settings", rows}};
+  if (study.last_bit)
+    json["last_bit"] = {{"all", to_json(*study.last_bit, study)},
+                        {"last_quarter", to_json(*study.last_bit_late, study)}};
+  if (picked)
+    json["pick"] = {{"setting", study.rows[picked->row].setting.name},
+                    {"holds", picked->holds},
+                    {"frame_seconds", picked->again.frame_seconds()},
+                    {"error_h", study.error(picked->again)}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace mallow::tradeoff

@@ -1,22 +1,28 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
-#include "tradeoff/pick.h"
+#include "tradeoff/study.h"
 
 namespace mallow::tradeoff {
 
-/// A row for every setting: what it is, what it costs, how far it is off.
-std::string csv_of(const Study& study);
-/// All that was measured. pick: of `mallow tune`.
-nlohmann::ordered_json json_of(const Study& study, const std::optional<Goal>& goal = {},
-                               const std::optional<Pick>& pick = {});
-/// The front, the scene as it is and the presets, to be read in a terminal.
-std::string text_table(const Study& study);
-
-/// Rows in the order of their cost; what failed comes last.
-std::vector<std::size_t> by_cost(std::span<const TuningRow> rows);
+/// What a study found, in words and a table, cheapest first.
+std::string to_text(const Study& study);
+/// What there is to know about the reference, chaos, and what was left out: a sentence each.
+std::vector<std::string> remarks(const Study& study);
+/// A row for each setting.
+std::string to_csv(const Study& study);
+/// What `mallow tune` settled on.
+struct Picked {
+  std::size_t row = 0;
+  bool holds = false;  ///< false: the nearest
+  Row again;           ///< a second run of it
+};
+std::string to_json(const Study& study, const std::optional<Picked>& picked = {});
+/// Indices of rows, cheapest first.
+std::vector<std::size_t> by_cost(const Study& study);
+/// "%.3g" and the like.
+std::string number(double value, int digits = 3);
 
 }  // namespace mallow::tradeoff
