@@ -51,6 +51,7 @@ void bind_surroundings(SimulationClass& simulation) {
            py::arg("angular_velocity"), doc("Simulation.set_twist"))
       .def("set_pose", verb(&Simulation::set_pose), py::arg("collider"), py::arg("pose"),
            py::arg("seconds") = 0.0, doc("Simulation.set_pose"))
+      .def("set_solver", verb(&Simulation::set_solver), py::arg("config"), doc("Simulation.set_solver"))
       .def("set_gravity", verb(&Simulation::set_gravity), py::arg("gravity"), doc("Simulation.set_gravity"));
 }
 
