@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "mallow/errors.h"
-#include "mallow/files.h"
+#include "mallow/scene.h"
 #include "program/failure.h"
 #include "program/interrupt.h"
 #include "program/machine.h"
