@@ -82,6 +82,16 @@ TEST_F(sweep_runs, that_are_done_are_not_run_again_and_what_changed_is) {
   EXPECT_NE(time(0), before);
 }
 
+TEST_F(sweep_runs, are_refused_where_the_scene_no_longer_takes_their_values) {
+  sweep("out");
+  std::string scene = read_text(scene_);
+  scene.replace(scene.find("[[body]]"), 0, "update_intervall = 3\n");
+  std::ofstream(scene_) << scene;
+  const Outcome outcome = run_mallow({"sweep", spec_, "--out", at("out")});
+  EXPECT_EQ(outcome.exit_code, 2) << "no point can be run: the scene itself is wrong";
+  EXPECT_NE(outcome.err.find("update_intervall"), std::string::npos) << outcome.err;
+}
+
 TEST_F(sweep_runs, that_were_cut_off_end_with_the_table_of_those_that_were_not) {
   const std::string whole = sweep("whole");
   Running running({"sweep", spec_, "--out", at("cut"), "--jobs", "1"});

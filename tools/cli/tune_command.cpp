@@ -8,6 +8,7 @@
 #include "cli/tradeoff_command.h"
 #include "mallow/errors.h"
 #include "mallow/files.h"
+#include "program/cache.h"
 #include "program/failure.h"
 #include "program/interrupt.h"
 #include "program/output_files.h"
@@ -31,14 +32,6 @@ struct Limit {
 
 /// Share of the budget that the study gets; the run that confirms gets the rest.
 constexpr double k_study_share = 0.9;
-
-Scene moved(Scene scene, const fs::path& file) {
-  const fs::path from = fs::absolute(scene.file).parent_path(), to = fs::absolute(file).parent_path();
-  if (from == to) return scene;
-  for (fs::path* name : named_files(scene))
-    if (!name->empty() && name->is_relative()) *name = fs::proximate(from / *name, to);
-  return scene;
-}
 
 std::string described(const tradeoff::Study& study, const tradeoff::Row& row) {
   return tradeoff::number(1e3 * row.frame_seconds()) + " ms a frame, " + tradeoff::number(study.error(row)) +
@@ -81,7 +74,8 @@ void tune(const TuneOptions& options, const Scene& scene, const tradeoff::StudyO
                  "mallow: warning: the reference itself is off by about %s h: more --budget tells more\n",
                  tradeoff::number(study.reference.error).c_str());
   if (!options.write.empty())
-    write_whole(options.write, print_scene(moved(row.setting.scene, options.write)));
+    write_whole(options.write,
+                program::Cache::scene_text(fs::absolute(options.write).parent_path(), row.setting.scene));
 }
 
 void run(const TuneOptions& options) {

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "program/csv.h"
+
 namespace mallow::program {
 namespace fs = std::filesystem;
 namespace {
@@ -26,12 +28,7 @@ class Line {
     for (int axis = 0; axis < 3; ++axis) add(value[axis]);
   }
   /// As it is, in quotes where a comma or the like asks for them.
-  void add(const std::string& cell) {
-    if (cell.find_first_of(",\"\n\r") == cell.npos) return add_separated(cell);
-    std::string quoted;
-    for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    add_separated('"' + quoted + '"');
-  }
+  void add(const std::string& cell) { add_separated(csv_cell(cell)); }
   std::string text() const { return text_ + '\n'; }
   /// The cells of another line.
   void add(const Line& other) {

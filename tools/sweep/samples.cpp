@@ -4,9 +4,9 @@
 #include <cmath>
 #include <fstream>
 #include <random>
-#include <sstream>
 
 #include "mallow/errors.h"
+#include "program/csv.h"
 #include "sweep/sweep_spec.h"
 #include "sweep/text.h"
 
@@ -98,29 +98,18 @@ Points sobol(const SweepSpec& spec) {
   return points;
 }
 
-std::vector<std::string> cells(const std::string& line) {
-  std::vector<std::string> all;
-  std::string cell;
-  std::istringstream text(line);
-  while (std::getline(text, cell, ',')) {
-    const std::size_t begin = cell.find_first_not_of(" \t\r"), end = cell.find_last_not_of(" \t\r");
-    all.push_back(begin == std::string::npos ? "" : cell.substr(begin, end - begin + 1));
-  }
-  return all;
-}
-
 Points points_of_file(SweepSpec& spec) {
   const std::string name = spec.points_file.string();
   std::ifstream file(spec.points_file);
   std::string line;
   if (!file || !std::getline(file, line))
     throw IoError({name, 0, 0, "points_file", "cannot be read, or is empty"});
-  for (const std::string& key : cells(line)) spec.vary.emplace_back().key = key;
+  for (const std::string& key : program::csv_cells(line)) spec.vary.emplace_back().key = key;
   Points points;
   std::vector<Problem> problems;
   for (int number = 2; std::getline(file, line); ++number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    points.push_back(cells(line));
+    points.push_back(program::csv_cells(line));
     if (points.back().size() != spec.vary.size() || std::ranges::count(points.back(), ""))
       problems.push_back({name, number, 0, "points_file",
                           "has " + std::to_string(points.back().size()) + " values, where the header names " +

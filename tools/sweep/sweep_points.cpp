@@ -11,6 +11,7 @@
 #include "mallow/files.h"
 #include "mallow/scene.h"
 #include "program/cache.h"
+#include "program/csv.h"
 #include "program/external_program.h"
 #include "program/failure.h"
 #include "program/fnv.h"
@@ -56,13 +57,6 @@ std::string last_word(const fs::path& log) {
   return last;
 }
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream text(line);
-  for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
 /// Of a column: one of its values, or their mean.
 std::optional<double> value_of(const std::vector<double>& column, Measure::Of of) {
   if (column.empty()) return std::nullopt;
@@ -87,11 +81,11 @@ std::map<std::string, double> measure_series(const SweepSpec& spec, const fs::pa
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
-  std::vector<std::string> names = split(line);
+  std::vector<std::string> names = program::csv_cells(line);
   for (std::string& column : names) column = column.substr(0, column.find(" ["));
   std::vector<std::vector<double>> columns(names.size());
   while (std::getline(in, line)) {
-    const std::vector<std::string> cells = split(line);
+    const std::vector<std::string> cells = program::csv_cells(line);
     for (std::size_t c = 0; c < std::min(cells.size(), names.size()); ++c)
       if (const auto value = number_of(cells[c])) columns[c].push_back(*value);
   }
@@ -160,16 +154,32 @@ std::string SweepFolder::worker(const std::vector<std::string>& command, std::si
   return program::shell_line(command) + " --point " + std::to_string(point);
 }
 
-/// Of all that a row depends on. Throws ConfigError and IoError as the scene's reader does.
-std::string SweepFolder::hash(std::size_t point) const {
-  Scene scene = read_scene(spec_.scene, overrides(spec_, points_[point]), {});
+/// The scene of a point. Throws ConfigError and IoError.
+Scene SweepFolder::scene(std::size_t point) const {
+  return read_scene(spec_.scene, overrides(spec_, points_[point]), {});
+}
+
+/// Of all that a row depends on. Throws IoError.
+std::string SweepFolder::hash(std::size_t point, Scene scene) const {
   std::uint64_t hash = program::fnv(program::Cache::scene_text(point_folder(point), scene), program_hash_);
-  for (const fs::path* file : named_files(scene))
-    hash = program::fnv(text_of(scene.file.parent_path() / *file), hash);
+  for (const fs::path* file : named_files(scene)) {
+    const fs::path path = scene.file.parent_path() / *file;
+    const std::lock_guard lock(hashing_);
+    const auto [found, is_new] = file_hashes_.try_emplace(path, 0);  // many points read the same mesh
+    if (is_new) found->second = program::fnv(text_of(path));
+    hash = program::fnv(std::to_string(found->second), hash);
+  }
   hash = program::fnv(std::to_string(spec_.frames.value_or(-1)) + (spec_.images ? " images" : ""), hash);
   std::ostringstream text;
   text << std::hex << hash;
   return text.str();
+}
+
+/// Whether that is the hash of a point as it would be run now.
+bool SweepFolder::is_of_now(std::size_t point, const std::string& hash_then) const try {
+  return hash(point, scene(point)) == hash_then;
+} catch (const Error&) {
+  return false;
 }
 
 Outcome SweepFolder::outcome(std::size_t point) const try {
@@ -181,7 +191,7 @@ Outcome SweepFolder::outcome(std::size_t point) const try {
   outcome.message = json.at("message").get<std::string>();
   outcome.seconds = json.at("seconds").get<double>();
   if (outcome.status == Status::refused) return outcome;
-  if (json.at("hash") != hash(point)) return {};
+  if (!is_of_now(point, json.at("hash").get<std::string>())) return {};
   if (outcome.status == Status::done)
     outcome.measured = measure_series(spec_, point_folder(point) / "series.csv");
   return outcome;
@@ -196,9 +206,9 @@ Outcome SweepFolder::run(std::size_t point, int threads) const {
   const auto begin = std::chrono::steady_clock::now();
   try {
     fs::create_directories(folder);
-    own_hash = hash(point);
-    const Scene scene = read_scene(spec_.scene, overrides(spec_, points_[point]), {});
-    write_whole(folder / "scene.toml", program::Cache::scene_text(folder, scene));
+    const Scene own = scene(point);
+    own_hash = hash(point, own);
+    write_whole(folder / "scene.toml", program::Cache::scene_text(folder, own));
     fs::remove(folder / "point.json");
     const int code = program::run_logged(arguments(point, threads), folder / "log.txt");
     if (const int signal = program::interrupted())

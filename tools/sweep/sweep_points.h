@@ -1,10 +1,12 @@
 #pragma once
 
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "mallow/scene.h"
 #include "sweep/sweep_spec.h"
 
 namespace mallow::sweep {
@@ -44,13 +46,17 @@ class SweepFolder {
 
  private:
   std::vector<std::string> arguments(std::size_t point, int threads) const;
-  std::string hash(std::size_t point) const;
-  Outcome measure(std::size_t point) const;
+  Scene scene(std::size_t point) const;
+  std::string hash(std::size_t point, Scene scene) const;
+  bool is_of_now(std::size_t point, const std::string& hash_then) const;
 
   SweepSpec spec_;
   std::filesystem::path folder_, program_;
   std::vector<std::vector<std::string>> points_;
   std::uint64_t program_hash_ = 0;
+  mutable std::mutex hashing_;
+  mutable std::map<std::filesystem::path, std::uint64_t>
+      file_hashes_;  ///< of meshes and points of the scenes
 };
 
 }  // namespace mallow::sweep

@@ -10,6 +10,7 @@
 
 #include "mallow/errors.h"
 #include "mallow/files.h"
+#include "program/csv.h"
 #include "program/external_program.h"
 #include "sweep/text.h"
 
@@ -28,20 +29,6 @@ std::vector<std::string> row(const SweepFolder& sweep, std::size_t point, const 
   }
   cells.push_back(outcome.message);
   return cells;
-}
-
-/// A cell of a CSV [RFC 4180].
-std::string quoted(const std::string& cell) {
-  if (cell.find_first_of(",\"\n\r") == std::string::npos) return cell;
-  std::string text = "\"";
-  for (const char c : cell) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return text + '"';
-}
-
-std::string line_of(const std::vector<std::string>& cells) {
-  std::string line;
-  for (const std::string& cell : cells) line += (&cell == cells.data() ? "" : ",") + quoted(cell);
-  return line + '\n';
 }
 
 /// A name in SQL, whatever is in it.
@@ -120,8 +107,8 @@ std::vector<std::string> table_columns(const SweepFolder& sweep) {
 void write_table(const SweepFolder& sweep, const std::vector<Outcome>& outcomes) {
   const std::vector<std::string> columns = table_columns(sweep);
   const auto rows = rows_of(sweep, outcomes);
-  std::string csv = line_of(columns);
-  for (const std::vector<std::string>& cells : rows) csv += line_of(cells);
+  std::string csv = program::csv_line(columns);
+  for (const std::vector<std::string>& cells : rows) csv += program::csv_line(cells);
   write_whole(sweep.folder() / "table.csv", csv);
   write_whole(sweep.folder() / "table.sqlite", [&](const fs::path& beside) {
     fs::remove(beside);

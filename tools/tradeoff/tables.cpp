@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "program/csv.h"
 #include "program/machine.h"
 
 namespace mallow::tradeoff {
@@ -30,12 +31,6 @@ Json to_json(const MotionError& error, const Study& study) {
   for (std::size_t m = 0; m < std::min(study.measures.size(), error.measures.size()); ++m)
     json["measures"][study.measures[m]] = error.measures[m];
   return json;
-}
-
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
 }
 
 std::string padded(const std::string& text, std::size_t width) {
@@ -135,12 +130,13 @@ std::string to_csv(const Study& study) {
       "setting,on_front,runs,steps_ms,steps_ms_least,steps_ms_most,surface_ms,frame_ms,error_h,median_h,rms_"
       "h,"
       "worst_h,median_px,worst_px,height_h,spread_h,center_h,late_shape_h,volume,energy";
-  for (const std::string& measure : study.measures) text += ',' + quoted(measure);
+  for (const std::string& measure : study.measures) text += ',' + program::csv_cell(measure);
   text += '\n';
   for (const std::size_t i : by_cost(study)) {
     const Row& row = study.rows[i];
     const Range times = range(row);
-    text += quoted(row.setting.name) + (row.on_front ? ",1," : ",0,") + std::to_string(row.seconds.size());
+    text += program::csv_cell(row.setting.name) + (row.on_front ? ",1," : ",0,") +
+            std::to_string(row.seconds.size());
     for (const double value :
          {1e3 * row.median_seconds(), 1e3 * times.least, 1e3 * times.most, 1e3 * row.median_drawing(),
           1e3 * row.frame_seconds(), study.error(row), row.error.median, row.error.rms, row.error.worst})
