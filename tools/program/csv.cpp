@@ -2,11 +2,14 @@
 
 namespace mallow::program {
 
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == text.npos) return text;
+std::string csv_quoted(const std::string& text) {
   std::string quoted;
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return '"' + quoted + '"';
+}
+
+std::string csv_cell(const std::string& text) {
+  return text.find_first_of(",\"\n\r") == text.npos ? text : csv_quoted(text);
 }
 
 std::string csv_line(const std::vector<std::string>& cells) {

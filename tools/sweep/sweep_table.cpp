@@ -31,13 +31,6 @@ std::vector<std::string> row(const SweepFolder& sweep, std::size_t point, const 
   return cells;
 }
 
-/// A name in SQL, whatever is in it.
-std::string sql_name(const std::string& name) {
-  std::string text = "\"";
-  for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return text + '"';
-}
-
 bool is_number(const std::string& text) {
   return number_of(text).has_value();
 }
@@ -113,8 +106,9 @@ void write_table(const SweepFolder& sweep, const std::vector<Outcome>& outcomes)
   write_whole(sweep.folder() / "table.sqlite", [&](const fs::path& beside) {
     fs::remove(beside);
     Database database(beside);
-    std::string list;
-    for (const std::string& column : columns) list += (list.empty() ? "" : ", ") + sql_name(column);
+    std::string list;  // names are quoted in SQL as cells are in a CSV
+    for (const std::string& column : columns)
+      list += (list.empty() ? "" : ", ") + program::csv_quoted(column);
     database.run("PRAGMA journal_mode = OFF; BEGIN; CREATE TABLE points (" + list + ")");
     database.insert(columns.size(), rows);
     database.run("COMMIT");

@@ -130,12 +130,12 @@ std::string to_csv(const Study& study) {
       "setting,on_front,runs,steps_ms,steps_ms_least,steps_ms_most,surface_ms,frame_ms,error_h,median_h,rms_"
       "h,"
       "worst_h,median_px,worst_px,height_h,spread_h,center_h,late_shape_h,volume,energy";
-  for (const std::string& measure : study.measures) text += ',' + program::csv_cell(measure);
+  for (const std::string& measure : study.measures) text += ',' + program::csv_quoted(measure);
   text += '\n';
   for (const std::size_t i : by_cost(study)) {
     const Row& row = study.rows[i];
     const Range times = range(row);
-    text += program::csv_cell(row.setting.name) + (row.on_front ? ",1," : ",0,") +
+    text += program::csv_quoted(row.setting.name) + (row.on_front ? ",1," : ",0,") +
             std::to_string(row.seconds.size());
     for (const double value :
          {1e3 * row.median_seconds(), 1e3 * times.least, 1e3 * times.most, 1e3 * row.median_drawing(),
