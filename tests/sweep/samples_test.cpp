@@ -88,6 +88,15 @@ TEST_F(sweep_spec, whole_numbers_stay_whole_and_all_of_a_range_come) {
   EXPECT_EQ(seen, (std::set<std::string>{"1", "2", "3", "4"}));
 }
 
+TEST_F(sweep_spec, logarithmic_ranges_between_whole_numbers_are_logarithmic) {
+  int below = 0;
+  for (const auto& point : points("scene = \"s.toml\"\nmethod = \"latin_hypercube\"\npoints = "
+                                  "40\n[[vary]]\nkey = \"a\"\nfrom = 1\nto = 10000\n"
+                                  "scale = \"log\"\n"))
+    below += std::stod(point[0]) < 100 ? 1 : 0;
+  EXPECT_NEAR(below, 20, 1);
+}
+
 TEST_F(sweep_spec, all_that_is_wrong_is_told_by_line_and_with_what_is_allowed) {
   const std::string said = refusal(
       "scene = \"s.toml\"\nmethod = \"sobl\"\nframes = 0\nmeasure = []\n[[vary]]\nkey = \"a\"\nfrom = "
@@ -98,6 +107,10 @@ TEST_F(sweep_spec, all_that_is_wrong_is_told_by_line_and_with_what_is_allowed) {
   EXPECT_NE(refusal("scene = \"s.toml\"\nmethod = \"random\"\n" + k_two_keys).find("points: is missing"),
             std::string::npos);
   EXPECT_NE(refusal("scene = \"s.toml\"\n").find("[[vary]]"), std::string::npos);
+  EXPECT_NE(refusal("scene = \"s.toml\"\n[[vary]]\nkey = [\"a\", \"b\"]\nvalues = [1]\n[[vary]]\nkey = "
+                    "\"b\"\nvalues = [1]\n")
+                .find("'b' twice"),
+            std::string::npos);
   EXPECT_NE(refusal("scene = ").find(":1:"), std::string::npos);
   EXPECT_THROW(read_spec("no such file.toml"), IoError);
 }

@@ -103,6 +103,36 @@ TEST_F(sweep_runs, that_were_cut_off_end_with_the_table_of_those_that_were_not) 
   EXPECT_EQ(sweep("cut"), whole);
 }
 
+TEST_F(sweep_runs, take_what_lies_between_whole_numbers_where_the_key_does) {
+  write("spec.toml",
+        "scene = \"" + fs::path(scene_).filename().string() +
+            "\"\nframes = 1\nmethod = \"random\"\npoints = 20\n[[vary]]\nkey = [\"material[0].friction\", "
+            "\"material[0].alpha\"]\nfrom = 0\nto = 1\n[[vary]]\nkey = \"material[0].region_stride\"\nfrom = "
+            "1\nto = "
+            "3\n");
+  const Outcome outcome = run_mallow({"sweep", spec_, "--dry-run"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("0 material[0].friction=0."), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("region_stride=1."), std::string::npos) << outcome.out;
+  sweep("out");
+  EXPECT_NE(read_text(at("out/points/00000/scene.toml")).find("alpha = 0."), std::string::npos);
+  // The command of a point is good from any folder.
+  EXPECT_NE(read_text(at("out/points/00000/point.json")).find("run " + scene_), std::string::npos);
+}
+
+TEST_F(sweep_runs, whose_scene_is_changed_meanwhile_are_not_called_done) {
+  write_spec("[1]", 400);
+  Running running({"sweep", spec_, "--out", at("out"), "--jobs", "1"});
+  while (!fs::exists(at("out/points/00000/point.json")) && running.alive())
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  std::string scene = read_text(scene_);
+  scene.replace(scene.find("[solver]"), 8, "[solver]\nsleep_time = 7");
+  std::ofstream(scene_) << scene;
+  const Outcome outcome = running.wait();
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+  EXPECT_NE(outcome.err.find("changed meanwhile"), std::string::npos) << outcome.err;
+}
+
 TEST_F(sweep_runs, that_cannot_write_are_rows_with_their_message) {
   fs::create_directories(at("out/points"));
   write("out/sweep.toml", "");

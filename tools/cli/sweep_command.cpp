@@ -81,6 +81,7 @@ void print_estimate(const SweepFolder& sweep, const Slots& slots) {
                each = std::max(0.0, *start - frame * few) + frame * frames;
   std::printf("points %zu\nestimate %.3g s a point, %.3g s in all, %d at a time\n", sweep.points().size(),
               each, each * static_cast<double>(sweep.points().size()) / slots.jobs, slots.jobs);
+  if (sweep.spec().images) std::printf("pictures of every frame come on top\n");
 }
 
 sweep::Elsewhere elsewhere(const SweepOptions& options) {
@@ -113,7 +114,9 @@ void finish(const SweepFolder& sweep, const std::map<std::size_t, Outcome>& ran)
   for (std::size_t point = 0; point < sweep.points().size(); ++point) {
     outcomes.push_back(sweep.outcome(point));
     const auto known = ran.find(point);
-    if (outcomes.back().status == Outcome::Status::open && known != ran.end())
+    // One that was done, and is open now, is of another scene than the table: somebody changed it meanwhile.
+    if (outcomes.back().status == Outcome::Status::open && known != ran.end() &&
+        known->second.status != Outcome::Status::done)
       outcomes.back() = known->second;
     ++counts[static_cast<std::size_t>(outcomes.back().status)];
   }
@@ -126,7 +129,8 @@ void finish(const SweepFolder& sweep, const std::map<std::size_t, Outcome>& ran)
               (sweep.folder() / "table.csv").c_str());
   if (const std::size_t open = count(Outcome::Status::open))
     throw program::RunFailure(std::to_string(open) +
-                              " points were not run; the same command goes on with them");
+                              " points were not run, or with a scene that was changed meanwhile; the same "
+                              "command goes on with them");
 }
 
 void run_sweep(const SweepOptions& options) {
@@ -151,6 +155,8 @@ void run_sweep(const SweepOptions& options) {
     for (std::size_t point = 0; point < sweep.points().size(); ++point)
       if (sweep.outcome(point).status != Outcome::Status::done) points.push_back(point);
   }
+  if (options.point.empty() && !points.empty())  // it would be that of before, where this is cut off
+    for (const char* table : {"table.csv", "table.sqlite"}) fs::remove(sweep.folder() / table);
   std::map<std::size_t, Outcome> ran;
   if (options.on == "parallel" && !points.empty())
     run_by_parallel(sweep, points, elsewhere(options));
@@ -206,6 +212,8 @@ void add_sweep_command(CLI::App& app) {
       "measures, columns of\n"
       "`mallow run --series` with .last, .min, .max or .mean; [[plot]] tables with x, y and color, columns "
       "of the table.\n"
+      "key may be a list of keys that get the same value. images = true takes the pictures of every run, and "
+      "a sheet of the last ones.\n"
       "DIR/table.csv and table.sqlite have a row for each point, points/00007 its scene, series, report and "
       "what it said.");
   command->callback([options] { run_sweep(*options); });

@@ -65,6 +65,16 @@ void tune(const TuneOptions& options, const Scene& scene, const tradeoff::StudyO
   if (!options.out.empty()) write_study(options.out, study, tradeoff::Picked{pick->index, confirmed, again});
   const std::string lines = tradeoff::lines_to_paste(scene, row.setting.scene);
   std::printf("%s", lines.empty() ? "# the scene as it is\n" : lines.c_str());
+  // What the study could not see is no promise: matter that falls tells nothing of how it lands.
+  if (study.frames < study.all_frames)
+    throw program::RunFailure(
+        "judged by the first " + std::to_string(study.frames) + " of " + std::to_string(study.all_frames) +
+        " frames alone, as the budget ended: give more by --budget, or less run.frames; "
+        "nothing is written");
+  if (!limit.is_time && !study.chaotic && study.reference.error > limit.most)
+    throw program::RunFailure(
+        "--error " + options.error + " cannot be judged, as the reference itself is off by about " +
+        tradeoff::number(study.reference.error) + " h: give more by --budget; nothing is written");
   if (!confirmed)
     throw program::RunFailure("no setting holds " +
                               (limit.is_time ? "--frame " + options.frame : "--error " + options.error) +

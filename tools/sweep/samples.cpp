@@ -19,11 +19,14 @@ std::string value_at(const Vary& vary, double share) {
     const auto at = static_cast<std::size_t>(share * static_cast<double>(vary.values.size()));
     return vary.values[std::min(at, vary.values.size() - 1)];
   }
-  if (vary.whole) {
+  if (vary.whole && !vary.logarithmic) {
     const double count = std::abs(vary.to - vary.from) + 1, sign = vary.to < vary.from ? -1 : 1;
     return number_text(vary.from + sign * std::min(std::floor(share * count), count - 1));
   }
-  if (vary.logarithmic) return number_text(vary.from * std::pow(vary.to / vary.from, share));
+  if (vary.logarithmic) {
+    const double value = vary.from * std::pow(vary.to / vary.from, share);
+    return number_text(vary.whole ? std::round(value) : value);
+  }
   return number_text(vary.from + share * (vary.to - vary.from));
 }
 
@@ -104,7 +107,11 @@ Points points_of_file(SweepSpec& spec) {
   std::string line;
   if (!file || !std::getline(file, line))
     throw IoError({name, 0, 0, "points_file", "cannot be read, or is empty"});
-  for (const std::string& key : program::csv_cells(line)) spec.vary.emplace_back().key = key;
+  for (const std::string& key : program::csv_cells(line)) {
+    if (std::ranges::count(spec.vary, key, &Vary::key))
+      throw ConfigError({{name, 1, 0, "points_file", "has '" + key + "' twice"}});
+    spec.vary.emplace_back().key = key;
+  }
   Points points;
   std::vector<Problem> problems;
   for (int number = 2; std::getline(file, line); ++number) {

@@ -35,7 +35,10 @@ std::string text_of(const fs::path& file) {
 
 std::vector<std::string> overrides(const SweepSpec& spec, const std::vector<std::string>& values) {
   std::vector<std::string> all;
-  for (std::size_t k = 0; k < values.size(); ++k) all.push_back(spec.vary[k].key + "=" + values[k]);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    all.push_back(spec.vary[k].key + "=" + values[k]);
+    for (const std::string& key : spec.vary[k].also) all.push_back(key + "=" + values[k]);
+  }
   return all;
 }
 
@@ -46,6 +49,15 @@ void check_key(const SweepSpec& spec, const std::string& key, const std::string&
   const std::string text = error.what();
   if (text.find("unknown key") != std::string::npos || text.find("does not exist") != std::string::npos)
     throw;
+}
+
+/// Whether a key refuses what lies between two whole numbers: a range from 0 to 1 of a friction has more than
+/// these two.
+bool takes_whole_numbers_alone(const SweepSpec& spec, const Vary& vary) try {
+  read_scene(spec.scene, std::vector{vary.key + "=" + number_text(vary.from + 0.5)}, {});
+  return false;
+} catch (const ConfigError& error) {
+  return std::string(error.what()).find("a whole number") != std::string::npos;
 }
 
 /// The last line that a run said, without the program's name: what went wrong.
@@ -115,8 +127,12 @@ const char* name(Outcome::Status status) {
 
 SweepFolder::SweepFolder(SweepSpec spec, fs::path folder, fs::path program)
     : spec_(std::move(spec)), folder_(std::move(folder)), program_(std::move(program)) {
+  for (Vary& vary : spec_.vary) vary.whole = vary.whole && takes_whole_numbers_alone(spec_, vary);
   points_ = sample_points(spec_);
-  for (std::size_t k = 0; k < spec_.vary.size(); ++k) check_key(spec_, spec_.vary[k].key, points_[0][k]);
+  for (std::size_t k = 0; k < spec_.vary.size(); ++k) {
+    check_key(spec_, spec_.vary[k].key, points_[0][k]);
+    for (const std::string& key : spec_.vary[k].also) check_key(spec_, key, points_[0][k]);
+  }
   program_hash_ = program::fnv(text_of(program_));
 }
 
@@ -127,10 +143,10 @@ fs::path SweepFolder::point_folder(std::size_t point) const {
 }
 
 std::vector<std::string> SweepFolder::arguments(std::size_t point, int threads) const {
-  const fs::path folder = point_folder(point);
+  const fs::path folder = fs::absolute(point_folder(point));  // the command is good anywhere
   std::vector<std::string> all{program_.string(),
                                "run",
-                               spec_.scene.string(),
+                               fs::absolute(spec_.scene).string(),
                                "--threads",
                                std::to_string(threads),
                                "--series",

@@ -111,8 +111,18 @@ void read_range(Reader& reader, const toml::table& table, const std::string& pat
 Vary read_vary(Reader& reader, const toml::table& table, const std::string& path) {
   reader.allow(table, path, {"key", "values", "from", "to", "count", "scale"});
   Vary vary;
-  vary.key = reader.text(table, path, "key");
-  if (vary.key.empty()) reader.problem(table, path + "key", "is missing: a key of the scene");
+  if (const toml::array* keys = table.get("key") ? table.get("key")->as_array() : nullptr) {
+    for (const toml::node& key : *keys) vary.also.push_back(key.value_or<std::string>(""));
+    if (vary.also.empty() || std::ranges::count(vary.also, ""))
+      reader.problem(*keys, path + "key", "a key of the scene is needed, or a list of them");
+    else
+      vary.key = vary.also.front();
+    if (!vary.also.empty()) vary.also.erase(vary.also.begin());
+  } else {
+    vary.key = reader.text(table, path, "key");
+  }
+  if (vary.key.empty() && !table.contains("key"))
+    reader.problem(table, path + "key", "is missing: a key of the scene");
   const toml::node* values = table.get("values");
   if (!values) {
     read_range(reader, table, path, vary);
@@ -193,7 +203,12 @@ void check_vary(Reader& reader, const toml::table& table, const SweepSpec& spec)
   std::set<std::string> keys;
   double count = 1;
   for (const Vary& vary : spec.vary) {
-    if (!keys.insert(vary.key).second) reader.problem(table, "vary", "has '" + vary.key + "' twice");
+    std::vector<std::string> all = vary.also;
+    all.push_back(vary.key);
+    for (const std::string& key : all)
+      if (!keys.insert(key).second) reader.problem(table, "vary", "has '" + key + "' twice");
+    if (spec.method != Method::grid && vary.count)
+      reader.problem(table, "vary", "'" + vary.key + "' has a count, which only a grid takes");
     if (spec.method == Method::grid && vary.values.empty() && !vary.count)
       reader.problem(table, "vary", "'" + vary.key + "' needs a count in a grid");
     count *= static_cast<double>(vary.values.empty() ? vary.count.value_or(1) : int(vary.values.size()));

@@ -11,11 +11,12 @@ namespace mallow::sweep {
 /// One key of the scene that a sweep turns, by a list or by a range.
 struct Vary {
   std::string key;                  ///< as `mallow run --set` has it: "material[0].alpha"
+  std::vector<std::string> also;    ///< keys that get the same value
   std::vector<std::string> values;  ///< as TOML writes them; empty where it is a range
   double from = 0, to = 0;
   std::optional<int> count;  ///< of a range in a grid, ends included
   bool logarithmic = false;
-  bool whole = false;  ///< from and to are whole numbers, and so is what lies between
+  bool whole = false;  ///< from and to are written as whole numbers, and so is what lies between
 };
 
 enum class Method { grid, random, latin_hypercube, sobol };
