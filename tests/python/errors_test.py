@@ -50,6 +50,13 @@ class Exceptions(unittest.TestCase):
             simulation.remove_body(mallow.ColliderId(0))
         with self.assertRaises(TypeError):
             simulation.remove_body(0)
+        simulation.step()
+        for call in (simulation.row, simulation.alpha, simulation.rest_position, simulation.rotation):
+            call(simulation.ids[0])
+            call(0)
+            for wrong in (body, 0.0, "0", None):
+                with self.assertRaises(TypeError):
+                    call(wrong)
         simulation.remove_body(body)
         for call in (simulation.rows, simulation.wake, simulation.motion, simulation.remove_body):
             with self.assertRaises(mallow.ConfigError):

@@ -142,7 +142,12 @@ Aabb FilmBounds::box(const Scene& scene, float spacing) const {
 Aabb bounds_now(const Scene& scene, Simulation& simulation) {
   float spacing = std::numeric_limits<float>::infinity();
   for (const BodyInfo& body : simulation.info().bodies) spacing = std::min(spacing, body.spacing);
-  return FilmBounds(snapshot(simulation)).box(scene, std::isfinite(spacing) ? spacing : 0.0f);
+  Aabb box = FilmBounds(snapshot(simulation)).box(scene, std::isfinite(spacing) ? spacing : 0.0f);
+  const Vec3 middle = 0.5f * (box.min + box.max);
+  for (const Plane& plane : Room(scene).grounds)
+    if (const Vec3 foot(middle.x(), middle.y(), ground_height(plane, middle)); foot.z() < middle.z())
+      extend(box, {foot, foot});
+  return box;
 }
 
 }  // namespace mallow::program

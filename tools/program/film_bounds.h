@@ -23,7 +23,8 @@ class FilmBounds {
   double last_time_ = 0;  ///< [s]
 };
 
-/// What a picture of a simulation as it is now has to have in view.
+/// What a picture of a simulation as it is now has to have in view, with the ground below it: what is in the
+/// air comes down.
 Aabb bounds_now(const Scene& scene, Simulation& simulation);
 
 /// The colliders of a scene that are seen.

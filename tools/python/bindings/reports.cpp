@@ -16,7 +16,6 @@ void id(py::module_& module, const char* name, const char* text) {
   py::class_<Id> bound(module, name, text);
   bound.def(py::init([](Number value) { return Id{value}; }), py::arg("value"))
       .def("__int__", number)
-      .def("__index__", number)
       .def("__hash__", number)
       .def("__eq__", [](Id a, Id b) { return a == b; })
       .def("__eq__", [](Id, const py::object&) { return false; })

@@ -4,6 +4,16 @@
 namespace mallow::python {
 namespace {
 
+/// A whole number of Python or NumPy. The id of a body is one of a body, and no number here.
+ParticleId particle_id(const py::object& number) {
+  if (PyIndex_Check(number.ptr()) == 0)
+    throw py::type_error("particle: the id of a particle is needed, a whole number of ids");
+  const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(number.ptr()));
+  const ParticleId id = index ? PyLong_AsUnsignedLongLong(index.ptr()) : 0;
+  if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+  return id;
+}
+
 /// Quaternions as x, y, z, w.
 std::array<float, 4> numbers(const Eigen::Quaternionf& q) {
   return {q.x(), q.y(), q.z(), q.w()};
@@ -40,21 +50,26 @@ void bind_of_particles(SimulationClass& simulation) {
   const auto def = [&](const char* name, const auto& get, auto... arguments) {
     simulation.def(name, get, py::arg(arguments)..., doc(std::string("Simulation.") + name));
   };
-  def("row", query(&Simulation::row), "particle");
-  def("alpha", query(&Simulation::alpha), "particle");
-  def("rest_position", query(&Simulation::rest_position), "particle");
+  const auto def_of_particle = [&](const char* name, const auto& get) {
+    simulation.def(
+        name,
+        [get](SimulationCell& cell, const py::object& particle) {
+          const ParticleId id = particle_id(particle);
+          const Use use = reading(cell);
+          return get(cell.simulation, id);
+        },
+        py::arg("particle"), doc(std::string("Simulation.") + name));
+  };
+  def_of_particle("row", [](const Simulation& s, ParticleId id) { return s.row(id); });
+  def_of_particle("alpha", [](const Simulation& s, ParticleId id) { return s.alpha(id); });
+  def_of_particle("rest_position", [](const Simulation& s, ParticleId id) { return s.rest_position(id); });
+  def_of_particle("rotation", [](const Simulation& s, ParticleId id) {
+    return Eigen::Vector4d(s.rotation(id).coeffs().cast<double>());
+  });
   def("positions_by_id", query(&Simulation::positions_by_id));
   def("velocities_by_id", query(&Simulation::velocities_by_id));
   def("bodies_by_id", query(&Simulation::bodies_by_id));
   simulation
-      .def(
-          "rotation",
-          [](SimulationCell& cell, ParticleId id) {
-            const Use use = reading(cell);
-            const Eigen::Quaternionf q = cell.simulation.rotation(id);
-            return Eigen::Vector4d(q.coeffs().cast<double>());
-          },
-          py::arg("particle"), doc("Simulation.rotation"))
       .def(
           "rest_positions",
           [](SimulationCell& cell, BodyId body) {

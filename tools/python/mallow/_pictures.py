@@ -9,6 +9,8 @@ def render(scene, simulation, mesh=None, file=None, camera=None, threads=0):
     skins left aside. file: a PNG to write it to as well. camera: a Camera; left out, one that has in view what the
     simulation is in now. For a film, keep a Renderer, a Surfacer and a Camera.
     """
+    if file is not None and not str(file).lower().endswith(".png"):
+        raise ValueError(f"file: '{file}' is not allowed: pictures are PNG files")
     if mesh is None:
         mesh = _mallow.Surfacer(scene.surface, threads).draw(simulation)
     colliders = _mallow.visible_colliders(scene)
