@@ -196,7 +196,7 @@ Json measure_row(const PaperRow& paper, const Table1Settings& settings, int thre
       {"fps2_rendered_ratio", 1000 / (ms + surface_ms + picture_ms) / paper.fps2},
       {"bytes_per_particle", static_cast<double>(runs.front().bytes) / static_cast<double>(info.particles)},
       {"state_hash", program::hash_text(runs.front().state_hash)}};
-  // OpenVDB leaves out spheres of less than 1.5 voxels: then it has no surface to compare with.
+  // OpenVDB leaves out spheres of less than 1.5 voxels: then it has no surface to compare with, nor where it is not built.
   if (frames.plain_distance > 0) {
     row["plain_surface_ms"] = mean(frames.plain_surface);
     row["plain_surface_ratio"] = mean(frames.plain_surface) / mean(frames.beside_plain);
