@@ -6,6 +6,7 @@
 #include "program/failure.h"
 #include "program/interrupt.h"
 #include "program/machine.h"
+#include "program/threads_option.h"
 
 namespace mallow::bench {
 
@@ -15,8 +16,7 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
   command->add_option("--out", options.output.folder, "Folder for JSON, CSV and pictures")
       ->capture_default_str();
   command->add_option("--json", options.output.json, "The JSON file, where it is to have another name");
-  command->add_option("--threads", options.threads, "Number of threads; 0: one for each processor")
-      ->check(CLI::Range(0, 1024));
+  program::add_threads_option(*command, options.threads);
   command->callback([&options, run] {
     options.threads = program::resolve_threads(options.threads);
     program::watch_for_interrupt();

@@ -20,7 +20,7 @@ struct AxisLanes {
       across[k] = (k == least ? 1.0f : 0.0f) - direction[least] * direction[k];
       square += across[k] * across[k];
     }
-    for (float& component : across) component /= __builtin_sqrtf(square);
+    for (float& component : across) component /= root(square);
   }
 };
 

@@ -37,14 +37,14 @@ struct BoxLanes {
       const float part = below > above ? below : above;
       square += part > 0 ? part * part : 0.0f;
     }
-    return __builtin_sqrtf(square);
+    return root(square);
   }
 
  private:
   /// On or in the box the nearest face counts; z wins a tie.
   static Surface nearest_face(const LaneVec3& below, const LaneVec3& above) {
     const Lanes zero = {}, one = all_lanes(1.0f);
-    Surface face = {all_lanes(-__builtin_inff()), {zero, zero, one}};
+    Surface face = {all_lanes(-k_infinity), {zero, zero, one}};
     const auto take_farther = [&](const Lanes& distance, const LaneVec3& normal) {
       const LaneMask farther = distance > face.distance;
       face = {farther ? distance : face.distance, select(farther, normal, face.normal)};

@@ -64,7 +64,7 @@ inline Lanes norm(const LaneVec3& v) {
   const LaneMask odd = ~((square > k_least_square) & (square < k_greatest_square));
   if (!any(odd)) return length;
   const Lanes largest = larger(larger(larger(v.x, -v.x), larger(v.y, -v.y)), larger(v.z, -v.z));
-  const LaneMask scales = odd & (largest > 0.0f) & (largest < __builtin_inff());
+  const LaneMask scales = odd & (largest > 0.0f) & (largest < k_infinity);
   return scales ? largest * square_root(squared(v / largest)) : length;
 }
 
@@ -93,7 +93,7 @@ struct Turning {
   /// Of the surface under a particle at which the collider moves with u: along the plane that is met, that
   /// of the particle's foot in it. Across it is that of u, so that a particle which sticks keeps its gap.
   LaneVec3 velocity_under(const LaneVec3& u, const Surface& met) const {
-    const Lanes distance = met.distance < __builtin_inff() ? met.distance : Lanes{};
+    const Lanes distance = met.distance < k_infinity ? met.distance : Lanes{};
     const LaneVec3 change = product(surface.spin, met.normal);
     return u - distance * (change - dot(change, met.normal) * met.normal);
   }
@@ -121,14 +121,14 @@ Surface meet(const Shape& shape, float offset, const LaneVec3& x, const LaneVec3
     const Surface next = shape.nearest(x + t * way);
     met = {going ? next.distance : met.distance, select(going, next.normal, met.normal)};
   }
-  return {apart ? all_lanes(__builtin_inff()) : met.distance - t * dot(way, met.normal), met.normal};
+  return {apart ? all_lanes(k_infinity) : met.distance - t * dot(way, met.normal), met.normal};
 }
 
 /// The normal velocity with which a particle leaves that comes with `approach`, so that it rises to e² of the
 /// height that it fell from; minus infinity where it does not bounce.
 inline Lanes bounce(float restitution, const Lanes& approach, const Lanes& gap, const LaneVec3& normal,
                     const ContactStep& step) {
-  const Lanes none = all_lanes(-__builtin_inff()), zero = {};
+  const Lanes none = all_lanes(-k_infinity), zero = {};
   const LaneMask bounces = approach < -step.least_bounce;
   if (!(restitution > 0) || !any(bounces)) return none;
   const Lanes gravity = larger(zero, dot(all_lanes(step.gravity), normal) * -1.0f);
@@ -190,8 +190,7 @@ void mark_in(const Shape& shape, const Frame& frame, const ContactStep& step, Co
     const LaneVec3 w = get(rows, velocity) - frame.velocity(x);
     const Lanes reach = step.contact_offset + step.time_step * square_root(squared(w));
     unsigned near = rows.valid(bits(shape.is_near(frame.to_shape(x), reach + slack)));
-    for (; near != 0; near &= near - 1)
-      flags[rows.row - begin + static_cast<unsigned>(__builtin_ctz(near))] = 1;
+    for (; near != 0; near &= near - 1) flags[rows.row - begin + static_cast<unsigned>(first_bit(near))] = 1;
   });
 }
 
@@ -302,7 +301,7 @@ float least_distance_of_convex(const ShapeNumbers& numbers, bool inside, const f
            (drop(s.normal.x[0], half[0]) + (drop(s.normal.y[0], half[1]) + drop(s.normal.z[0], half[2])));
   }
   // In a hollow it is a concave one, which is least in a corner.
-  Lanes least = all_lanes(__builtin_inff());
+  Lanes least = all_lanes(k_infinity);
   for (std::size_t first = 0; first < 8; first += k_width) {
     float corner[3][k_width];
     for (std::size_t l = 0; l < k_width; ++l)

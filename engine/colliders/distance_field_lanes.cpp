@@ -60,7 +60,7 @@ struct DistanceFieldLanes {
   }
 
   static float least_distance(const ShapeNumbers& field, const float* min, const float* max) {
-    if (field.inside) return -__builtin_inff();
+    if (field.inside) return -k_infinity;
     float square = 0;
     for (int k = 0; k < 3; ++k) {
       const float low = field.at[k], high = low + static_cast<float>(field.sizes[k] - 1) * field.at[3];
@@ -68,7 +68,7 @@ struct DistanceFieldLanes {
       const float part = below > above ? below : above;
       square += part > 0 ? part * part : 0.0f;
     }
-    return __builtin_sqrtf(square);
+    return root(square);
   }
 
  private:
@@ -87,13 +87,11 @@ struct DistanceFieldLanes {
   /// at: in voxels, within the grid.
   Sample sample(const LaneVec3& at) const {
     const auto cell = [](const Lanes& along, float most) {
-      return __builtin_convertvector(__builtin_convertvector(smaller(along, all_lanes(most - 1)), LaneMask),
-                                     Lanes);
+      return converted<Lanes>(converted<LaneMask>(smaller(along, all_lanes(most - 1))));
     };
     const LaneVec3 low = {cell(at.x, last[0]), cell(at.y, last[1]), cell(at.z, last[2])};
-    const LaneMask ix = __builtin_convertvector(low.x, LaneMask),
-                   iy = __builtin_convertvector(low.y, LaneMask),
-                   iz = __builtin_convertvector(low.z, LaneMask);
+    const LaneMask ix = converted<LaneMask>(low.x), iy = converted<LaneMask>(low.y),
+                   iz = converted<LaneMask>(low.z);
     float corner[8][k_width];
     for (std::size_t l = 0; l < k_width; ++l) {
       const float* from = distances + static_cast<std::size_t>(ix[l]) +

@@ -58,7 +58,7 @@ struct HullLanes {
 
  private:
   Surface farthest_plane(const LaneVec3& x) const {
-    Surface s = {all_lanes(-__builtin_inff()), {Lanes{}, Lanes{}, all_lanes(1.0f)}};
+    Surface s = {all_lanes(-k_infinity), {Lanes{}, Lanes{}, all_lanes(1.0f)}};
     for (std::size_t k = 0; k < plane_count; ++k) {
       const LaneVec3 normal = all_lanes(planes + 4 * k);
       const Lanes distance = dot(normal, x) - planes[4 * k + 3];
@@ -70,7 +70,7 @@ struct HullLanes {
 
   LaneVec3 from_nearest_edge(const LaneVec3& x) const {
     LaneVec3 best = x - all_lanes(edges);  // where no square is finite
-    Lanes least = all_lanes(__builtin_inff());
+    Lanes least = all_lanes(k_infinity);
     for (std::size_t k = 0; k < edge_count; ++k) {
       const float* edge = edges + 7 * k;
       const LaneVec3 direction = all_lanes(edge + 3);

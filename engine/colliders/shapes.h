@@ -1,10 +1,14 @@
 #pragma once
 
 // All shapes of colliders. A new one is three files, say capsule.h, .cpp and _lanes.cpp, and its name in
-// three lists: Primitive and Collider::shape in mallow/collider.h (with its struct), the includes here, and
-// CMakeLists.txt. Contact, queries, checks, saved states, scene files and pictures then know it. What its
-// files hold, shape.h and collider_lanes.h say; a shape that is heavy holds it in a std::shared_ptr<const
-// ...>.
+// - mallow/collider.h: its struct, Primitive and Collider::Shape, nearest() and bounds();
+// - nearest.cpp: its nearest(), one line by its lanes;
+// - the includes here, and CMakeLists.txt;
+// - tools/python/bindings/shapes.cpp, so that Python has it.
+// But for the last, the compiler names what is forgotten. Contact, queries, checks, saved states, scene
+// files, pictures and the viewer then know it; the viewer draws it by its distances, or as
+// tools/view/collider_mesh.cpp says. What its files hold, shape.h and collider_lanes.h say; a shape that is
+// heavy holds it in a std::shared_ptr<const ...>.
 #include "colliders/box.h"
 #include "colliders/capsule.h"
 #include "colliders/cone.h"

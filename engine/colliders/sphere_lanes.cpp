@@ -34,7 +34,7 @@ struct SphereLanes {
       part = !sphere.inside && part < 0 ? 0 : part;
       square += part * part;
     }
-    const float distance = __builtin_sqrtf(square) - sphere.at[3];
+    const float distance = root(square) - sphere.at[3];
     return sphere.inside ? -distance : distance;
   }
 };

@@ -63,7 +63,7 @@ struct FieldTable<SolverConfig> {
       Field{"arithmetic", &Config::arithmetic, k_any, "",
             "rounding of SPH sums: the same on every machine, or faster and another on another machine"},
       Field{"instruction_level", &Config::instruction_level, k_any, "",
-            "instructions that kernels use; the motion is the same", "the best this machine has",
+            "instructions that lanes use; the motion is the same", "the best this machine has",
             Written::in_scenes},
       Field{"memory_limit", &Config::memory_limit, k_positive, "GiB",
             "radii whose neighbour lists would need more are refused"},
@@ -135,6 +135,12 @@ struct FieldTable<Material> {
             "viscosity by temperature, [[temperature, viscosity], ...]", "viscosity"},
   };
 };
+
+/// Factor on the elastic modulus of a particle; what a step carries is another check.
+inline constexpr Range k_stiffness_factor = k_not_negative;
+
+/// Voxels along the longest side of a mesh that is an obstacle.
+inline constexpr Range k_collider_voxels = between(8, 512);
 
 /// How far points may be moved off their lattice: then they stay a tenth of the spacing apart, which is as
 /// near as a simulation takes them.

@@ -220,7 +220,7 @@ void check(const Emitter& emitter, Checks& checks) {
 
 void check(const Body& body, Checks& checks) {
   if (body.positions.empty()) checks.problem("body.positions", "has no particles: at least one is needed");
-  check_value("body.spacing", body.spacing, k_positive, checks);
+  check_value("body.spacing", body.spacing, range_of(&Sampling::spacing), checks);
   check_value("body.velocity", body.velocity, k_finite, checks);
   if (!body.velocities.empty() && body.velocities.size() != body.positions.size())
     checks.problem("body.velocities", std::to_string(body.velocities.size()) + " velocities for " +
@@ -245,9 +245,9 @@ void check(const Body& body, Checks& checks) {
       check_value(field + '[' + std::to_string(first - values.begin()) + ']', *first, range, checks);
   };
   check_column("body.alpha", body.alpha, range_of(&Material::alpha));
-  check_column("body.plastic_yield", body.plastic_yield, k_not_negative);
-  check_column("body.stiffness", body.stiffness, k_not_negative);
-  check_column("body.temperature", body.temperature, k_finite);
+  check_column("body.plastic_yield", body.plastic_yield, range_of(&Material::plastic_yield));
+  check_column("body.stiffness", body.stiffness, k_stiffness_factor);
+  check_column("body.temperature", body.temperature, range_of(&Material::temperature));
   const auto reach = [](const Vec3& x) { return x.cwiseAbs().maxCoeff(); };
   const auto farthest = std::max_element(body.positions.begin(), body.positions.end(),
                                          [&](const Vec3& a, const Vec3& b) { return reach(a) < reach(b); });

@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "core/parallel.h"
+#include "core/port.h"
 
 namespace mallow {
-namespace {
-
-using Quad = float __attribute__((vector_size(16)));
-
-}  // namespace
+using MALLOW_LEVEL::load_quad, MALLOW_LEVEL::Quad;
 
 Aabb empty_box() {
   return {Vec3::Constant(HUGE_VALF), Vec3::Constant(-HUGE_VALF)};
@@ -38,8 +34,7 @@ Aabb box_around(const VectorColumn& points, std::size_t begin, std::size_t end) 
     Quad lows = Quad{} + low, highs = Quad{} + high;
     std::size_t i = begin;
     for (; i + 4 <= end; i += 4) {
-      Quad four;
-      std::memcpy(&four, values + i, sizeof four);
+      const Quad four = load_quad(values + i);
       lows = four < lows ? four : lows;
       highs = four > highs ? four : highs;
     }

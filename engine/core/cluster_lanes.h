@@ -14,29 +14,28 @@
 /// them where registers are narrower. Each lane rounds like a float.
 namespace mallow::MALLOW_LEVEL {
 
-using Floats = float __attribute__((vector_size(k_cluster * sizeof(float))));
-using Ints = int __attribute__((vector_size(k_cluster * sizeof(int))));
+using Floats = VectorOf<float, k_cluster>;
+using Ints = VectorOf<std::int32_t, k_cluster>;
 using ClusterVec3 = Vec3Of<Floats>;
-using Quad = float __attribute__((vector_size(16)));
 
 /// Numbers of the lanes.
 constexpr Ints k_count = {0, 1, 2, 3, 4, 5, 6, 7};
 
 MALLOW_INLINE Floats load(const float* from) {
   Floats value;
-  __builtin_memcpy(&value, from, sizeof value);
+  copy_bytes(&value, from, sizeof value);
   return value;
 }
 MALLOW_INLINE Ints load(const std::uint32_t* from) {
   Ints values;
-  __builtin_memcpy(&values, from, sizeof values);
+  copy_bytes(&values, from, sizeof values);
   return values;
 }
 MALLOW_INLINE Ints load(const std::uint16_t* from) {
-  using Shorts = std::uint16_t __attribute__((vector_size(k_cluster * sizeof(std::uint16_t))));
+  using Shorts = VectorOf<std::uint16_t, k_cluster>;
   Shorts values;
-  __builtin_memcpy(&values, from, sizeof values);
-  return __builtin_convertvector(values, Ints);
+  copy_bytes(&values, from, sizeof values);
+  return converted<Ints>(values);
 }
 MALLOW_INLINE ClusterVec3 load(const ConstVectors& from, std::size_t first) {
   return {load(from.x + first), load(from.y + first), load(from.z + first)};
@@ -50,7 +49,7 @@ MALLOW_INLINE ClusterVec3 load(const float* from, std::size_t stride) {
   return {load(from), load(from + stride), load(from + 2 * stride)};
 }
 MALLOW_INLINE void store(const Floats& value, float* to) {
-  __builtin_memcpy(to, &value, sizeof value);
+  copy_bytes(to, &value, sizeof value);
 }
 MALLOW_INLINE void store(const ClusterVec3& v, float* to, std::size_t stride) {
   store(v.x, to);
@@ -58,7 +57,7 @@ MALLOW_INLINE void store(const ClusterVec3& v, float* to, std::size_t stride) {
   store(v.z, to + 2 * stride);
 }
 MALLOW_INLINE void store(const Ints& values, std::uint32_t* to) {
-  __builtin_memcpy(to, &values, sizeof values);
+  copy_bytes(to, &values, sizeof values);
 }
 MALLOW_INLINE Floats all(float value) {
   return Floats{} + value;
@@ -70,12 +69,12 @@ struct Halves {
 };
 MALLOW_INLINE Halves halves(const Floats& value) {
   Halves parts;
-  __builtin_memcpy(&parts, &value, sizeof parts);
+  copy_bytes(&parts, &value, sizeof parts);
   return parts;
 }
 MALLOW_INLINE Floats joined(const Halves& parts) {
   Floats value;
-  __builtin_memcpy(&value, &parts, sizeof value);
+  copy_bytes(&value, &parts, sizeof value);
   return value;
 }
 #endif
@@ -104,11 +103,11 @@ MALLOW_INLINE Floats smaller(const Floats& a, const Floats& b) {
 }
 /// The smallest of eight values in every lane.
 MALLOW_INLINE Floats smallest(Floats v) {
-  const Floats by_four = __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
+  const Floats by_four = shuffled<4, 5, 6, 7, 0, 1, 2, 3>(v);
   v = smaller(v, by_four);
-  const Floats by_two = __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5);
+  const Floats by_two = shuffled<2, 3, 0, 1, 6, 7, 4, 5>(v);
   v = smaller(v, by_two);
-  const Floats by_one = __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6);
+  const Floats by_one = shuffled<1, 0, 3, 2, 5, 4, 7, 6>(v);
   return smaller(v, by_one);
 }
 /// Where a number is larger than another.
@@ -133,10 +132,10 @@ MALLOW_INLINE Ints is_at_most(const Floats& a, const Floats& b) {
 MALLOW_INLINE Ints is_equal(const Ints& a, int b) {
 #if defined(__SSE__) && !defined(__AVX__)
   __m128i parts[2];
-  __builtin_memcpy(parts, &a, sizeof parts);
+  copy_bytes(parts, &a, sizeof parts);
   for (__m128i& part : parts) part = _mm_cmpeq_epi32(part, _mm_set1_epi32(b));
   Ints mask;
-  __builtin_memcpy(&mask, parts, sizeof mask);
+  copy_bytes(&mask, parts, sizeof mask);
   return mask;
 #else
   return a == b;
@@ -182,9 +181,9 @@ MALLOW_INLINE Floats square_root(const Floats& value) {
   const Halves parts = halves(value);
   return joined({_mm_sqrt_ps(parts.low), _mm_sqrt_ps(parts.high)});
 #else
-  Floats root;
-  for (std::size_t l = 0; l < k_cluster; ++l) root[l] = __builtin_sqrtf(value[l]);
-  return root;
+  Floats roots;
+  for (std::size_t l = 0; l < k_cluster; ++l) roots[l] = root(value[l]);
+  return roots;
 #endif
 }
 
@@ -208,14 +207,14 @@ MALLOW_INLINE void transpose_halves(Floats* v) {
   _MM_TRANSPOSE4_PS(rows[0].high, rows[1].high, rows[2].high, rows[3].high);
   for (int c = 0; c < 4; ++c) v[c] = joined(rows[c]);
 #else
-  const Floats a = __builtin_shufflevector(v[0], v[1], 0, 8, 1, 9, 4, 12, 5, 13);
-  const Floats b = __builtin_shufflevector(v[2], v[3], 0, 8, 1, 9, 4, 12, 5, 13);
-  const Floats c = __builtin_shufflevector(v[0], v[1], 2, 10, 3, 11, 6, 14, 7, 15);
-  const Floats d = __builtin_shufflevector(v[2], v[3], 2, 10, 3, 11, 6, 14, 7, 15);
-  v[0] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
-  v[1] = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
-  v[2] = __builtin_shufflevector(c, d, 0, 1, 8, 9, 4, 5, 12, 13);
-  v[3] = __builtin_shufflevector(c, d, 2, 3, 10, 11, 6, 7, 14, 15);
+  const Floats a = shuffled<0, 8, 1, 9, 4, 12, 5, 13>(v[0], v[1]);
+  const Floats b = shuffled<0, 8, 1, 9, 4, 12, 5, 13>(v[2], v[3]);
+  const Floats c = shuffled<2, 10, 3, 11, 6, 14, 7, 15>(v[0], v[1]);
+  const Floats d = shuffled<2, 10, 3, 11, 6, 14, 7, 15>(v[2], v[3]);
+  v[0] = shuffled<0, 1, 8, 9, 4, 5, 12, 13>(a, b);
+  v[1] = shuffled<2, 3, 10, 11, 6, 7, 14, 15>(a, b);
+  v[2] = shuffled<0, 1, 8, 9, 4, 5, 12, 13>(c, d);
+  v[3] = shuffled<2, 3, 10, 11, 6, 7, 14, 15>(c, d);
 #endif
 }
 /// Eight floats from two places.
@@ -224,9 +223,9 @@ MALLOW_INLINE Floats load_halves(const float* low, const float* high) {
   return reinterpret_cast<Floats>(_mm256_loadu2_m128(high, low));
 #else
   Quad halves[2];
-  __builtin_memcpy(&halves[0], low, sizeof halves[0]);
-  __builtin_memcpy(&halves[1], high, sizeof halves[1]);
-  return __builtin_shufflevector(halves[0], halves[1], 0, 1, 2, 3, 4, 5, 6, 7);
+  copy_bytes(&halves[0], low, sizeof halves[0]);
+  copy_bytes(&halves[1], high, sizeof halves[1]);
+  return shuffled<0, 1, 2, 3, 4, 5, 6, 7>(halves[0], halves[1]);
 #endif
 }
 /// numbers[c]: number c of four, of the rows that eight names say, `stride` floats apart.
@@ -240,10 +239,10 @@ MALLOW_INLINE void load_named(const float* rows, std::size_t stride, const std::
 MALLOW_INLINE void store_rows(Floats* numbers, float* rows) {
   transpose_halves(numbers);
   for (std::size_t t = 0; t < 4; ++t) {
-    const Quad low = __builtin_shufflevector(numbers[t], numbers[t], 0, 1, 2, 3);
-    const Quad high = __builtin_shufflevector(numbers[t], numbers[t], 4, 5, 6, 7);
-    __builtin_memcpy(rows + 4 * t, &low, sizeof low);
-    __builtin_memcpy(rows + 4 * (t + 4), &high, sizeof high);
+    const Quad low = shuffled<0, 1, 2, 3>(numbers[t]);
+    const Quad high = shuffled<4, 5, 6, 7>(numbers[t]);
+    copy_bytes(rows + 4 * t, &low, sizeof low);
+    copy_bytes(rows + 4 * (t + 4), &high, sizeof high);
   }
 }
 
@@ -283,10 +282,10 @@ MALLOW_INLINE std::size_t compress(unsigned set, const Ints& values, std::uint32
                             _mm_load_si128(reinterpret_cast<const __m128i*>(k_lane_table.places[part])));
   };
   __m128i low, high;
-  __builtin_memcpy(&low, &values, sizeof low);
-  __builtin_memcpy(&high, reinterpret_cast<const char*>(&values) + sizeof low, sizeof high);
+  copy_bytes(&low, &values, sizeof low);
+  copy_bytes(&high, reinterpret_cast<const char*>(&values) + sizeof low, sizeof high);
   _mm_storeu_si128(reinterpret_cast<__m128i*>(out), packed(low, set & 15));
-  _mm_storeu_si128(reinterpret_cast<__m128i*>(out + __builtin_popcount(set & 15)), packed(high, set >> 4));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(out + count_bits(set & 15)), packed(high, set >> 4));
 #else
   // Always written, kept only where the bit is: no branch to predict.
   for (std::size_t l = 0; l < k_cluster; ++l) {
@@ -294,12 +293,12 @@ MALLOW_INLINE std::size_t compress(unsigned set, const Ints& values, std::uint32
     out += set >> l & 1;
   }
 #endif
-  return static_cast<std::size_t>(__builtin_popcount(set));
+  return static_cast<std::size_t>(count_bits(set));
 }
 MALLOW_INLINE std::size_t compress(unsigned set, const Floats& values, float* out) {
   std::uint32_t packed[k_cluster];
   const std::size_t count = compress(set, reinterpret_cast<Ints>(values), packed);
-  __builtin_memcpy(out, packed, sizeof packed);
+  copy_bytes(out, packed, sizeof packed);
   return count;
 }
 

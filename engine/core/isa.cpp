@@ -1,5 +1,7 @@
 #include "core/isa.h"
 
+#include "core/port.h"
+
 namespace mallow {
 
 const char* name(InstructionLevel level) {
@@ -19,14 +21,8 @@ const char* name(InstructionLevel level) {
 }
 
 InstructionLevel best_instruction_level() {
-#ifdef MALLOW_X86_LEVELS
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl"))
-    return InstructionLevel::v4;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"))
-    return InstructionLevel::v3;
-#endif
+  if (machine_has(InstructionLevel::v4)) return InstructionLevel::v4;
+  if (machine_has(InstructionLevel::v3)) return InstructionLevel::v3;
   return InstructionLevel::baseline;
 }
 

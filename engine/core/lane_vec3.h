@@ -5,9 +5,7 @@
 //
 // Floating-point sums have an order, and with it their bits: dot() adds the last two terms first, as Eigen
 // does, dot_from_left() the first two.
-#include "core/isa.h"
-
-#define MALLOW_INLINE [[gnu::always_inline]] static inline
+#include "core/port.h"
 
 namespace mallow::MALLOW_LEVEL {
 namespace {

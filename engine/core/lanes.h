@@ -4,11 +4,11 @@
 // them, each lane on its own, gets the same bits at every level: the width only says how many lanes go at
 // once.
 //
-// This header and core/cluster_lanes.h are what a port of the lanes is: they name the vector types and all
-// intrinsics, and have plain C++ where a machine has none (tools/check_arm builds it so). The vector types
-// are those of GCC, which Clang and clang-cl have too; a compiler without them takes classes with these
-// operators here. Four files declare one more for themselves: shape_matching/moment_lanes.cpp and
-// surface/vertex_lanes.cpp, of doubles, surface/quad_lanes.cpp and core/bounds.cpp.
+// A port of the lanes is this header and what it stands on: core/port.h, which has the compiler's vector
+// types and words, and beside it core/cluster_lanes.h and core/wide_lanes.h, of clusters. No other file of
+// the engine names a vector type, an intrinsic or a builtin of a compiler (core:a_port_is_four_headers). They
+// have plain C++ where a machine has no intrinsics (tools/check_arm builds it so); for a compiler without
+// vector types, VectorOf is to be a class with their operators.
 //
 // Everything here is in an anonymous namespace of the level, so that no level's code can stand in for
 // another's (core/isa.h).
@@ -29,11 +29,10 @@ namespace {
 constexpr std::size_t k_width = MALLOW_WIDTH;
 static_assert(k_lanes % k_width == 0);
 
-using Lanes = float __attribute__((vector_size(k_width * sizeof(float))));
+using Lanes = VectorOf<float, k_width>;
 /// All bits of a lane are set or none; what comparisons give and `mask ? a : b` takes.
-using LaneMask = int __attribute__((vector_size(k_width * sizeof(int))));
-using LaneBytes = std::uint8_t __attribute__((vector_size(k_width)));
-using Quad = float __attribute__((vector_size(16)));
+using LaneMask = VectorOf<std::int32_t, k_width>;
+using LaneBytes = VectorOf<std::uint8_t, k_width>;
 
 using LaneVec3 = Vec3Of<Lanes>;
 
@@ -52,11 +51,11 @@ inline LaneVec3 larger(const LaneVec3& a, const LaneVec3& b) {
 
 inline Lanes load(const float* from) {
   Lanes lanes;
-  __builtin_memcpy(&lanes, from, sizeof lanes);
+  copy_bytes(&lanes, from, sizeof lanes);
   return lanes;
 }
 inline void store(const Lanes& lanes, float* to) {
-  __builtin_memcpy(to, &lanes, sizeof lanes);
+  copy_bytes(to, &lanes, sizeof lanes);
 }
 /// The same for the first `count` <= k_width lanes, where no more lie in memory; the others repeat the first.
 inline Lanes load_some(const float* from, std::size_t count) {
@@ -65,7 +64,7 @@ inline Lanes load_some(const float* from, std::size_t count) {
   return load(values);
 }
 inline void store_some(const Lanes& lanes, std::size_t count, float* to) {
-  __builtin_memcpy(to, &lanes, count * sizeof(float));
+  copy_bytes(to, &lanes, count * sizeof(float));
 }
 inline Lanes all_lanes(float value) {
   return Lanes{} + value;
@@ -78,9 +77,9 @@ inline LaneVec3 all_lanes(const float* v) {
 /// The square root of each lane; a loop that compilers make one instruction.
 inline Lanes square_root(Lanes lanes) {
   float values[k_width];
-  __builtin_memcpy(values, &lanes, sizeof lanes);
-  for (std::size_t l = 0; l < k_width; ++l) values[l] = __builtin_sqrtf(values[l]);
-  __builtin_memcpy(&lanes, values, sizeof lanes);
+  copy_bytes(values, &lanes, sizeof lanes);
+  for (std::size_t l = 0; l < k_width; ++l) values[l] = root(values[l]);
+  copy_bytes(&lanes, values, sizeof lanes);
   return lanes;
 }
 
@@ -92,8 +91,8 @@ inline unsigned bits(const LaneMask& mask) {
   return static_cast<unsigned>(__builtin_ia32_movmskps256((Lanes)mask));
 #elif MALLOW_WIDTH == 16
   const Lanes lanes = (Lanes)mask;
-  const auto low = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3, 4, 5, 6, 7);
-  const auto high = __builtin_shufflevector(lanes, lanes, 8, 9, 10, 11, 12, 13, 14, 15);
+  const auto low = shuffled<0, 1, 2, 3, 4, 5, 6, 7>(lanes);
+  const auto high = shuffled<8, 9, 10, 11, 12, 13, 14, 15>(lanes);
   return static_cast<unsigned>(__builtin_ia32_movmskps256(low)) |
          static_cast<unsigned>(__builtin_ia32_movmskps256(high)) << 8;
 #else
@@ -108,7 +107,7 @@ inline bool any(const LaneMask& mask) {
 
 /// 1 where the mask is set.
 inline LaneBytes bytes(const LaneMask& mask) {
-  return __builtin_convertvector(mask & 1, LaneBytes);
+  return converted<LaneBytes>(mask & 1);
 }
 
 // Shuffles within each four lanes, named as x86 names them.
@@ -131,23 +130,14 @@ inline LaneBytes bytes(const LaneMask& mask) {
 
 /// Transposes every 4 x 4 block: lane 4 g + t of vector c becomes lane 4 g + c of vector t.
 inline void transpose_fours(Lanes* v) {
-  const Lanes a = __builtin_shufflevector(v[0], v[1], MALLOW_UNPACK_LOW);
-  const Lanes b = __builtin_shufflevector(v[2], v[3], MALLOW_UNPACK_LOW);
-  const Lanes c = __builtin_shufflevector(v[0], v[1], MALLOW_UNPACK_HIGH);
-  const Lanes d = __builtin_shufflevector(v[2], v[3], MALLOW_UNPACK_HIGH);
-  v[0] = __builtin_shufflevector(a, b, MALLOW_PAIR_LOW);
-  v[1] = __builtin_shufflevector(a, b, MALLOW_PAIR_HIGH);
-  v[2] = __builtin_shufflevector(c, d, MALLOW_PAIR_LOW);
-  v[3] = __builtin_shufflevector(c, d, MALLOW_PAIR_HIGH);
-}
-
-inline Quad load_quad(const float* from) {
-  Quad quad;
-  __builtin_memcpy(&quad, from, sizeof quad);
-  return quad;
-}
-inline void store_quad(const Quad& quad, float* to) {
-  __builtin_memcpy(to, &quad, sizeof quad);
+  const Lanes a = shuffled<MALLOW_UNPACK_LOW>(v[0], v[1]);
+  const Lanes b = shuffled<MALLOW_UNPACK_LOW>(v[2], v[3]);
+  const Lanes c = shuffled<MALLOW_UNPACK_HIGH>(v[0], v[1]);
+  const Lanes d = shuffled<MALLOW_UNPACK_HIGH>(v[2], v[3]);
+  v[0] = shuffled<MALLOW_PAIR_LOW>(a, b);
+  v[1] = shuffled<MALLOW_PAIR_HIGH>(a, b);
+  v[2] = shuffled<MALLOW_PAIR_LOW>(c, d);
+  v[3] = shuffled<MALLOW_PAIR_HIGH>(c, d);
 }
 
 /// Lanes 4 g to 4 g + 3 are the four floats at from + 4 g stride.
@@ -155,26 +145,24 @@ inline Lanes load_quads(const float* from, [[maybe_unused]] std::size_t stride) 
 #if MALLOW_WIDTH == 4
   return load_quad(from);
 #else
-  const auto eight = [](const Quad& a, const Quad& b) {
-    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
-  };
+  const auto eight = [](const Quad& a, const Quad& b) { return shuffled<0, 1, 2, 3, 4, 5, 6, 7>(a, b); };
   const auto low = eight(load_quad(from), load_quad(from + 4 * stride));
 #if MALLOW_WIDTH == 8
   return low;
 #else
   const auto high = eight(load_quad(from + 8 * stride), load_quad(from + 12 * stride));
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  return shuffled<0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15>(low, high);
 #endif
 #endif
 }
 inline void store_quads(const Lanes& v, float* to, [[maybe_unused]] std::size_t stride) {
-  store_quad(__builtin_shufflevector(v, v, 0, 1, 2, 3), to);
+  store_quad(shuffled<0, 1, 2, 3>(v), to);
 #if MALLOW_WIDTH >= 8
-  store_quad(__builtin_shufflevector(v, v, 4, 5, 6, 7), to + 4 * stride);
+  store_quad(shuffled<4, 5, 6, 7>(v), to + 4 * stride);
 #endif
 #if MALLOW_WIDTH == 16
-  store_quad(__builtin_shufflevector(v, v, 8, 9, 10, 11), to + 8 * stride);
-  store_quad(__builtin_shufflevector(v, v, 12, 13, 14, 15), to + 12 * stride);
+  store_quad(shuffled<8, 9, 10, 11>(v), to + 8 * stride);
+  store_quad(shuffled<12, 13, 14, 15>(v), to + 12 * stride);
 #endif
 }
 

@@ -15,13 +15,4 @@ int current_processor();
 /// Moves this thread off a processor, if it may use another.
 void leave_processor(int processor);
 
-/// A pause within a loop that waits for another thread.
-inline void relax() {
-#if defined(__x86_64__) || defined(__i386__)
-  __builtin_ia32_pause();
-#elif defined(__aarch64__)
-  asm volatile("isb");  // waits about as long as x86's pause; yield is a no-op on most
-#endif
-}
-
 }  // namespace mallow

@@ -9,9 +9,9 @@ namespace {
 /// Lane l: the sum of the lanes up to it.
 MALLOW_INLINE Ints running_sums(Ints v) {
   const Ints none = {};
-  v += __builtin_shufflevector(none, v, 0, 8, 9, 10, 11, 12, 13, 14);
-  v += __builtin_shufflevector(none, v, 0, 0, 8, 9, 10, 11, 12, 13);
-  return v + __builtin_shufflevector(none, v, 0, 0, 0, 0, 8, 9, 10, 11);
+  v += shuffled<0, 8, 9, 10, 11, 12, 13, 14>(none, v);
+  v += shuffled<0, 0, 8, 9, 10, 11, 12, 13>(none, v);
+  return v + shuffled<0, 0, 0, 0, 8, 9, 10, 11>(none, v);
 }
 
 std::uint32_t counts_to_places(std::uint32_t* counts, std::size_t chunks, std::size_t keys, std::size_t first,

@@ -7,6 +7,7 @@
 #include <new>
 #include <thread>
 
+#include "core/port.h"
 #include "core/processors.h"
 
 #ifdef __unix__

@@ -9,8 +9,8 @@ namespace mallow::MALLOW_LEVEL {
 
 #ifdef __AVX512F__
 inline constexpr std::size_t k_wide = 2;  ///< clusters in a Wide
-using Wide = float __attribute__((vector_size(k_wide * k_cluster * sizeof(float))));
-using WideInts = int __attribute__((vector_size(k_wide * k_cluster * sizeof(int))));
+using Wide = VectorOf<float, k_wide * k_cluster>;
+using WideInts = VectorOf<std::int32_t, k_wide * k_cluster>;
 
 // With a mask of all lanes: GCC 12 takes what the plain ones return for not set.
 MALLOW_INLINE Wide larger(const Wide& a, const Wide& b) {
@@ -31,10 +31,10 @@ MALLOW_INLINE Wide where(const WideInts& mask, const Wide& value) {
   return reinterpret_cast<Wide>(reinterpret_cast<WideInts>(value) & mask);
 }
 MALLOW_INLINE Wide both(const Floats& low, const Floats& high) {
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  return shuffled<0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15>(low, high);
 }
 MALLOW_INLINE void store(const Wide& value, float* to) {
-  __builtin_memcpy(to, &value, sizeof value);
+  copy_bytes(to, &value, sizeof value);
 }
 #else
 inline constexpr std::size_t k_wide = 1;

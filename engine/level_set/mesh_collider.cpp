@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "config/field_checks.h"
+#include "config/field_tables.h"
 #include "mallow/level_set.h"
 
 namespace mallow {
@@ -34,7 +35,7 @@ class GridCache {
 
 DistanceField mesh_collider(const Mesh& mesh, int voxels, bool inside, int threads) {
   Checks checks;
-  check_value("voxels", voxels, between(8, 512), checks);
+  check_value("voxels", voxels, k_collider_voxels, checks);
   checks.finish();
   static GridCache cache;
   std::uint64_t key = static_cast<std::uint64_t>(voxels);

@@ -27,7 +27,6 @@ LaneVec3 external_acceleration(const ForcesInput& in, const Rows& rows, LaneVec3
 
 /// What rows lie in, and how fast they are.
 struct Bounds {
-  static constexpr float k_infinity = __builtin_inff();
   LaneVec3 min = {all_lanes(k_infinity), all_lanes(k_infinity), all_lanes(k_infinity)}, max = -min;
   Lanes fastest = {};
 
@@ -110,15 +109,14 @@ float fastest(const ForcesInput& in, std::size_t begin, std::size_t end) noexcep
     Lanes speed = squared(v);
     if (in.pin) {
       // Where a block ends, lanes that have no row repeat the first of theirs.
-      const std::size_t count =
-          static_cast<std::size_t>(__builtin_popcount(rows.valid(~0u >> (32 - k_width))));
+      const std::size_t count = static_cast<std::size_t>(count_bits(rows.valid(~0u >> (32 - k_width))));
       for (std::size_t l = 0; l < k_width; ++l)
         if (in.pin[rows.row + (l < count ? l : 0)] != 0) speed[l] = -1;
     }
     most = larger(most, speed);
     undefined |= speed != speed;
   });
-  return any(undefined) ? __builtin_nanf("") : largest(most);
+  return any(undefined) ? k_not_a_number : largest(most);
 }
 
 }  // namespace

@@ -20,9 +20,9 @@ void cells_of(const SearchInput& in, ConstVectors points, std::size_t begin, std
   const Floats last = all(static_cast<float>(last_strip));
   const auto cells_from = [&](std::size_t i) {
     const Floats y_cell = clamped_cell(in, 1, load(points.y + i));
-    const Ints x = __builtin_convertvector(clamped_cell(in, 0, load(points.x + i)), Ints);
-    const Ints y = __builtin_convertvector(y_cell, Ints);
-    const Ints z = __builtin_convertvector(clamped_cell(in, 2, load(points.z + i)), Ints);
+    const Ints x = converted<Ints>(clamped_cell(in, 0, load(points.x + i)));
+    const Ints y = converted<Ints>(y_cell);
+    const Ints z = converted<Ints>(clamped_cell(in, 2, load(points.z + i)));
     const Ints width = k_strip - (~is_larger(last, y_cell) & narrower);
     const Ints pillar = (y & -k_strip) * in.dims[2] + z * width + (y & (k_strip - 1));
     return pillar * in.dims[0] + x;

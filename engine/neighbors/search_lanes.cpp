@@ -60,7 +60,7 @@ struct PillarCells {
 /// they could not be foreseen.
 MALLOW_INLINE PillarCells pillars_within(const SearchInput& in, const Bounds& from_origin, int y,
                                          float squared_y) {
-  const Floats zero = {}, place = __builtin_convertvector(k_count + y, Floats), low = place * in.edge[1];
+  const Floats zero = {}, place = converted<Floats>(k_count + y), low = place * in.edge[1];
   const Floats last_y = all(static_cast<float>(in.dims[1] - 1)),
                last_x = all(static_cast<float>(in.dims[0] - 1));
   const Floats below = where(is_larger(place, zero), low - from_origin.high[1]);
@@ -69,12 +69,12 @@ MALLOW_INLINE PillarCells pillars_within(const SearchInput& in, const Bounds& fr
   const Floats squared_x = squared_y - distance * distance;
   const Floats chord = square_root(larger(squared_x, zero));
   const auto cells = [&](const Floats& x) {
-    return __builtin_convertvector(larger(smaller(last_x, x * in.inverse_edge[0]), zero), Ints);
+    return converted<Ints>(larger(smaller(last_x, x * in.inverse_edge[0]), zero));
   };
   const Ints first = cells(from_origin.low[0] - chord), last = cells(from_origin.high[0] + chord);
   PillarCells pillars;
-  __builtin_memcpy(pillars.first, &first, sizeof first);
-  __builtin_memcpy(pillars.last, &last, sizeof last);
+  copy_bytes(pillars.first, &first, sizeof first);
+  copy_bytes(pillars.last, &last, sizeof last);
   pillars.in_reach = ~bits(is_larger(zero, squared_x));
   return pillars;
 }

@@ -22,7 +22,8 @@ BoundFields fields(SceneMaterial& material) {
   const BoundFields look{
       {"color", &material.color, between(0, 1), "", "red, green and blue in pictures, linear",
        "one of a palette"},
-      {"finish", &material.finish, k_any, "", "in pictures: clear and cloudy, opaque and dull, soft, opaque and glossy, or clear"},
+      {"finish", &material.finish, k_any, "",
+       "in pictures: clear and cloudy, opaque and dull, soft, opaque and glossy, or clear"},
   };
   return joined({{"name", &material.name, k_any, "", "what bodies call it", k_required}},
                 joined(fields(material.material), look));
@@ -46,7 +47,7 @@ BoundFields fields(SceneBody& body) {
 
 BoundFields fields(SphereSource& source) {
   return joined({{"center", &source.center, k_finite, "m", "middle of the ball"},
-                 {"radius", &source.radius, k_positive, "m", "of the ball", k_required}},
+                 {"radius", &source.radius, range_of(&Sphere::radius), "m", "of the ball", k_required}},
                 fields(source.sampling));
 }
 
@@ -60,7 +61,8 @@ BoundFields fields(PointsSource& source) {
   return {
       {"file", &source.file, k_any, "",
        "points x,y,z and optionally vx,vy,vz, PLY or CSV with a header, relative to the scene", k_required},
-      {"spacing", &source.spacing, k_positive, "m", "distance of neighbouring particles, h", k_required},
+      {"spacing", &source.spacing, range_of(&Sampling::spacing), "m", "distance of neighbouring particles, h",
+       k_required},
   };
 }
 
@@ -84,13 +86,13 @@ BoundFields fields(ScenePaint& paint) {
   return {
       {"translate", &paint.translate, k_finite, "m", "where the origin of its shape is"},
       {"rotate", &paint.rotate, k_finite, "degrees", "turn of its shape about x, then y, then z"},
-      {"alpha", &paint.alpha, between(0, 1), "", "of the particles in it, for the whole run",
+      {"alpha", &paint.alpha, range_of(&Material::alpha), "", "of the particles in it, for the whole run",
        "the material's"},
-      {"stiffness", &paint.stiffness, k_not_negative, "", "factor on the elastic modulus in it", "1"},
-      {"plastic_yield", &paint.plastic_yield, k_not_negative, "", "strain beyond which matter in it flows",
-       "the material's"},
-      {"temperature", &paint.paint_temperature, k_finite, "K", "of the particles in it at the start",
-       "the material's"},
+      {"stiffness", &paint.stiffness, k_stiffness_factor, "", "factor on the elastic modulus in it", "1"},
+      {"plastic_yield", &paint.plastic_yield, range_of(&Material::plastic_yield), "",
+       "strain beyond which matter in it flows", "the material's"},
+      {"temperature", &paint.paint_temperature, range_of(&Material::temperature), "K",
+       "of the particles in it at the start", "the material's"},
   };
 }
 
@@ -108,8 +110,9 @@ BoundFields fields(MeshColliderSource& source) {
   return {
       {"file", &source.file, k_any, "", "closed mesh, OBJ, PLY, STL or OFF, relative to the scene",
        k_required},
-      {"voxels", &source.voxels, between(8, 512), "", "along its longest side; thinner parts may be missed"},
-      {"size", &source.size, k_positive, "m", "longest side", "as in the file"},
+      {"voxels", &source.voxels, k_collider_voxels, "",
+       "along its longest side; thinner parts may be missed"},
+      {"size", &source.size, range_of(&Placement::size), "m", "longest side", "as in the file"},
       {"center", &source.center, k_finite, "m", "middle of its box", "where the file has it"},
       {"inside", &source.inside, k_any, "", "particles are kept in, not out"},
   };
@@ -154,7 +157,8 @@ BoundFields fields(Aabb& box) {
 BoundFields fields(RenderConfig& render) {
   BoundFields all = fields<RenderConfig>(render);
   all.push_back({"environment", &render.environment, k_any, "",
-                 "Radiance picture (.hdr) of all around to light by, z up, relative to the scene", "a studio"});
+                 "Radiance picture (.hdr) of all around to light by, z up, relative to the scene",
+                 "a studio"});
   return all;
 }
 

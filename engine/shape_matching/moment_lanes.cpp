@@ -1,4 +1,4 @@
-// Sums in double: what the rigid frame of a group and the moments of its regions are found from.
+// Sums in double: what the rigid frame of a body and the moments of its regions are found from.
 #include "shape_matching/moment_lanes.h"
 
 #include "core/lanes.h"
@@ -10,13 +10,13 @@ namespace {
 /// 12 keeps them in memory, at five times the cost.
 constexpr std::size_t k_wide = 8;
 constexpr std::size_t k_doubles = k_width / 2;
-using Doubles = double __attribute__((vector_size(k_doubles * sizeof(double))));
-using Floats = float __attribute__((vector_size(k_doubles * sizeof(float))));
+using Doubles = VectorOf<double, k_doubles>;
+using Floats = VectorOf<float, k_doubles>;
 
 inline Doubles load_doubles(const float* values) {
   Floats floats;
-  __builtin_memcpy(&floats, values, sizeof floats);
-  return __builtin_convertvector(floats, Doubles);
+  copy_bytes(&floats, values, sizeof floats);
+  return converted<Doubles>(floats);
 }
 
 double sum(const double* lanes) {
@@ -42,7 +42,7 @@ void frame_sums(ConstVectors position, ConstVectors reference, const double* ori
       s[6] += z * rx, s[7] += z * ry, s[8] += z * rz;
       s[9] += x, s[10] += y, s[11] += z;
     }
-    for (std::size_t k = 0; k < 12; ++k) __builtin_memcpy(lanes[k] + l, &s[k], sizeof s[k]);
+    for (std::size_t k = 0; k < 12; ++k) copy_bytes(lanes[k] + l, &s[k], sizeof s[k]);
   }
   for (std::size_t k = 0; k < 12; ++k) sums[k] = sum(lanes[k]);
   for (std::size_t i = whole; i < end; ++i) {
@@ -74,11 +74,11 @@ void write_rows(ConstVectors reference, const float* weight, std::size_t begin, 
 /// Doubles of a row at a time: a register, of the levels whose registers divide the row.
 constexpr std::size_t k_part = k_doubles < 4 ? k_doubles : 4;
 constexpr std::size_t k_parts = k_moment_row / k_part;
-using Part = double __attribute__((vector_size(k_part * sizeof(double))));
+using Part = VectorOf<double, k_part>;
 
 inline Part load_part(const double* values) {
   Part part;
-  __builtin_memcpy(&part, values, sizeof part);
+  copy_bytes(&part, values, sizeof part);
   return part;
 }
 
@@ -99,7 +99,7 @@ void sum_runs(const double* rows, const Run* runs, std::size_t count, double* ou
   }
   for (std::size_t p = 0; p < k_parts; ++p) {
     const Part both = a[p] + b[p];
-    __builtin_memcpy(out + p * k_part, &both, sizeof both);
+    copy_bytes(out + p * k_part, &both, sizeof both);
   }
 }
 

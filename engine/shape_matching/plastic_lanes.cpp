@@ -42,8 +42,8 @@ Lanes norm(const Symmetric& s) {
 
 /// x^(−⅓) of lanes above 0: a guess from the exponent, off by 4% at most, and three steps of Newton's method.
 Lanes inverse_cube_root(const Lanes& x) {
-  const Lanes third = __builtin_convertvector((LaneMask)x, Lanes) * (1.0f / 3.0f);
-  Lanes y = (Lanes)(0x54a2fa8c - __builtin_convertvector(third, LaneMask));
+  const Lanes third = converted<Lanes>((LaneMask)x) * (1.0f / 3.0f);
+  Lanes y = (Lanes)(0x54a2fa8c - converted<LaneMask>(third));
   for (int k = 0; k < 3; ++k) y = y * (4.0f - x * y * y * y) * (1.0f / 3.0f);
   return y;
 }
@@ -244,9 +244,9 @@ void for_regions(std::size_t begin, std::size_t end, float* sums, const Work& wo
   if (j == end) return;
   const std::size_t rest = (end - j) * k_row * sizeof(float);
   alignas(64) float rows[k_width * k_row] = {};
-  __builtin_memcpy(rows, sums + j * k_row, rest);
+  copy_bytes(rows, sums + j * k_row, rest);
   work(j, rows);
-  __builtin_memcpy(sums + j * k_row, rows, rest);
+  copy_bytes(sums + j * k_row, rows, rest);
 }
 
 void solve(const ShapeInput& in, const FlowInput* rule, std::size_t begin, std::size_t end, int iterations,
@@ -254,7 +254,7 @@ void solve(const ShapeInput& in, const FlowInput* rule, std::size_t begin, std::
            std::uint8_t* undecided) noexcept {
   for_regions(begin, end, sums, [&](std::size_t j, float* rows) {
     const LaneBytes left = solve_lanes(in, rule, j, iterations, rows, rotation, stretch, flow);
-    __builtin_memcpy(undecided + j, &left, j + k_width <= end ? k_width : end - j);
+    copy_bytes(undecided + j, &left, j + k_width <= end ? k_width : end - j);
   });
 }
 

@@ -51,10 +51,10 @@ std::size_t runs_in_reach(const ReachInput& in, std::size_t s, ReachPillar* pill
       const Floats da = load(in.across[0] + first) - a, db = load(in.across[1] + first) - b;
       unsigned near = bits(~is_larger((dx * dx + da * da) + db * db, limit));
       if (end - first < k_cluster) near &= (1u << (end - first)) - 1;
-      members += static_cast<std::uint32_t>(__builtin_popcount(near));
+      members += static_cast<std::uint32_t>(count_bits(near));
       while (near != 0) {
-        const auto from = static_cast<std::uint32_t>(__builtin_ctz(near));
-        const auto length = static_cast<std::uint32_t>(__builtin_ctz(~(near >> from)));
+        const auto from = static_cast<std::uint32_t>(first_bit(near));
+        const auto length = static_cast<std::uint32_t>(first_bit(~(near >> from)));
         writer.add(first + from, length);
         near &= ~0u << (from + length);
       }

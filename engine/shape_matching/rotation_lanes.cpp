@@ -40,17 +40,17 @@ void solve(const ShapeInput& in, std::size_t begin, std::size_t end, int iterati
   std::size_t j = begin;
   for (; j + k_width <= end; j += k_width) {
     const LaneBytes left = solve_lanes(in, j, iterations, sums + j * k_row, rotation);
-    __builtin_memcpy(undecided + j, &left, k_width);
+    copy_bytes(undecided + j, &left, k_width);
   }
   if (j == end) return;
   // The other columns are padded, rows and flags are not. A padded lane has no moment, so it is undecided and
   // keeps its zeros.
   const std::size_t rest = (end - j) * k_row * sizeof(float);
   alignas(64) float rows[k_width * k_row] = {};
-  __builtin_memcpy(rows, sums + j * k_row, rest);
+  copy_bytes(rows, sums + j * k_row, rest);
   const LaneBytes left = solve_lanes(in, j, iterations, rows, rotation);
-  __builtin_memcpy(sums + j * k_row, rows, rest);
-  __builtin_memcpy(undecided + j, &left, end - j);
+  copy_bytes(sums + j * k_row, rows, rest);
+  copy_bytes(undecided + j, &left, end - j);
 }
 
 }  // namespace

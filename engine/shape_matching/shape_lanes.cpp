@@ -35,7 +35,7 @@ void write_rows(const ShapeInput& in, std::size_t begin, std::size_t end, float*
     } else {
       alignas(64) float last[k_width * k_row] = {};
       store_transposed(numbers, k_row_sums, k_row, last);
-      __builtin_memcpy(to, last, part.count * k_row * sizeof(float));
+      copy_bytes(to, last, part.count * k_row * sizeof(float));
     }
   });
 }
@@ -60,7 +60,7 @@ void sum_rows(const float* rows, const RegionLists& lists, std::size_t which, fl
   for (; k + 4 <= n; k += 4) {
     if (lists.prefetch)
       for (std::uint32_t ahead = k + k_prefetch; ahead < k + k_prefetch + 4; ++ahead)
-        __builtin_prefetch(rows + static_cast<std::size_t>(list[ahead]) * k_row);
+        fetch_ahead(rows + static_cast<std::size_t>(list[ahead]) * k_row);
     add_row(rows, list[k], a);
     add_row(rows, list[k + 1], b);
     add_row(rows, list[k + 2], c);

@@ -38,12 +38,12 @@ double noise(std::uint64_t x) {
 }
 
 /// Points of a lattice around the origin, h apart.
-std::vector<Vec> lattice(std::size_t columns, std::size_t rows, double h) {
+std::vector<Vec> lattice(std::size_t along_x, std::size_t along_y, double h) {
   std::vector<Vec> points;
-  for (std::size_t b = 0; b < rows; ++b)
-    for (std::size_t a = 0; a < columns; ++a)
-      points.emplace_back(h * (static_cast<double>(a) - 0.5 * static_cast<double>(columns - 1)),
-                          h * (static_cast<double>(b) - 0.5 * static_cast<double>(rows - 1)), 0);
+  for (std::size_t b = 0; b < along_y; ++b)
+    for (std::size_t a = 0; a < along_x; ++a)
+      points.emplace_back(h * (static_cast<double>(a) - 0.5 * static_cast<double>(along_x - 1)),
+                          h * (static_cast<double>(b) - 0.5 * static_cast<double>(along_y - 1)), 0);
   return points;
 }
 
@@ -69,15 +69,15 @@ std::vector<Vec> disc(double radius, double h) {
   return best;
 }
 
-/// The same of a rectangle, of whole rows and columns.
+/// The same of a rectangle: a whole lattice.
 std::vector<Vec> rectangle(double width, double height, double h) {
   const double wanted = width * height / (h * h);
   std::array<double, 2> best{1, 1};
-  for (const double columns : {std::floor(width / h + 1e-3), std::ceil(width / h - 1e-3)})
-    for (const double rows : {std::floor(height / h + 1e-3), std::ceil(height / h - 1e-3)})
-      if (columns >= 1 && rows >= 1 &&
-          std::abs(columns * rows - wanted) < std::abs(best[0] * best[1] - wanted))
-        best = {columns, rows};
+  for (const double along_x : {std::floor(width / h + 1e-3), std::ceil(width / h - 1e-3)})
+    for (const double along_y : {std::floor(height / h + 1e-3), std::ceil(height / h - 1e-3)})
+      if (along_x >= 1 && along_y >= 1 &&
+          std::abs(along_x * along_y - wanted) < std::abs(best[0] * best[1] - wanted))
+        best = {along_x, along_y};
   return lattice(static_cast<std::size_t>(best[0]), static_cast<std::size_t>(best[1]), h);
 }
 

@@ -290,7 +290,7 @@ void Simulation::set_alpha(std::span<const ParticleId> ids, float alpha) {
 }
 
 void Simulation::set_stiffness(std::span<const ParticleId> ids, float stiffness) {
-  paint(*state_, ids, stiffness, "stiffness", k_not_negative, &BodyState::paints_stiffness,
+  paint(*state_, ids, stiffness, "stiffness", k_stiffness_factor, &BodyState::paints_stiffness,
         &ParticleStore::stiffness);
 }
 

@@ -47,11 +47,11 @@ void unpack_particles(const SavedState& saved, Simulation::State& state) {
       if (pin > state.pins.size()) archive.fail("there is no pin " + std::to_string(pin - 1));
   });
   unpack_painted(saved, "alphas", n, range_of(&Material::alpha), store.alpha);
-  unpack_painted(saved, "stiffnesses", n, k_not_negative, store.stiffness);
-  unpack_painted(saved, "plastic_yields", n, k_not_negative, store.plastic_yield);
+  unpack_painted(saved, "stiffnesses", n, k_stiffness_factor, store.stiffness);
+  unpack_painted(saved, "plastic_yields", n, range_of(&Material::plastic_yield), store.plastic_yield);
   if (std::ranges::any_of(state.bodies, &BodyState::paints_yield) && store.plastic_yield.empty())
     throw ConfigError("saved state, chunk 'plastic_yields'", "there must be some");
-  unpack_painted(saved, "temperatures", n, k_finite, store.temperature);
+  unpack_painted(saved, "temperatures", n, range_of(&Material::temperature), store.temperature);
   unpack_painted(saved, "temperature_rests", n, k_finite, store.temperature_rest);
   const bool heated = std::ranges::any_of(state.bodies, &BodyState::is_heated);
   if (store.temperature.size() != store.temperature_rest.size() || (heated && store.temperature.empty()))

@@ -6,6 +6,26 @@
 
 namespace mallow {
 
+namespace {
+
+/// a, g − x -> v', contact, v' -> x': in one loop where nothing stands between them. [TK eq. 10 to 13]
+void move(Simulation::State& s, const ChosenStep& step, PhaseTimer& timer, StepReport& report) {
+  if ((s.keeps_volume() || s.bodies_touch() || s.walls()) && !s.awake.empty()) {
+    move_bodies(s, step.time_step, {.predict = true});  // a, g − x -> v'
+    timer.lap(Phase::motion);
+    if (s.keeps_volume()) correct_volume(s, step.time_step, report);  // ρ, v' -> v' that keep ρ
+    timer.lap(Phase::volume);
+    if (s.bodies_touch()) resolve_touching(s, step.time_step);  // x, v' -> v' of what touches
+    if (s.walls()) rub_walls(s, step.time_step);  // a^wall, v' -> v' that friction of walls slows
+    timer.lap(Phase::body_contact);
+    move_bodies(s, step.time_step, {.collide = true, .advance = true});  // contact with colliders, v' -> x'
+  } else {
+    move_bodies(s, step.time_step, {.predict = true, .collide = true, .advance = true});
+  }
+}
+
+}  // namespace
+
 // Algorithm 3.3 of [TK], as the model settles it. Surfacing is not a phase: it reads the views between steps.
 StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_phase) {
   Sph& sph = s.sph;
@@ -52,19 +72,7 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
   compute_goals(s.execution, s.matched);  // R_j -> g − x       [TK eq. 7]
   timer.lap(Phase::goals);
 
-  // a, g − x -> v', contact, v' -> x': in one loop where nothing stands between them. [TK eq. 10 to 13]
-  if ((s.keeps_volume() || s.bodies_touch() || s.walls()) && !s.awake.empty()) {
-    move_bodies(s, step.time_step, {.predict = true});  // a, g − x -> v'
-    timer.lap(Phase::motion);
-    if (s.keeps_volume()) correct_volume(s, step.time_step, report);  // ρ, v' -> v' that keep ρ
-    timer.lap(Phase::volume);
-    if (s.bodies_touch()) resolve_touching(s, step.time_step);  // x, v' -> v' of what touches
-    if (s.walls()) rub_walls(s, step.time_step);  // a^wall, v' -> v' that friction of walls slows
-    timer.lap(Phase::body_contact);
-    move_bodies(s, step.time_step, {.collide = true, .advance = true});  // contact with colliders, v' -> x'
-  } else {
-    move_bodies(s, step.time_step, {.predict = true, .collide = true, .advance = true});
-  }
+  move(s, step, timer, report);     // a, g − x, x, v -> v', x'      [TK eq. 10 to 13]
   conduct_heat(s, step.time_step);  // x, T, colliders -> T
   report.awake_bodies = s.awake.size();
   tell_contacts(s, step.time_step);  // impulses -> events of contacts

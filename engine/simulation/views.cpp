@@ -150,11 +150,13 @@ const BodyState& shaped(const Simulation::State& s, BodyId id) {
   return body;
 }
 
-/// R of the region of a particle, counted from the body's first.
-Eigen::Quaternionf rotation_of(const ShapeMatching& shape, std::size_t i) {
-  const std::size_t region = shape.first_region(i);
-  const auto q = [&](std::size_t k) { return shape.rotation[k][region]; };
-  return {q(3), q(0), q(1), q(2)};
+RotationView rotations_of(const BodyState& body) {
+  const ShapeMatching& shape = body.shape;
+  const auto& r = shape.rotation;
+  const std::array columns{r[0].data(), r[1].data(), r[2].data(), r[3].data()};
+  if (shape.region_stride == 1) return {columns, body.size()};
+  const TableLists& lists = shape.memberships;
+  return {columns, body.size(), lists.begin.data(), lists.entries.data(), lists.rows};
 }
 
 }  // namespace
@@ -168,20 +170,15 @@ Vec3 Simulation::rest_position(ParticleId id) const {
 Eigen::Quaternionf Simulation::rotation(ParticleId id) const {
   const std::size_t at = row(id);
   const BodyState& body = shaped(*state_, at);
-  return rotation_of(body.shape, at - body.begin);
+  return rotations_of(body)[at - body.begin];
 }
 
 VectorView Simulation::rest_positions(BodyId id) const {
   return view(shaped(*state_, id).shape.reference);
 }
 
-void Simulation::rotations(BodyId id, std::span<Eigen::Quaternionf> rotations) const {
-  const BodyState& body = shaped(*state_, id);
-  if (rotations.size() != body.size())
-    throw ConfigError("rotations", std::to_string(rotations.size()) +
-                                       " are not allowed: one for each of the " +
-                                       std::to_string(body.size()) + " particles of the body");
-  for (std::size_t i = 0; i < rotations.size(); ++i) rotations[i] = rotation_of(body.shape, i);
+RotationView Simulation::rotations(BodyId id) const {
+  return rotations_of(shaped(*state_, id));
 }
 
 std::vector<Vec3> Simulation::positions_by_id() const {

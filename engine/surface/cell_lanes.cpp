@@ -67,7 +67,7 @@ void find_unclear(const CornerBits& corners, const BlockBits& cut, BlockBits& un
 
 /// all: the bits of all x together, some of which are set.
 BitRange find_range(const BlockBits& bits, std::uint64_t all) {
-  BitRange range{k_side, 0, __builtin_ctzll(all) / k_side, (63 - __builtin_clzll(all)) / k_side};
+  BitRange range{k_side, 0, first_bit(all) / k_side, last_bit(all) / k_side};
   for (int x = 0; x < k_side; ++x) {
     if (bits.at[x] == 0) continue;
     if (range.first_x == k_side) range.first_x = x;
@@ -78,7 +78,7 @@ BitRange find_range(const BlockBits& bits, std::uint64_t all) {
 
 MALLOW_INLINE std::uint32_t count(const BlockBits& bits) {
   std::uint32_t n = 0;
-  for (const std::uint64_t word : bits.at) n += static_cast<std::uint32_t>(__builtin_popcountll(word));
+  for (const std::uint64_t word : bits.at) n += static_cast<std::uint32_t>(count_bits(word));
   return n;
 }
 
@@ -111,7 +111,7 @@ std::size_t list_cells(const BlockBits& cut, std::uint16_t* list, std::uint16_t*
   std::size_t n = 0;
   for (int x = 0; x < k_side; ++x) {
     for (std::uint64_t left = cut.at[x]; left != 0; left &= left - 1) {
-      const auto cell = static_cast<std::uint16_t>(64 * x + __builtin_ctzll(left));
+      const auto cell = static_cast<std::uint16_t>(64 * x + first_bit(left));
       list[n] = cell;
       place[cell] = static_cast<std::uint16_t>(n++);
     }

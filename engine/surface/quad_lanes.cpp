@@ -51,7 +51,7 @@ bool fill(const QuadBlock& block, PatchTable& table) {
   std::size_t count = 0;
   for (const QuadBlock::Cells& cells : block.around) count += cells.patched_count;
   if (count == 0) return false;
-  __builtin_memset(&table, 0, sizeof table);
+  clear_bytes(&table, sizeof table);
   for (int k = 0; k < 8; ++k) {
     const QuadBlock::Cells& cells = block.around[k];
     for (std::size_t i = 0; i < cells.patched_count; ++i) {
@@ -70,14 +70,6 @@ bool fill(const QuadBlock& block, PatchTable& table) {
 /// By a bit each axis: a block below along these.
 constexpr float k_shift[8][4] = {{0, 0, 0},  {-8, 0, 0},  {0, -8, 0},  {-8, -8, 0},
                                  {0, 0, -8}, {-8, 0, -8}, {0, -8, -8}, {-8, -8, -8}};
-
-using QuadInts = int __attribute__((vector_size(16)));
-
-MALLOW_INLINE Quad load_quad(const float* from) {
-  Quad quad;
-  __builtin_memcpy(&quad, from, sizeof quad);
-  return quad;
-}
 
 /// What quads are written from.
 struct QuadTables {
@@ -135,12 +127,11 @@ MALLOW_INLINE QuadInts quad_of(const QuadTables& tables, const EdgeSlice& slice,
                                  static_cast<int>(vertex[2]), static_cast<int>(vertex[3])} +
                         slice.first_in_mesh;
   const Quad a = place[1] - place[3], b = place[0] - place[2];
-  const Quad xy = __builtin_shufflevector(a, b, 0, 4, 1, 5), z = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Quad xy = shuffled<0, 4, 1, 5>(a, b), z = shuffled<2, 6, 3, 7>(a, b);
   const Quad squares = xy * xy, z_squares = z * z;
-  const Quad lengths = squares + (__builtin_shufflevector(squares, squares, 2, 3, 2, 3) + z_squares);
-  const QuadInts other = __builtin_shufflevector(lengths, lengths, 0, 0, 0, 0) <
-                         0.99f * __builtin_shufflevector(lengths, lengths, 1, 1, 1, 1);
-  const QuadInts turned = __builtin_shufflevector(quad, quad, 1, 2, 3, 0);
+  const Quad lengths = squares + (shuffled<2, 3, 2, 3>(squares) + z_squares);
+  const QuadInts other = shuffled<0, 0, 0, 0>(lengths) < 0.99f * shuffled<1, 1, 1, 1>(lengths);
+  const QuadInts turned = shuffled<1, 2, 3, 0>(quad);
   return other ? turned : quad;
 }
 
@@ -149,15 +140,14 @@ template <EdgeKind kind>
 MALLOW_INLINE void write_kind(const QuadTables& tables, const EdgeSlice& slice, std::uint64_t some) {
   for (; some != 0; some &= some - 1) {
     const std::uint64_t through = some ^ (some - 1), below = through >> 1;
-    const int before = __builtin_popcountll(slice.edges[0] & (kind.axis > 0 ? through : below)) +
-                       __builtin_popcountll(slice.edges[1] & (kind.axis > 1 ? through : below)) +
-                       __builtin_popcountll(slice.edges[2] & below);
-    const QuadInts quad = quad_of<kind>(tables, slice, __builtin_ctzll(some));
-    const QuadInts one = __builtin_shufflevector(quad, quad, 0, 1, 2, 0),
-                   two = __builtin_shufflevector(quad, quad, 2, 3, 2, 3);
+    const int before = count_bits(slice.edges[0] & (kind.axis > 0 ? through : below)) +
+                       count_bits(slice.edges[1] & (kind.axis > 1 ? through : below)) +
+                       count_bits(slice.edges[2] & below);
+    const QuadInts quad = quad_of<kind>(tables, slice, first_bit(some));
+    const QuadInts one = shuffled<0, 1, 2, 0>(quad), two = shuffled<2, 3, 2, 3>(quad);
     std::uint32_t* const to = slice.to + 6 * static_cast<std::ptrdiff_t>(before);
-    __builtin_memcpy(to, &one, sizeof one);
-    __builtin_memcpy(to + 4, &two, sizeof two / 2);
+    copy_bytes(to, &one, sizeof one);
+    copy_bytes(to + 4, &two, sizeof two / 2);
   }
 }
 
@@ -188,7 +178,7 @@ void write(const QuadBlock& block, const QuadTables& tables, std::uint32_t* to) 
     write_axis<0, patched>(tables, slice, block.inside->at[x]);
     write_axis<1, patched>(tables, slice, block.inside->at[x]);
     write_axis<2, patched>(tables, slice, block.inside->at[x]);
-    for (const std::uint64_t edges : slice.edges) to += 6 * __builtin_popcountll(edges);
+    for (const std::uint64_t edges : slice.edges) to += 6 * count_bits(edges);
   }
 }
 

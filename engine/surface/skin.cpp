@@ -68,7 +68,6 @@ struct Skin::Work {
   Mesh mesh;
 
   // Scratch.
-  std::vector<Eigen::Quaternionf> rotations;  ///< by row of the body
   std::vector<Eigen::Quaternionf> turns;
   std::vector<Vec3> next_rest;
 
@@ -95,7 +94,6 @@ void Skin::Work::find_particles(const Simulation& simulation) {
 /// Those that follow from others.
 void Skin::Work::size_columns() {
   rows.resize(ids.size(), 0);
-  rotations.resize(ids.size());
   turns.resize(carriers.size());
   motions.resize(carriers.size() * k_skin_row);
   mesh.material_ids.assign(vertices.size(), slot_of(body));
@@ -135,8 +133,7 @@ void Skin::Work::choose_carriers() {
 
 /// Positions are relative to a point of the body, so that single precision is that of its size.
 void Skin::Work::set_motions(const Simulation& simulation, const VectorView& rest_now, const Vec3& origin) {
-  rotations.resize(ids.size());
-  simulation.rotations(body, rotations);
+  const RotationView rotations = simulation.rotations(body);
   const std::size_t first = simulation.rows(body).begin;
   const VectorView positions = simulation.positions();
   parallel_for(threads, carriers.size(), [&](std::size_t begin, std::size_t end) {
@@ -381,8 +378,7 @@ std::size_t Skin::bytes() const {
   const auto of = [](const auto& list) { return list.capacity() * sizeof(list.front()); };
   return of(w.ids) + of(w.rows) + of(w.rest) + of(w.carriers) + of(w.bound_at) + w.motions.bytes() +
          w.bindings.bytes() + of(w.vertices) + of(w.normals) + of(w.stretch) + of(w.mesh.vertices) +
-         of(w.mesh.normals) + of(w.mesh.material_ids) + of(w.mesh.triangles) + of(w.rotations) + of(w.turns) +
-         of(w.next_rest);
+         of(w.mesh.normals) + of(w.mesh.material_ids) + of(w.mesh.triangles) + of(w.turns) + of(w.next_rest);
 }
 
 }  // namespace mallow

@@ -11,8 +11,8 @@ namespace mallow {
 /// that is thrown at a ball, edges bend by 2.2 degrees more than they did at rest with 4, by 1.3 with 8 and
 /// by 1.1 with 16, which cost twice as much.
 inline constexpr std::size_t k_skin_particles = 8;
-/// Floats of the motion of a particle: four columns of four, one cache line. The first three of each column
-/// are what x = R (v̄ − x̄_i) + x_i takes x, y and z of v̄ and 1 by; the fourth of the first three is x_i.
+/// Floats of the motion of a particle: four vectors of four floats, one cache line. The first three floats of
+/// each are what x = R (v̄ − x̄_i) + x_i takes x, y and z of v̄ and 1 by; the fourth of the first three is x_i.
 inline constexpr std::size_t k_skin_row = 16;
 
 /// What carries a vertex, nearest first.

@@ -46,7 +46,7 @@ MALLOW_INLINE L nearness(const L& square) {
 }
 
 /// Groups of points above each other in z.
-struct PointColumn {
+struct PointPillar {
   Floats low_x, high_x, low_y, high_y;
 };
 
@@ -72,10 +72,10 @@ MALLOW_INLINE void put_lanes(const Vec3Of<L>& v, Floats* planes, std::size_t str
 /// Kernels that are spheres of the kernel radius.
 struct RoundKernel {
   /// What is known of eight particles from x and y.
-  [[gnu::always_inline]] Floats across(const PointColumn& column, const ConstVectors& near,
+  [[gnu::always_inline]] Floats across(const PointPillar& pillar, const ConstVectors& near,
                                        std::size_t k) const {
-    const Floats dx = distance(load(near.x + k), column.low_x, column.high_x);
-    const Floats dy = distance(load(near.y + k), column.low_y, column.high_y);
+    const Floats dx = distance(load(near.x + k), pillar.low_x, pillar.high_x);
+    const Floats dy = distance(load(near.y + k), pillar.low_y, pillar.high_y);
     return dx * dx + dy * dy;
   }
   [[gnu::always_inline]] bool any_in_reach(const Floats& square) const {
@@ -161,10 +161,10 @@ struct DensitySums {
   [[gnu::always_inline]] State<L> start() const {
     return State<L>{};
   }
-  [[gnu::always_inline]] Ints across(const PointColumn& column, const ConstVectors& near,
+  [[gnu::always_inline]] Ints across(const PointPillar& pillar, const ConstVectors& near,
                                      std::size_t k) const {
-    const Floats dx = distance(load(near.x + k), column.low_x, column.high_x);
-    const Floats dy = distance(load(near.y + k), column.low_y, column.high_y);
+    const Floats dx = distance(load(near.x + k), pillar.low_x, pillar.high_x);
+    const Floats dy = distance(load(near.y + k), pillar.low_y, pillar.high_y);
     return is_at_most(dx, load(reach.x + k)) & is_at_most(dy, load(reach.y + k));
   }
   [[gnu::always_inline]] bool any_in_reach(const Ints& reaches) const { return any(reaches); }
@@ -221,10 +221,10 @@ struct Group {
   Floats x, y, z[planes];
 };
 
-/// Lists, for each group of a column, the particles that reach into the box around it. low, high: of the
+/// Lists, for each group of a pillar, the particles that reach into the box around it. low, high: of the
 /// groups, in z. listed: a list a group, `room` long.
 template <std::size_t groups, class Kernel>
-MALLOW_INLINE void list_in_reach(const Kernel& kernel, const NearColumns& near, const PointColumn& column,
+MALLOW_INLINE void list_in_reach(const Kernel& kernel, const NearColumns& near, const PointPillar& pillar,
                                  const Floats* low, const Floats* high, std::size_t* counts) {
   const ConstVectors particles = near.positions;
   const std::size_t room = near.room(), end = near.count;
@@ -232,7 +232,7 @@ MALLOW_INLINE void list_in_reach(const Kernel& kernel, const NearColumns& near, 
   for (std::size_t g = 0; g < groups; ++g) to[g] = near.listed + g * room;
   Ints numbers = k_count;
   for (std::size_t k = 0; k < end; k += k_cluster, numbers += static_cast<int>(k_cluster)) {
-    const auto across = kernel.across(column, particles, k);
+    const auto across = kernel.across(pillar, particles, k);
     if (!kernel.any_in_reach(across)) continue;
     for (std::size_t g = 0; g < groups; ++g)
       to[g] += compress(bits(kernel.in_reach(across, low[g], high[g], particles, k)), numbers, to[g]);
@@ -278,16 +278,16 @@ template <std::size_t planes, class Kernel>
 MALLOW_INLINE void put_planes(Floats* planes, std::size_t side, float* to) {
   transpose_halves(planes);
   for (std::size_t row = 0; row < 4; ++row) {
-    const Quad low = __builtin_shufflevector(planes[row], planes[row], 0, 1, 2, 3);
-    const Quad high = __builtin_shufflevector(planes[row], planes[row], 4, 5, 6, 7);
-    __builtin_memcpy(to + row * side, &low, sizeof low);
-    __builtin_memcpy(to + (side + row) * side, &high, sizeof high);
+    const Quad low = shuffled<0, 1, 2, 3>(planes[row]);
+    const Quad high = shuffled<4, 5, 6, 7>(planes[row]);
+    copy_bytes(to + row * side, &low, sizeof low);
+    copy_bytes(to + (side + row) * side, &high, sizeof high);
   }
 }
 
-/// Sums on a lattice of `side` points an axis, column by column of 2 × 4 × side.
+/// Sums on a lattice of `side` points an axis, pillar by pillar of 2 × 4 × side.
 template <std::size_t side, class Kernel>
-MALLOW_INLINE void sum_in_columns(const Kernel& kernel, const PointLattice& lattice, const NearColumns& near,
+MALLOW_INLINE void sum_in_pillars(const Kernel& kernel, const PointLattice& lattice, const NearColumns& near,
                                   float* to) {
   constexpr std::size_t k_groups = side / 2, n = side * side * side;
   float at[side];
@@ -324,11 +324,11 @@ MALLOW_INLINE void sum_in_columns(const Kernel& kernel, const PointLattice& latt
 
 /// Sums at eight points in a box.
 template <class Kernel>
-MALLOW_INLINE void sum_at_eight(const Kernel& kernel, const NearColumns& near, const PointColumn& column,
+MALLOW_INLINE void sum_at_eight(const Kernel& kernel, const NearColumns& near, const PointPillar& pillar,
                                 const Floats& low_z, const Floats& high_z, const ClusterVec3& x,
                                 Floats* sums) {
   std::size_t count;
-  list_in_reach<1>(kernel, near, column, &low_z, &high_z, &count);
+  list_in_reach<1>(kernel, near, pillar, &low_z, &high_z, &count);
   sum_listed<1>(kernel, near.positions, near.listed, count, {x.x, x.y, {x.z}}, sums, 1);
 }
 
@@ -349,9 +349,9 @@ template <class Kernel>
 void sum_on_lattice(const Kernel& kernel, const PointLattice& lattice, const NearColumns& near, float* to) {
   switch (lattice.step) {
     case 1:
-      return sum_in_columns<8>(kernel, lattice, near, to);
+      return sum_in_pillars<8>(kernel, lattice, near, to);
     case 2:
-      return sum_in_columns<4>(kernel, lattice, near, to);
+      return sum_in_pillars<4>(kernel, lattice, near, to);
     default:
       return sum_at_corners(kernel, lattice, near, to);
   }

@@ -110,7 +110,7 @@ void fill_between(const SurfaceShape& shape, const NodeWeights& weights, const N
 #pragma GCC unroll 8
       for (std::size_t y = 0; y < k_side; ++y) {
         const Floats row = blend<step>(weights, y, rows, 1);
-        __builtin_memcpy(reinterpret_cast<Floats*>(by_plane[s][x]) + y, &row, sizeof row);
+        copy_bytes(reinterpret_cast<Floats*>(by_plane[s][x]) + y, &row, sizeof row);
       }
     }
   }

@@ -22,7 +22,7 @@ void pad_rows(const float* const* blocks, int from, int x, int y, int end_y, Pad
   for (; y < end_y; ++y, from += k_side, to += Padded::k_row) {
     to[-1] = below[from + k_side - 1];
     store(load(here + from), to);
-    __builtin_memcpy(to + k_side, above + from, 2 * sizeof(float));
+    copy_bytes(to + k_side, above + from, 2 * sizeof(float));
   }
 }
 
@@ -79,7 +79,7 @@ MALLOW_INLINE ClusterVec3 middle_of_cuts(const Corners& v, [[maybe_unused]] cons
     if (u == 1) sum[u_axis] += where(cut, all(1.0f));
     if (w == 1) sum[w_axis] += where(cut, all(1.0f));
   }
-  const Floats edge_count = __builtin_convertvector(count, Floats);
+  const Floats edge_count = converted<Floats>(count);
   return ClusterVec3{sum[0], sum[1], sum[2]} / edge_count;
 }
 
@@ -113,16 +113,14 @@ MALLOW_INLINE ClusterVec3 normals_at(const EightCells& cells, const Corners& v, 
   return {unit.x, unit.y, unit.z + where(~slope, all(1.0f))};
 }
 
-using Doubles = double __attribute__((vector_size(4 * sizeof(double))));
+using Doubles = VectorOf<double, 4>;
 
 /// [m]; of a coordinate in voxels from the block's first one, whose own is `first`.
 MALLOW_INLINE Floats to_world(const Floats& local, double first, double origin, double voxel_size) {
   Quad halves[2];
-  __builtin_memcpy(halves, &local, sizeof halves);
-  for (Quad& half : halves)
-    half =
-        __builtin_convertvector(origin + voxel_size * (first + __builtin_convertvector(half, Doubles)), Quad);
-  return __builtin_shufflevector(halves[0], halves[1], 0, 1, 2, 3, 4, 5, 6, 7);
+  copy_bytes(halves, &local, sizeof halves);
+  for (Quad& half : halves) half = converted<Quad>(origin + voxel_size * (first + converted<Doubles>(half)));
+  return shuffled<0, 1, 2, 3, 4, 5, 6, 7>(halves[0], halves[1]);
 }
 
 /// Writes eight vectors, three floats each, and one float behind them.
@@ -130,19 +128,19 @@ MALLOW_INLINE void store_packed(const ClusterVec3& v, float* to) {
   Floats rows[4] = {v.x, v.y, v.z, v.z};
   transpose_halves(rows);
   for (std::size_t t = 0; t < 4; ++t) {
-    const Quad low = __builtin_shufflevector(rows[t], rows[t], 0, 1, 2, 3);
-    __builtin_memcpy(to + 3 * t, &low, sizeof low);
+    const Quad low = shuffled<0, 1, 2, 3>(rows[t]);
+    copy_bytes(to + 3 * t, &low, sizeof low);
   }
   for (std::size_t t = 0; t < 4; ++t) {
-    const Quad high = __builtin_shufflevector(rows[t], rows[t], 4, 5, 6, 7);
-    __builtin_memcpy(to + 3 * (t + 4), &high, sizeof high);
+    const Quad high = shuffled<4, 5, 6, 7>(rows[t]);
+    copy_bytes(to + 3 * (t + 4), &high, sizeof high);
   }
 }
 /// The same for the last vectors of a block: what is behind them may be another thread's.
 void store_last(const ClusterVec3& v, std::size_t count, float* to) {
   float packed[3 * k_cluster + 1];
   store_packed(v, packed);
-  __builtin_memcpy(to, packed, 3 * count * sizeof(float));
+  copy_bytes(to, packed, 3 * count * sizeof(float));
 }
 
 template <bool patched>
@@ -163,8 +161,7 @@ void place(const VertexBlock& block, const VertexList& list, const VertexRows& t
     const ClusterVec3 in_cell = middle_of_cuts<patched>(corners, edges);
     const ClusterVec3 normals = normals_at(eight, corners, in_cell);
     const ClusterVec3 local =
-        in_cell + ClusterVec3{__builtin_convertvector(x, Floats), __builtin_convertvector(y, Floats),
-                              __builtin_convertvector(z, Floats)};
+        in_cell + ClusterVec3{converted<Floats>(x), converted<Floats>(y), converted<Floats>(z)};
     const ClusterVec3 vertices = {to_world(local.x, block.first[0], block.origin[0], block.voxel_size),
                                   to_world(local.y, block.first[1], block.origin[1], block.voxel_size),
                                   to_world(local.z, block.first[2], block.origin[2], block.voxel_size)};

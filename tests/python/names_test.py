@@ -8,7 +8,8 @@ import mallow
 
 # What arrays, ids and exceptions of Python stand for, and what only C++ needs.
 LEFT_OUT = {
-    "VectorColumns", "StridedVectors", "LoopTask", "ShapeSource", "ObjOptions", "SceneReadOptions", "visit_parts",
+    "VectorColumns", "RotationView", "StridedVectors", "LoopTask", "ShapeSource", "ObjOptions", "SceneReadOptions",
+    "visit_parts",
     "level_set",  # an OpenVDB grid; level_set_vdb() is there
     "ConvexHull.data", "Executor.run", "ConfigError.__init__", "IoError.__init__", "StepError.__init__",
     "ConvexHull.__init__", "render.Image", "HullData", "Simulation.State", "StateAccess",

@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <string>
+#include <type_traits>
+#include <vector>
 
+#include "config/field_tables.h"
 #include "mallow/mallow.h"
 
 namespace mallow {
@@ -302,6 +306,35 @@ TEST(support_radius, left_out_is_that_of_the_coarsest_body_and_the_same_as_given
   left_out.support_radius.reset();
   given.support_radius = default_support_radius(0.02f);
   EXPECT_EQ(run(left_out), run(given));
+}
+
+/// The numbers in what a field table says of a setting that is left out.
+template <class Config, class T>
+std::vector<float> left_out(T Config::*member) {
+  std::string text;
+  for_fields<Config>([&](const auto& field) {
+    if constexpr (std::is_same_v<decltype(field.member), T Config::*>)
+      if (field.member == member) text = field.left_out;
+  });
+  std::vector<float> numbers;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t length = 1;
+    if (std::isdigit(static_cast<unsigned char>(text[at])) != 0)
+      numbers.push_back(std::stof(text.substr(at), &length));
+    at += length;
+  }
+  return numbers;
+}
+
+TEST(defaults, are_the_numbers_that_field_tables_say_in_words) {
+  using Numbers = std::vector<float>;
+  EXPECT_EQ(left_out(&SolverConfig::support_radius), Numbers{default_support_radius(1)});
+  EXPECT_EQ(left_out(&SolverConfig::update_period), Numbers{static_cast<float>(default_update_period(1))});
+  EXPECT_EQ(left_out(&Material::update_threshold),
+            Numbers{default_update_threshold({.gravity = {0, 0, -1}}, 1)});
+  EXPECT_EQ(left_out(&SolverConfig::volume_iterations),
+            (Numbers{static_cast<float>(default_volume_iterations(true)),
+                     static_cast<float>(default_volume_iterations(false))}));
 }
 
 }  // namespace defaults_test

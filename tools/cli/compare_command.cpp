@@ -19,6 +19,7 @@
 #include "program/input_files.h"
 #include "program/machine.h"
 #include "program/output_files.h"
+#include "program/threads_option.h"
 
 namespace mallow::cli {
 namespace {
@@ -260,8 +261,7 @@ void add_compare_command(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--csv", options->csv, "Write a row for each frame to this CSV file");
   command->add_flag("--json", options->json, "Print JSON in place of a table");
-  command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
-      ->check(CLI::Range(0, 1024));
+  program::add_threads_option(*command, options->threads);
   command->footer(
       "Distances are between particles of the same id, in spacings h of their body: root mean square, "
       "largest,\n"

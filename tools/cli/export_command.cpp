@@ -19,6 +19,7 @@
 #include "program/run_mark.h"
 #include "program/shared_frames.h"
 #include "program/shell_word.h"
+#include "program/threads_option.h"
 
 namespace mallow::cli {
 namespace {
@@ -164,8 +165,7 @@ void add_export_command(CLI::App& app) {
       ->check(CLI::IsMember({"y", "z"}))
       ->capture_default_str();
   command->add_option("--out", options->out, "Folder for surface/ and particles/; DIR/export if left out");
-  command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
-      ->check(CLI::Range(0, 1024));
+  program::add_threads_option(*command, options->threads);
   command->footer(
       "Velocities: _VELOCITY in glb, Velocity in vtp, velocities in usda, v in vdb, vx vy vz in csv; "
       "an OBJ and an animation have none.\n"

@@ -12,6 +12,7 @@
 #include "cli/scene_options.h"
 #include "mallow/scene.h"
 #include "program/machine.h"
+#include "program/threads_option.h"
 
 namespace mallow::cli {
 namespace {
@@ -136,8 +137,7 @@ void add_info_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("info", "Show what would run: particles, neighbours, phases, memory");
   add_scene_options(*command, options->scene);
-  command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
-      ->check(CLI::Range(0, 1024));
+  program::add_threads_option(*command, options->threads);
   command->add_flag("--print", options->print, "Print only the scene, with every value in it, defaults too");
   command->callback([options] { info(*options); });
 }

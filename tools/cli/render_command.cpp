@@ -20,6 +20,7 @@
 #include "program/input_files.h"
 #include "program/shared_frames.h"
 #include "program/stills.h"
+#include "program/threads_option.h"
 
 namespace mallow::cli {
 namespace {
@@ -108,8 +109,7 @@ void add_render_command(CLI::App& app) {
           "earlier call set is forgotten")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
-      ->check(CLI::Range(0, 1024));
+  program::add_threads_option(*command, options->threads);
   add_film_options(*command, options->film);
   add_frame_options(*command, options->frames);
   command->callback([options] {

@@ -37,6 +37,7 @@
 #include "program/series.h"
 #include "program/shell_word.h"
 #include "program/stills.h"
+#include "program/threads_option.h"
 
 namespace mallow::cli {
 namespace {
@@ -410,10 +411,9 @@ void add_run_command(CLI::App& app) {
           "Seconds from one checkpoint to the next; 0: none by time. Default: 60, or none by time with "
           "--checkpoint-every")
       ->check(not_negative());
-  command
-      ->add_option("--threads", options->threads,
-                   "Number of threads; 0: one for each processor. The result does not depend on it")
-      ->check(CLI::Range(0, 1024));
+  program::add_threads_option(
+      *command, options->threads,
+      "Number of threads; 0: one for each processor. The result does not depend on it");
   command->add_option("--state-out", options->state_out,
                       "Write the state after the last step to this CSV file");
   command->add_option("--report", options->report, "Write what ran and how long it took to this JSON file");

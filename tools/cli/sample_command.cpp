@@ -16,6 +16,7 @@
 #include "program/input_files.h"
 #include "program/machine.h"
 #include "program/output_files.h"
+#include "program/threads_option.h"
 
 namespace mallow::cli {
 namespace {
@@ -93,8 +94,7 @@ void add_sample_command(CLI::App& app) {
   command->add_option("--radius", options->radius,
                       "Print the mean number of points within this distance of a point");
   command->add_option("--out", options->out, "Write the points to this file, .csv or .ply");
-  command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
-      ->check(CLI::Range(0, 1024));
+  program::add_threads_option(*command, options->threads);
   command->callback([options] {
     if (!options->count && !options->spacing) throw ConfigError("", "--count or --spacing is needed");
     sample_mesh(*options);

@@ -10,6 +10,7 @@
 #include "mallow/files.h"
 #include "program/interrupt.h"
 #include "program/output_files.h"
+#include "program/threads_option.h"
 #include "tradeoff/page.h"
 
 namespace mallow::cli {
@@ -63,8 +64,7 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
   command.add_option("--repeats", arguments.repeats, "Timed runs of every setting, at most")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command.add_option("--threads", arguments.threads, "Number of threads; 0: one for each processor")
-      ->check(CLI::Range(0, 1024));
+  program::add_threads_option(command, arguments.threads);
   command.add_flag("--no-surface", arguments.no_surface, "Draw no surface: a frame is its steps alone");
 }
 

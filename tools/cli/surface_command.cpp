@@ -18,6 +18,7 @@
 #include "program/frame_range.h"
 #include "program/frame_surface.h"
 #include "program/shared_frames.h"
+#include "program/threads_option.h"
 
 namespace mallow::cli {
 namespace {
@@ -120,8 +121,7 @@ void add_surface_command(CLI::App& app) {
           "an earlier call set is forgotten")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--threads", options->threads, "Number of threads; 0: one for each processor")
-      ->check(CLI::Range(0, 1024));
+  program::add_threads_option(*command, options->threads);
   add_frame_options(*command, options->frames);
   command->callback([options] {
     options->shared = options->frames.shared();

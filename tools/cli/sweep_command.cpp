@@ -14,6 +14,7 @@
 #include "program/failure.h"
 #include "program/interrupt.h"
 #include "program/machine.h"
+#include "program/threads_option.h"
 #include "sweep/schedulers.h"
 #include "sweep/sweep_table.h"
 
@@ -189,8 +190,7 @@ void add_sweep_command(CLI::App& app) {
       ->add_option("--jobs", options->jobs,
                    "Points at a time; 0: one for each processor, or as the scheduler has it")
       ->check(CLI::Range(0, 1'000'000));
-  command->add_option("--threads", options->threads, "Threads of each run; 0: those of its slot")
-      ->check(CLI::Range(0, 1024));
+  program::add_threads_option(*command, options->threads, "Threads of each run; 0: those of its slot");
   command->add_option("--point", options->point,
                       "Run these points alone, and make no table: 7, or 3,7,10:20");
   command->add_option("--hosts", options->hosts,

@@ -6,6 +6,8 @@
 #include <string>
 #include <thread>
 
+#include "config/field_tables.h"
+
 namespace mallow::program {
 namespace {
 
@@ -28,6 +30,10 @@ nlohmann::ordered_json machine_json() {
 
 std::size_t available_memory() {
   return proc_bytes("/proc/meminfo", "MemAvailable");
+}
+
+int most_threads() {
+  return static_cast<int>(range_of(&SolverConfig::threads).highest);
 }
 
 int resolve_threads(int threads) {

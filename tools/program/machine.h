@@ -15,6 +15,9 @@ std::size_t available_memory();
 /// A line of a file of the system's in /proc that counts kB [bytes]; 0 where there is none.
 std::size_t proc_bytes(const char* file, const std::string& line);
 
+/// Threads that a run may have, at most.
+int most_threads();
+
 /// Threads that a command line's 0 stands for: all the machine has.
 int resolve_threads(int threads);
 

@@ -222,11 +222,10 @@ struct Mesher {
         turned(flat_profile(cone.start_radius, cone.end_radius, axis.norm()), cone.start, axis.normalized()),
         cone.inside};
   }
-  ColliderMesh operator()(const ConvexHull& hull) const {
-    return {DistanceMesher<ConvexHull>(hull).mesh(), hull.inside};
-  }
-  ColliderMesh operator()(const DistanceField& field) const {
-    return {DistanceMesher<DistanceField>(field).mesh(), field.inside};
+  /// Any other by its distances.
+  template <class Shape>
+  ColliderMesh operator()(const Shape& shape) const {
+    return {DistanceMesher<Shape>(shape).mesh(), shape.inside};
   }
 };
 

@@ -7,6 +7,7 @@
 #include "mallow/errors.h"
 #include "mallow/version.h"
 #include "program/failure.h"
+#include "program/threads_option.h"
 #include "view/script.h"
 #include "view/viewer.h"
 
@@ -50,8 +51,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
   app.add_option("--set", options.overrides, "Change a setting, as section.key=value")
       ->type_name("KEY=VALUE");
   app.add_option("--scenes", scenes, "Folder of scenes that the gallery shows")->type_name("DIR");
-  app.add_option("--threads", options.threads, "Threads of the simulation; left out: all but one")
-      ->check(CLI::Range(1, 1024));
+  program::add_threads_option(app, options.threads, "Threads of the simulation; left out: all but one", 1);
   app.add_option("--samples", options.samples, "Samples a pixel; 0: 4, or 1 where no graphics card draws")
       ->check(CLI::Range(0, 16));
   app.add_option("--width", options.window.width, "Of the window, pixels")->check(CLI::Range(64, 16384));

@@ -57,7 +57,7 @@ struct Lattice {
   std::array<int, 3> count{1, 1, 1};  ///< each in [1, 100000000]
   float spacing = 1.0f;               ///< [m], > 0
   Vec3 corner{0, 0, 0};               ///< lowest corner of the box, half a cell from the first point
-  float jitter = k_default_jitter;    ///< as in Sampling
+  float jitter = k_default_jitter;    ///< in [0, 0.45], as in Sampling
 };
 
 /// How a volume is filled: give one of `spacing` and `count`.

@@ -94,6 +94,8 @@ struct DistanceField {
   std::shared_ptr<const DistanceGrid> grid = {};  ///< not null; shared by copies
   bool inside = false;                            ///< true: particles are kept in
 };
+/// Voxels along the longest side of a mesh that is an obstacle, where none are given.
+inline constexpr int k_mesh_collider_voxels = 64;
 /// An implicit shape on a grid of its own. voxel_size: [m], > 0. band: how far from the surface the distance
 /// function tells distances [m], > 0; farther away its sign alone counts. Throws ConfigError where a number
 /// is out of range, or the shape has more than 1000 voxels along an axis.

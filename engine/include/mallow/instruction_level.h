@@ -4,7 +4,7 @@
 
 namespace mallow {
 
-/// Instruction levels that the kernels of a step are compiled for. All give the same bits; higher ones are
+/// Instruction levels that the lanes of a step are compiled for. All give the same bits; higher ones are
 /// faster.
 enum class InstructionLevel {
   baseline,  ///< x86-64-v2 (SSE 4.2), or what the compiler takes for granted on other machines

@@ -12,7 +12,7 @@ using AlphaSchedule = Schedule;
 
 /// What bodies are made of. Symbols are those of Takamatsu & Kanai [TK].
 struct Material {
-  /// Elastic solid (0) to fluid (1). [TK eq. 10]
+  /// Elastic solid (0) to fluid (1), in [0, 1]. [TK eq. 10]
   AlphaSchedule alpha = 0.0f;
   /// Mean external acceleration above which the reference shape is updated, at alpha 0: γ_u [m/s²], >= 0.
   /// The threshold in force is γ_u (1 − alpha), and what is compared with it the largest mean over one

@@ -138,7 +138,7 @@ struct SimulationInfo {
   bool sph = false;                                                 ///< SPH sums run
   bool viscosity = false;                                           ///< viscous terms run
   bool cross_group = false;                                         ///< contact between bodies runs
-  InstructionLevel instruction_level = InstructionLevel::baseline;  ///< that kernels use
+  InstructionLevel instruction_level = InstructionLevel::baseline;  ///< that lanes use
   std::size_t bytes = 0;                                            ///< memory of columns, lists and scratch
   float support_radius = 0;                                         ///< σ [m]
   float time_step = 0;                                              ///< Δt0 [s]

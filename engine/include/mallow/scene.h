@@ -31,8 +31,8 @@ struct SceneMaterial {
 
 /// A ball, filled with points.
 struct SphereSource {
-  Vec3 center{0, 0, 0};
-  float radius = 1.0f;
+  Vec3 center{0, 0, 0};  ///< [m]
+  float radius = 1.0f;   ///< [m], > 0
   Sampling sampling;
 };
 /// A closed mesh of a file, placed and filled with points.
@@ -44,7 +44,7 @@ struct MeshSource {
 /// The points of a file.
 struct PointsSource {
   std::filesystem::path file = {};  ///< relative to the scene
-  float spacing = 1.0f;
+  float spacing = 1.0f;             ///< h [m], > 0
 };
 /// One of the shapes that implicit_shape() knows, placed and filled with points.
 struct ImplicitSource {
@@ -63,11 +63,11 @@ struct HullSource {
 };
 /// A closed mesh of a file as an obstacle, see mesh_collider().
 struct MeshColliderSource {
-  std::filesystem::path file = {};  ///< relative to the scene
-  int voxels = 64;                  ///< along its longest side, in [8, 512]
-  std::optional<float> size = {};   ///< longest side [m], > 0; left out: as in the file
-  std::optional<Vec3> center = {};  ///< middle of its box [m]; left out: where the file has it
-  bool inside = false;              ///< DistanceField::inside
+  std::filesystem::path file = {};      ///< relative to the scene
+  int voxels = k_mesh_collider_voxels;  ///< along its longest side, in [8, 512]
+  std::optional<float> size = {};       ///< longest side [m], > 0; left out: as in the file
+  std::optional<Vec3> center = {};      ///< middle of its box [m]; left out: where the file has it
+  bool inside = false;                  ///< DistanceField::inside
 };
 /// What a shape was made of that scene files do not hold as it is.
 using ShapeSource = std::variant<std::monostate, HullSource, MeshColliderSource>;
@@ -148,9 +148,9 @@ struct RunConfig {
 
 /// How pictures are taken.
 struct RenderConfig {
-  int width = 960;               ///< pixels, in [16, 8192]
-  int height = 540;              ///< pixels, in [16, 8192]
-  int samples = 4;               ///< most rays per pixel to each light, in [1, 256]
+  int width = 960;   ///< pixels, in [16, 8192]
+  int height = 540;  ///< pixels, in [16, 8192]
+  int samples = 4;   ///< most rays per pixel to each light, in [1, 256]
   /// Pixels whose light is known this well after one ray take no more; of white, in [0, 1]. 0: all take
   /// `samples`.
   float noise = 0.004f;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -67,6 +68,34 @@ class VectorColumns {
 };
 using VectorView = VectorColumns<const float>;  ///< to read
 using VectorSpan = VectorColumns<float>;        ///< to write
+
+/// Rotations of the particles of a body, seen without a copy where its regions keep them. Valid until the
+/// next step or change of the simulation.
+class RotationView {
+ public:
+  /// columns: x, y, z and w of each region.
+  RotationView(const std::array<const float*, 4>& columns, std::size_t size)
+      : columns_(columns), size_(size) {}
+  /// Particle i is turned as region entries[begin[i]] % regions.
+  RotationView(const std::array<const float*, 4>& columns, std::size_t size, const std::uint32_t* begin,
+               const std::uint32_t* entries, std::size_t regions)
+      : columns_(columns), size_(size), begin_(begin), entries_(entries), regions_(regions) {}
+
+  /// Particles of the body.
+  std::size_t size() const { return size_; }
+  /// The rotation of one of them, counted from the body's first.
+  Eigen::Quaternionf operator[](std::size_t i) const {
+    const std::size_t region = begin_ == nullptr ? i : entries_[begin_[i]] % regions_;
+    return {columns_[3][region], columns_[0][region], columns_[1][region], columns_[2][region]};
+  }
+
+ private:
+  std::array<const float*, 4> columns_;
+  std::size_t size_;
+  const std::uint32_t* begin_ = nullptr;
+  const std::uint32_t* entries_ = nullptr;
+  std::size_t regions_ = 0;
+};
 
 /// What a force callback sees.
 struct ForceInput {
@@ -183,8 +212,8 @@ class MALLOW_EXPORT Simulation {
   /// How steps are taken from now on; take config() and change it. What may change is time_step_factor,
   /// gravity, rotation_iterations, volume_tolerance, neighbor_slack, acoustic_limit, sleep_speed, sleep_time,
   /// air_temperature and memory_limit: the rest is what a simulation was made with. Throws ConfigError, and
-  /// changes nothing, where another setting differs, a value is out of range, or steps would be too long for a
-  /// material's springs.
+  /// changes nothing, where another setting differs, a value is out of range, or steps would be too long for
+  /// a material's springs.
   void set_solver(const SolverConfig& config);
   /// What all bodies of a material are made of from now on. Reference shapes stay; the regions are built anew
   /// where their radius or stride changes. Throws ConfigError with every value that is out of range.
@@ -344,9 +373,8 @@ class MALLOW_EXPORT Simulation {
   /// rest_position() of all particles of a body: entry k is of row rows(body).begin + k. Throws ConfigError
   /// where there is no such body, and where it keeps no reference shape.
   VectorView rest_positions(BodyId body) const;
-  /// rotation() of all particles of a body, in the same order; one entry for each, or ConfigError. Throws as
-  /// rest_positions() does.
-  void rotations(BodyId body, std::span<Eigen::Quaternionf> rotations) const;
+  /// rotation() of all particles of a body, in the same order. Throws as rest_positions() does.
+  RotationView rotations(BodyId body) const;
 
   /// Copies in the order of slots, whatever that of rows is: entry i is particle i where none was removed.
   std::vector<Vec3> positions_by_id() const;

@@ -99,9 +99,9 @@ struct SolverConfig {
   /// keeps its lists, at the price of longer ones. 0: they are found anew in every step. Results differ by
   /// the order of sums only.
   float neighbor_slack = 0.0f;
-  /// native: sums of SPH and of the volume iterations by fused multiply-adds, distances in accelerations right
-  /// to 12 bits, or 14 with AVX-512. That is faster and moves as well, but not the same to the bit on another
-  /// kind of machine or at another instruction_level; on any number of threads it is. At
+  /// native: sums of SPH and of the volume iterations by fused multiply-adds, distances in accelerations
+  /// right to 12 bits, or 14 with AVX-512. That is faster and moves as well, but not the same to the bit on
+  /// another kind of machine or at another instruction_level; on any number of threads it is. At
   /// InstructionLevel::baseline, and on machines other than x86-64, it is exact.
   Arithmetic arithmetic = Arithmetic::exact;
   /// Threads of every phase, in [0, 1024]; 0 takes all that the executor has. Results do not depend on it.
@@ -109,7 +109,7 @@ struct SolverConfig {
   /// Whose threads run the loops: team_executor() where it is null, openmp_executor(), or an application's
   /// own. Results do not depend on it.
   std::shared_ptr<Executor> executor = nullptr;
-  /// Instructions that kernels use, one of those this machine has; left out: its best. Results do not depend
+  /// Instructions that lanes use, one of those this machine has; left out: its best. Results do not depend
   /// on it; it is there to show that, and to time what older machines would do.
   std::optional<InstructionLevel> instruction_level = {};
   /// Memory that neighbour lists may take [GiB], > 0. prepare() refuses radii that would ask for more, before

@@ -105,8 +105,8 @@ void bind_meshes(py::module_& module) {
         const py::gil_scoped_release release;
         return mesh_collider(copy, voxels, inside, threads);
       },
-      py::arg("mesh"), py::arg("voxels") = 64, py::arg("inside") = false, py::arg("threads") = 0,
-      doc("mesh_collider"));
+      py::arg("mesh"), py::arg("voxels") = k_mesh_collider_voxels, py::arg("inside") = false,
+      py::arg("threads") = 0, doc("mesh_collider"));
 }
 
 }  // namespace mallow::python

@@ -81,11 +81,9 @@ void bind_of_particles(SimulationClass& simulation) {
           "rotations",
           [](SimulationCell& cell, BodyId body) {
             const Use use = reading(cell);
-            const Simulation::Rows rows = cell.simulation.rows(body);
-            std::vector<Eigen::Quaternionf> rotations(rows.end - rows.begin);
-            cell.simulation.rotations(body, rotations);
+            const RotationView rotations = cell.simulation.rotations(body);
             std::vector<std::array<float, 4>> result(rotations.size());
-            std::ranges::transform(rotations, result.begin(), numbers);
+            for (std::size_t i = 0; i < result.size(); ++i) result[i] = numbers(rotations[i]);
             return result;
           },
           py::arg("body"), doc("Simulation.rotations"))
