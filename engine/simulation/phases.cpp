@@ -49,16 +49,22 @@ void read_alphas(Simulation::State& state) {
 void sort_fluids(Simulation::State& state) {
   const CellGrid& grid = state.sph.grid;
   if (state.step % k_sort_interval != 1 || grid.order.size() != state.store.size()) return;
-  for (const BodyState& body : state.bodies) {
-    if (body.keeps_reference() || !body.moves()) continue;
-    std::size_t count = 0;
-    state.fluid_order.resize(body.size());
-    for (const std::uint32_t row : grid.order)
-      if (row >= body.begin && row < body.end)
-        state.fluid_order[count++] = row - static_cast<std::uint32_t>(body.begin);
-    state.store.permute(body.begin, state.fluid_order.span(), state.execution.threads);
-    state.rows_moved();
+  const auto sorts = [](const BodyState& body) { return !body.keeps_reference() && body.moves(); };
+  if (std::ranges::none_of(state.bodies, sorts)) return;
+  // From the first row of each body on: its rows within the body, in the order of the grid.
+  std::vector<std::uint32_t>& filled = state.fluid_rows;
+  filled.assign(state.bodies.size(), 0);
+  state.fluid_order.resize_unset(state.store.size());
+  for (const std::uint32_t row : grid.order) {
+    const BodyState& body = std::as_const(state).body_of(row);
+    std::uint32_t& next = filled[static_cast<std::size_t>(&body - state.bodies.data())];
+    state.fluid_order[body.begin + next++] = row - static_cast<std::uint32_t>(body.begin);
   }
+  for (const BodyState& body : state.bodies)
+    if (sorts(body) && body.size() > 1)
+      state.store.permute(body.begin, state.fluid_order.span().subspan(body.begin, body.size()),
+                          state.execution.threads);
+  state.rows_moved();
 }
 
 void call_force(Simulation::State& state) {
