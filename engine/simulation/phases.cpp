@@ -207,8 +207,18 @@ void judge_motion(Simulation::State& state) {
     const MotionSums& sums = state.moving.sums[b];
     body.mean_speed = sums.speed / static_cast<double>(body.size());
     body.step_external = sums.unpinned > 0 ? sums.external / static_cast<double>(sums.unpinned) : 0.0;
-    if (state.moving.inputs[b].measure_rigid) body.rigid = rigid_motion(sums.rigid, body.rigid.center);
   }
+  constexpr std::size_t k_bodies = 16;  // the axes of one take half a microsecond
+  parallel_for(
+      state.execution.threads, state.awake.size(),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+          RigidMotion& rigid = state.awake[b]->rigid;
+          if (state.moving.inputs[b].measure_rigid)
+            rigid = rigid_motion(state.moving.sums[b].rigid, rigid.center);
+        }
+      },
+      k_bodies);
 }
 
 }  // namespace
