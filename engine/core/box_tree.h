@@ -31,12 +31,16 @@ class BoxTree {
     std::uint32_t box;
   };
 
+  static bool overlap(const Aabb& a, const Aabb& b) {
+    return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
+  }
+
   template <class Found>
   void visit(std::size_t level, std::size_t node, const Aabb& box, const Found& found) const {
     const std::vector<Aabb>& nodes = levels_[level];
     const std::size_t end = level + 1 == levels_.size() ? nodes.size() : node + k_fan;
     for (std::size_t n = node; n < end && n < nodes.size(); ++n) {
-      if (!are_near(nodes[n], box, 0)) continue;
+      if (!overlap(nodes[n], box)) continue;
       if (level == 0)
         found(order_[n].box);
       else
