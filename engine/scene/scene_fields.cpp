@@ -22,7 +22,8 @@ BoundFields fields(SceneMaterial& material) {
   const BoundFields look{
       {"color", &material.color, between(0, 1), "", "red, green and blue in pictures, linear",
        "one of a palette"},
-      {"finish", &material.finish, k_any, "", "in pictures: clear and cloudy, opaque and dull, soft, opaque and glossy, or clear"},
+      {"finish", &material.finish, k_any, "",
+       "in pictures: clear and cloudy, opaque and dull, soft, opaque and glossy, or clear"},
   };
   return joined({{"name", &material.name, k_any, "", "what bodies call it", k_required}},
                 joined(fields(material.material), look));
@@ -137,7 +138,12 @@ BoundFields fields(SceneEmitter& emitter) {
       {"rotate", &emitter.rotate, k_finite, "degrees",
        "turn of the nozzle about x, then y, then z; unturned the strand leaves it upwards, along z"},
   };
-  return joined(place, fields(static_cast<Emitter&>(emitter)));
+  const BoundFields section{
+      {"points", &emitter.points, k_finite, "m",
+       "of a layer, along x and y of the nozzle, z left out; in place of radius, width and height",
+       "from radius, or width and height"},
+  };
+  return joined(place, joined(fields(static_cast<Emitter&>(emitter)), section));
 }
 
 BoundFields fields(SceneSink& sink) {
@@ -154,7 +160,8 @@ BoundFields fields(Aabb& box) {
 BoundFields fields(RenderConfig& render) {
   BoundFields all = fields<RenderConfig>(render);
   all.push_back({"environment", &render.environment, k_any, "",
-                 "Radiance picture (.hdr) of all around to light by, z up, relative to the scene", "a studio"});
+                 "Radiance picture (.hdr) of all around to light by, z up, relative to the scene",
+                 "a studio"});
   return all;
 }
 
