@@ -212,9 +212,11 @@ const Case k_cases[] = {
           "time = 1 }]"},
      "scene.toml:12:12: emitter[0].velocity: is not allowed beside keyframes"},
     {{.rest = "[[emitter]]\nmaterial = \"jelly\"\nspacing = 1\npoints = [[0, 0, 0], [1, 0]]"},
-     "scene.toml:12:23: emitter[0].points[1]: [1, 0] is not allowed: a list of three numbers"},
+     "scene.toml:11:22: emitter[0].points[1]: an array of 2 is not allowed: 3 finite numbers [x, y, z]"},
     {{.rest = "[[emitter]]\nmaterial = \"jelly\"\nspacing = 1\nradius = 2\npoints = [[0, 0, 0], [1, 0, 0]]"},
-     "scene.toml:8:1: emitter[0].radius: is not allowed beside width, height or points"},
+     "scene.toml:8:1: emitter[0].radius: is not allowed beside width, height or points: a nozzle is round, "
+     "or "
+     "has corners, or points of its own"},
     {{.rest = "[[emitter]]\nmaterial = \"jelly\"\nradius = 1\nspacing = 1\nspeed = [[0, 1], [1, -1]]"},
      "scene.toml:12:22: emitter[0].speed[1][1]: -1 is not allowed: a number >= 0"},
     {{.rest = "[[collider]]\nunion = []"},

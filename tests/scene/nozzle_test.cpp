@@ -7,7 +7,7 @@
 namespace mallow {
 namespace nozzle_test {
 
-/// In how many parts the particles of a body are, where those nearer than `reach` are together.
+/// In how many parts the particles of a body are, where those nearer than `reach` [m] are together.
 std::size_t count_parts(const Simulation& s, BodyId body, float reach) {
   const Simulation::Rows rows = s.rows(body);
   const std::size_t count = rows.end - rows.begin;
@@ -38,7 +38,6 @@ TEST(nozzle, lays_down_one_strand_that_stays_in_one_part) {
   SceneIds ids;
   Simulation s = build(scene, 2, nullptr, &ids);
   const BodyId strand = s.body(ids.emitters.at(0));
-  const float h = scene.emitters[0].spacing;
   for (int frame = 1; frame <= scene.run.frames; ++frame) {
     const double end = frame * *scene.run.frame_time;
     while (s.time() < end) {
@@ -46,7 +45,9 @@ TEST(nozzle, lays_down_one_strand_that_stays_in_one_part) {
       for (const BodyEvent& event : s.events())
         ASSERT_NE(event.kind, BodyEvent::Kind::torn) << "into " << event.parts << " parts at " << s.time();
     }
-    if (frame % 10 == 0) EXPECT_EQ(count_parts(s, strand, 1.5f * h), 1u) << "frame " << frame;
+    if (frame % 10 == 0) {
+      EXPECT_EQ(count_parts(s, strand, *scene.solver.support_radius), 1u) << "frame " << frame;
+    }
   }
   EXPECT_EQ(s.body_count(), 1u);
   EXPECT_GT(s.time(), *scene.emitters[0].stop) << "it ended";
