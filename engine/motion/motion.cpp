@@ -74,6 +74,7 @@ class MovingBlock {
               ParticleStore& store)
       : in_(in),
         forces_(forces(in, store)),
+        level_(level),
         lanes_(MALLOW_SELECT(level, motion_lanes)),
         begin_(begin),
         end_(end),
@@ -110,7 +111,8 @@ class MovingBlock {
                         raw(store_.next_position)))
       sums.bad_row = first_bad_row(store_, begin_, end_);
     if (in_.measure_rigid)
-      sums.rigid = sum_rigid(store_.next_position, store_.next_velocity, begin_, end_, in_.rigid.center);
+      sums.rigid = sum_rigid(level_, raw(std::as_const(store_.next_position)),
+                             raw(std::as_const(store_.next_velocity)), begin_, end_, in_.rigid.center);
     if (in_.measure_speed) sums.speed = sum_speeds();
   }
 
@@ -151,6 +153,7 @@ class MovingBlock {
 
   const MotionInput& in_;
   const ForcesInput forces_;
+  const InstructionLevel level_;
   const MotionLanes& lanes_;
   const std::size_t begin_, end_;
   ParticleStore& store_;

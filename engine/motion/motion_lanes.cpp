@@ -2,7 +2,7 @@
 // particle.
 #include "motion/motion_lanes.h"
 
-#include "core/lanes.h"
+#include "core/double_lanes.h"
 
 namespace mallow::MALLOW_LEVEL {
 namespace {
@@ -119,9 +119,26 @@ float fastest(const ForcesInput& in, std::size_t begin, std::size_t end) noexcep
   return any(undefined) ? k_not_a_number : largest(most);
 }
 
+void rigid_sums(ConstVectors position, ConstVectors velocity, const double* near, std::size_t begin,
+                std::size_t end, double* sums) noexcept {
+  sum_rows<16>(
+      begin, end,
+      [&](const auto& get, auto* s) {
+        const auto x = get(position.x) - near[0], y = get(position.y) - near[1],
+                   z = get(position.z) - near[2];
+        const auto vx = get(velocity.x), vy = get(velocity.y), vz = get(velocity.z);
+        s[0] += x, s[1] += y, s[2] += z;
+        s[3] += vx, s[4] += vy, s[5] += vz;
+        s[6] += y * vz - z * vy, s[7] += z * vx - x * vz, s[8] += x * vy - y * vx;
+        s[9] += vx * vx + vy * vy + vz * vz;
+        s[10] += x * x, s[11] += x * y, s[12] += x * z, s[13] += y * y, s[14] += y * z, s[15] += z * z;
+      },
+      sums);
+}
+
 }  // namespace
 
 extern const MotionLanes motion_lanes;
-const MotionLanes motion_lanes = {blend, bounds, advance, external, fastest};
+const MotionLanes motion_lanes = {blend, bounds, advance, external, fastest, rigid_sums};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -49,6 +49,10 @@ struct MotionLanes {
                    ConstVectors velocity, float* external) noexcept;
   /// Largest |v + Δt (a^SPH + a_ext)|² of unpinned rows: NaN where one is, -1 where there is none.
   float (*fastest)(const ForcesInput&, std::size_t begin, std::size_t end) noexcept;
+  /// The sixteen sums of RigidSums, in the order of its members, of `square` xx, xy, xz, yy, yz, zz. near:
+  /// three numbers [m].
+  void (*rigid_sums)(ConstVectors position, ConstVectors velocity, const double* near, std::size_t begin,
+                     std::size_t end, double* sums) noexcept;
 };
 MALLOW_DECLARE_LEVELS(MotionLanes, motion_lanes)
 

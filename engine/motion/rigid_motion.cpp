@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "motion/motion_lanes.h"
+
 namespace mallow {
 
 void RigidSums::operator+=(const RigidSums& other) {
@@ -13,22 +15,16 @@ void RigidSums::operator+=(const RigidSums& other) {
   square += other.square;
 }
 
-RigidSums sum_rigid(const VectorColumn& positions, const VectorColumn& velocities, std::size_t begin,
-                    std::size_t end, const Eigen::Vector3d& near) {
-  RigidSums sums;
-  for (std::size_t i = begin; i < end; ++i) {
-    const Eigen::Vector3d x = positions.get(i).cast<double>() - near, v = velocities.get(i).cast<double>();
-    sums.place += x;
-    sums.velocity += v;
-    sums.spin += x.cross(v);
-    sums.squared_speed += v.squaredNorm();
-    for (int a = 0; a < 3; ++a)
-      for (int b = a; b < 3; ++b) sums.square(a, b) += x[a] * x[b];
-  }
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < a; ++b) sums.square(a, b) = sums.square(b, a);
-  sums.count = static_cast<double>(end - begin);
-  return sums;
+RigidSums sum_rigid(InstructionLevel level, ConstVectors positions, ConstVectors velocities,
+                    std::size_t begin, std::size_t end, const Eigen::Vector3d& near) {
+  double s[16];
+  MALLOW_SELECT(level, motion_lanes).rigid_sums(positions, velocities, near.data(), begin, end, s);
+  return {.count = static_cast<double>(end - begin),
+          .place = {s[0], s[1], s[2]},
+          .velocity = {s[3], s[4], s[5]},
+          .spin = {s[6], s[7], s[8]},
+          .squared_speed = s[9],
+          .square = Eigen::Matrix3d{{s[10], s[11], s[12]}, {s[11], s[13], s[14]}, {s[12], s[14], s[15]}}};
 }
 
 RigidMotion rigid_motion(const RigidSums& sums, const Eigen::Vector3d& near) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "core/column.h"
+#include "core/isa.h"
+#include "core/raw_columns.h"
 
 namespace mallow {
 
@@ -24,8 +26,8 @@ struct RigidSums {
   void operator+=(const RigidSums& other);
 };
 
-RigidSums sum_rigid(const VectorColumn& positions, const VectorColumn& velocities, std::size_t begin,
-                    std::size_t end, const Eigen::Vector3d& near);
+RigidSums sum_rigid(InstructionLevel level, ConstVectors positions, ConstVectors velocities,
+                    std::size_t begin, std::size_t end, const Eigen::Vector3d& near);
 /// near: that of the sums. A line of particles has no spin about itself, a single one none.
 RigidMotion rigid_motion(const RigidSums& sums, const Eigen::Vector3d& near);
 

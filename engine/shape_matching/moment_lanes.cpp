@@ -1,60 +1,25 @@
 // Sums in double: what the rigid frame of a body and the moments of its regions are found from.
 #include "shape_matching/moment_lanes.h"
 
-#include "core/lanes.h"
+#include "core/double_lanes.h"
 
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
-/// Lanes of a sum: as many at every level, which takes them a register at a time. Wider than a register GCC
-/// 12 keeps them in memory, at five times the cost.
-constexpr std::size_t k_wide = 8;
-constexpr std::size_t k_doubles = k_width / 2;
-using Doubles = VectorOf<double, k_doubles>;
-using Floats = VectorOf<float, k_doubles>;
-
-inline Doubles load_doubles(const float* values) {
-  Floats floats;
-  copy_bytes(&floats, values, sizeof floats);
-  return converted<Doubles>(floats);
-}
-
-double sum(const double* lanes) {
-  double total = 0;
-  for (std::size_t l = 0; l < k_wide; ++l) total += lanes[l];
-  return total;
-}
-
 void frame_sums(ConstVectors position, ConstVectors reference, const double* origin, std::size_t begin,
                 std::size_t end, double* sums) noexcept {
-  const std::size_t whole = begin + (end - begin) / k_wide * k_wide;
-  double lanes[12][k_wide];
-  for (std::size_t l = 0; l < k_wide; l += k_doubles) {
-    Doubles s[12] = {};
-    for (std::size_t i = begin + l; i < whole; i += k_wide) {
-      const Doubles x = load_doubles(position.x + i) - origin[0],
-                    y = load_doubles(position.y + i) - origin[1],
-                    z = load_doubles(position.z + i) - origin[2];
-      const Doubles rx = load_doubles(reference.x + i), ry = load_doubles(reference.y + i),
-                    rz = load_doubles(reference.z + i);
-      s[0] += x * rx, s[1] += x * ry, s[2] += x * rz;
-      s[3] += y * rx, s[4] += y * ry, s[5] += y * rz;
-      s[6] += z * rx, s[7] += z * ry, s[8] += z * rz;
-      s[9] += x, s[10] += y, s[11] += z;
-    }
-    for (std::size_t k = 0; k < 12; ++k) copy_bytes(lanes[k] + l, &s[k], sizeof s[k]);
-  }
-  for (std::size_t k = 0; k < 12; ++k) sums[k] = sum(lanes[k]);
-  for (std::size_t i = whole; i < end; ++i) {
-    const float* const positions[3] = {position.x + i, position.y + i, position.z + i};
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double d = static_cast<double>(*positions[a]) - origin[a];
-      sums[3 * a] += d * static_cast<double>(reference.x[i]);
-      sums[3 * a + 1] += d * static_cast<double>(reference.y[i]);
-      sums[3 * a + 2] += d * static_cast<double>(reference.z[i]);
-      sums[9 + a] += d;
-    }
-  }
+  sum_rows<12>(
+      begin, end,
+      [&](const auto& get, auto* s) {
+        const auto x = get(position.x) - origin[0], y = get(position.y) - origin[1],
+                   z = get(position.z) - origin[2];
+        const auto rx = get(reference.x), ry = get(reference.y), rz = get(reference.z);
+        s[0] += x * rx, s[1] += x * ry, s[2] += x * rz;
+        s[3] += y * rx, s[4] += y * ry, s[5] += y * rz;
+        s[6] += z * rx, s[7] += z * ry, s[8] += z * rz;
+        s[9] += x, s[10] += y, s[11] += z;
+      },
+      sums);
 }
 
 void write_rows(ConstVectors reference, const float* weight, std::size_t begin, std::size_t end,

@@ -178,7 +178,8 @@ BodyMotion Simulation::motion(BodyId id) const {
   const State& s = *state_;
   const BodyState& body = s.body(id);
   const Vec near = s.store.position.get(body.begin).cast<double>();
-  const RigidSums sums = sum_rigid(s.store.position, s.store.velocity, body.begin, body.end, near);
+  const RigidSums sums =
+      sum_rigid(s.execution.level, raw(s.store.position), raw(s.store.velocity), body.begin, body.end, near);
   const RigidMotion rigid = rigid_motion(sums, near);
   const double mass = static_cast<double>(body.mass);
   return {.mass = mass * sums.count,

@@ -93,7 +93,9 @@ void take_support_radius(Simulation::State& state) {
 
 void measure_rigid(const Simulation::State& s, BodyState& body) {
   const Eigen::Vector3d near = s.store.position.get(body.begin).cast<double>();
-  body.rigid = rigid_motion(sum_rigid(s.store.position, s.store.velocity, body.begin, body.end, near), near);
+  const RigidSums sums =
+      sum_rigid(s.execution.level, raw(s.store.position), raw(s.store.velocity), body.begin, body.end, near);
+  body.rigid = rigid_motion(sums, near);
 }
 
 void describe_bodies(Simulation::State& state) {
