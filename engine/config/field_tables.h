@@ -204,8 +204,8 @@ struct FieldTable<Collider> {
 template <>
 struct FieldTable<Emitter> {
   static constexpr std::tuple k_fields{
-      Field{"radius", &Emitter::radius, k_positive, "m", "of a round nozzle; give this, or width and height",
-            "from width and height"},
+      Field{"radius", &Emitter::radius, k_positive, "m",
+            "of a round nozzle; give this, or width and height, or points", "from width and height"},
       Field{"width", &Emitter::width, k_positive, "m", "of a nozzle with corners, along its x axis",
             "from radius"},
       Field{"height", &Emitter::height, k_positive, "m", "of a nozzle with corners, along its y axis",

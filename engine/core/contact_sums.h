@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace mallow {
 
@@ -8,6 +8,7 @@ namespace mallow {
 struct ContactSums {
   double weight = 0;                  ///< Σ |j| [N s]
   Eigen::Vector3d impulse{0, 0, 0};   ///< Σ j, what the body got [N s]
+  Eigen::Vector3d moment{0, 0, 0};    ///< Σ x × j, about where x is 0 [N m s]
   Eigen::Vector3d position{0, 0, 0};  ///< Σ |j| x [N s m]
   Eigen::Vector3d velocity{0, 0, 0};  ///< Σ |j| v, v at the start of the step [N m]
   Eigen::Vector3d normal{0, 0, 0};    ///< Σ |j| n, towards the body; 0 where nobody said it [N s]
@@ -17,24 +18,27 @@ struct ContactSums {
     const double share = j.norm();
     weight += share;
     impulse += j;
+    moment += x.cross(j);
     position += share * x;
     velocity += share * v;
     normal += share * n;
   }
   /// What `factor` times the mass would have got.
   ContactSums times(double factor) const {
-    return {factor * weight, factor * impulse, factor * position, factor * velocity, factor * normal};
+    return {factor * weight,   factor * impulse,  factor * moment,
+            factor * position, factor * velocity, factor * normal};
   }
   ContactSums& operator+=(const ContactSums& other) {
     weight += other.weight;
     impulse += other.impulse;
+    moment += other.moment;
     position += other.position;
     velocity += other.velocity;
     normal += other.normal;
     return *this;
   }
   /// The same as the other body has it: what it got, and its velocity seen from this one.
-  ContactSums swapped() const { return {weight, -impulse, position, -velocity, -normal}; }
+  ContactSums swapped() const { return {weight, -impulse, -moment, position, -velocity, -normal}; }
 };
 
 }  // namespace mallow

@@ -233,7 +233,7 @@ Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int 
   return points;
 }
 
-Simulation build(const Scene& scene, int threads, std::vector<std::string>* notes) {
+Simulation build(const Scene& scene, int threads, std::vector<std::string>* notes, SceneIds* scene_ids) {
   using namespace scene_file;
   const Groups groups = groups_of(scene);
   SolverConfig config = scene.solver;
@@ -253,6 +253,7 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
   for (const auto& group : groups.list) add_material(group.material);
   for (const std::size_t material : groups.of_emitter) add_material(material);
   problems.finish();
+  SceneIds named;
   std::vector<std::optional<BodyId>> ids(groups.list.size());
   std::size_t particles = 0;
   for (std::size_t i = 0; i < scene.bodies.size() && particles <= k_most_particles; ++i) {
@@ -277,22 +278,25 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
     });
   }
   for (std::size_t i = 0; i < scene.colliders.size(); ++i)
-    collect(problems, 0, element_path("collider", i), [&] { simulation.add_collider(scene.colliders[i]); });
+    collect(problems, 0, element_path("collider", i),
+            [&] { named.colliders.push_back(simulation.add_collider(scene.colliders[i])); });
   // Without all of its bodies, whatever else a scene says of itself would be beside the point.
   problems.finish();
+  for (const std::size_t group : groups.of_body) named.bodies.push_back(*ids[group]);
   for (std::size_t i = 0; i < scene.pins.size(); ++i)
     collect(problems, scene.pins[i].line, element_path("pin", i),
-            [&] { simulation.pin(scene.pins[i].box, scene.pins[i].velocity); });
+            [&] { named.pins.push_back(simulation.pin(scene.pins[i].box, scene.pins[i].velocity)); });
   for (std::size_t i = 0; i < scene.emitters.size(); ++i)
     collect(problems, scene.emitters[i].line, element_path("emitter", i), [&] {
-      simulation.add_emitter(scene.emitters[i], materials.at(groups.of_emitter[i]),
-                             element_path("emitter", i));
+      named.emitters.push_back(simulation.add_emitter(scene.emitters[i], materials.at(groups.of_emitter[i]),
+                                                      element_path("emitter", i)));
     });
   for (std::size_t i = 0; i < scene.sinks.size(); ++i)
     collect(problems, scene.sinks[i].line, element_path("sink", i),
-            [&] { simulation.add_sink(scene.sinks[i].box, scene.sinks[i].outside); });
+            [&] { named.sinks.push_back(simulation.add_sink(scene.sinks[i].box, scene.sinks[i].outside)); });
   collect(problems, 0, {}, [&] { simulation.prepare(); });
   problems.finish();
+  if (scene_ids) *scene_ids = std::move(named);
   return simulation;
 }
 

@@ -140,7 +140,12 @@ BoundFields fields(SceneEmitter& emitter) {
       {"rotate", &emitter.rotate, k_finite, "degrees",
        "turn of the nozzle about x, then y, then z; unturned the strand leaves it upwards, along z"},
   };
-  return joined(place, fields(static_cast<Emitter&>(emitter)));
+  const BoundFields section{
+      {"points", &emitter.points, k_finite, "m",
+       "of a layer, along x and y of the nozzle, z left out; in place of radius, width and height",
+       "from radius, or width and height"},
+  };
+  return joined(place, joined(fields(static_cast<Emitter&>(emitter)), section));
 }
 
 BoundFields fields(SceneSink& sink) {

@@ -66,9 +66,12 @@ void find_touching(Simulation::State& s, double time_step) {
     for (std::size_t k = 0; k < walls.partial_loads.size(); ++k) {
       const std::size_t c = k % walls.loads.size(), block = k / walls.loads.size();
       const BodyState& body = s.body_of(walls.bodies[walls.blocks.blocks[block].range].begin);
-      const Vec pressed = -time_step * walls.partial_loads[k].impulse;
+      const ColliderLoad& load = walls.partial_loads[k];
+      const Vec pressed = -time_step * load.impulse;
+      const Vec center = s.colliders[c].pose.translation - s.origin.cast<double>();
       if (!pressed.isZero(0))
-        add({static_cast<std::uint64_t>(body.id), false, s.collider_ids[c]}, {.impulse = pressed});
+        add({static_cast<std::uint64_t>(body.id), false, s.collider_ids[c]},
+            {.impulse = pressed, .moment = center.cross(pressed) - time_step * load.torque});
     }
   s.contacts.touches.clear();
   if (s.bodies_touch() && !s.awake.empty())
@@ -119,6 +122,7 @@ BodyEvent describe(const Simulation::State& s, const Contacts::Found& found, con
   event.position = x.cast<float>();
   event.normal = normal.cast<float>();
   event.impulse = sums.impulse.cast<float>();
+  event.torque = Vec(sums.moment - (x - s.origin.cast<double>()).cross(sums.impulse)).cast<float>();
   event.speed = static_cast<float>(std::max(0.0, -v.dot(normal)));
   return event;
 }

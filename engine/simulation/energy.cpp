@@ -4,6 +4,7 @@
 
 #include "core/polar_rotation.h"
 #include "shape_matching/run_tables.h"
+#include "simulation/phases.h"
 #include "simulation/state.h"
 
 namespace mallow {
@@ -92,14 +93,14 @@ Energy energy_of(const Simulation::State& s, std::span<const BodyState> bodies) 
 
 }  // namespace
 
-Energy Simulation::energy() {
-  prepare();
+Energy Simulation::energy() const {
+  mallow::prepare(*state_);
   return energy_of(*state_, state_->bodies);
 }
 
-Energy Simulation::energy(BodyId id) {
+Energy Simulation::energy(BodyId id) const {
   const BodyState& body = state_->body(id);
-  prepare();
+  mallow::prepare(*state_);
   return energy_of(*state_, {&body, 1});
 }
 

@@ -13,6 +13,9 @@ namespace mallow {
 /// Why an id names no particle.
 std::string why_unknown(const ParticleStore& store, ParticleId id);
 
+/// What Simulation::prepare() does; reads do it too, as what a step would settle is what they are asked for.
+void prepare(Simulation::State& state);
+
 // The phases of step(), in its order. Each says what it reads -> what it writes.
 
 /// time -> alpha of every material, and k where that follows it; what particles have of their own.

@@ -121,6 +121,9 @@ std::optional<ColliderHit> Simulation::raycast_colliders(const Vec3& origin, con
 
 std::vector<ParticleId> Simulation::particles_in(const Aabb& box) const {
   const State& s = *state_;
+  Checks checks;
+  if (!(box.min.array() <= box.max.array()).all()) checks.problem("box", "min must not be above max");
+  checks.finish();
   std::vector<ParticleId> ids;
   for_rows_in(s, near_origin(s, box),
               [&](std::size_t row, const BodyState&) { ids.push_back(s.store.id[row]); });

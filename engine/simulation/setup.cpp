@@ -198,8 +198,11 @@ MaterialId Simulation::add_material(const Material& material, std::string name) 
 }
 
 void Simulation::prepare() {
-  state_->refuse_in_callback();
-  State& s = *state_;
+  mallow::prepare(*state_);
+}
+
+void prepare(Simulation::State& s) {
+  s.refuse_in_callback();
   if (s.prepared) return;
   Checks checks;
   if (s.store.size() == 0 && s.scale.spacing == 0)

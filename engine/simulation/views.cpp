@@ -204,8 +204,8 @@ std::uint64_t Simulation::state_hash() const {
   return XXH3_64bits_withSeed(&state_->time, sizeof(double), hash);
 }
 
-SimulationInfo Simulation::info() {
-  prepare();
+SimulationInfo Simulation::info() const {
+  mallow::prepare(*state_);
   const State& s = *state_;
   SimulationInfo info;
   info.particles = s.store.size();

@@ -85,6 +85,42 @@ TEST_F(cli_series, forces_on_colliders_and_weight_are_what_changes_the_momentum)
   EXPECT_GT(largest, weight) << "it has hit the floor";
 }
 
+TEST_F(cli_series, torques_on_colliders_are_the_moments_of_their_forces_and_the_report_has_their_means) {
+  // A cube lies on a floor of which the origin is 10 away: its weight turns the floor about y.
+  const std::string scene =
+      write("lies.toml",
+            "[solver]\nsupport_radius = 2.1\nsleep_speed = 0\ngravity = [0, 0, -0.3]\n[[material]]\nname = "
+            "\"jelly\"\nalpha = "
+            "0.2\n"
+            "[[body]]\nmaterial = \"jelly\"\n"
+            "box = { count = [5, 5, 5], spacing = 1, corner = [7.5, -2.5, 0.5], jitter = 0 }\n"
+            "[[collider]]\nsphere = { center = [0, 0, 500], radius = 1 }\n"
+            "[[collider]]\nplane = { normal = [0, 0, 1], offset = 0 }\nfriction = 0.5\n"
+            "[run]\nframes = 120\nframe_time = 1\n")
+          .string();
+  const Outcome outcome = run_mallow({"run", scene, "--out", at("out"), "--no-surface", "--no-images",
+                                      "--series", at("a.csv"), "--threads", "2"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  auto series = columns(read_text(at("a.csv")));
+  const double force = series.at("collider[1].force_z")[120], torque = series.at("collider[1].torque_y")[120];
+  EXPECT_LT(force, 0);
+  EXPECT_NEAR(torque, -10 * force, 0.01 * std::abs(10 * force)) << "x × F, x the middle of the cube";
+  EXPECT_EQ(series.at("collider[0].torque_y")[120], 0);
+  const nlohmann::json loads = read_json(at("out/report.json")).at("loads");
+  ASSERT_EQ(loads.size(), 2u);
+  EXPECT_EQ(loads[1].at("collider"), 1);
+  double sum = 0, turned = 0, most = 0;
+  for (std::size_t k = 1; k <= 120; ++k) {
+    sum += series.at("collider[1].force_z")[k] / 120;
+    turned += series.at("collider[1].torque_y")[k] / 120;
+    most = std::max(most, -series.at("collider[1].force_z")[k]);
+  }
+  EXPECT_NEAR(loads[1].at("mean_force").at(2).get<double>(), sum, 1e-6 * std::abs(sum));
+  EXPECT_NEAR(loads[1].at("mean_torque").at(1).get<double>(), turned, 1e-6 * std::abs(turned));
+  EXPECT_GE(loads[1].at("largest_force").get<double>(), most);
+  EXPECT_EQ(loads[0].at("largest_torque"), 0);
+}
+
 TEST_F(cli_series, volume_is_that_of_the_surface_where_one_is_drawn) {
   ASSERT_EQ(run({"--out", at("out"), "--series", at("a.csv")}).exit_code, 0);
   const auto series = columns(read_text(at("a.csv")));

@@ -119,6 +119,14 @@ class Arguments(unittest.TestCase):
 
 
 class Scenes(unittest.TestCase):
+    def test_the_parts_of_a_scene_have_ids(self):
+        ids = mallow.SceneIds()
+        simulation = mallow.build(mallow.parse_scene(SCENE, "scene.toml"), ids=ids)
+        self.assertEqual(ids.bodies, simulation.bodies())
+        self.assertEqual(ids.colliders, simulation.collider_ids())
+        self.assertEqual((ids.pins, ids.emitters, ids.sinks), ([], [], []))
+        self.assertEqual(simulation.find_body("body[0]"), ids.bodies[0])
+
     def test_files_strings_and_objects_are_one(self):
         scene = mallow.parse_scene(SCENE)
         with tempfile.TemporaryDirectory() as folder:

@@ -122,7 +122,8 @@ const Case k_cases[] = {
     {{.material = "name = \"jelly\"\ncolor = [0, 0, 1.5]"},
      "scene.toml:5:16: material[0].color[2]: 1.5 is not allowed: a number in [0, 1]"},
     {{.material = "name = \"jelly\"\nfinish = \"glass\""},
-     "scene.toml:5:10: material[0].finish: \"glass\" (a string) is not allowed: \"jelly\", \"clay\", \"cream\", \"gloss\" or "
+     "scene.toml:5:10: material[0].finish: \"glass\" (a string) is not allowed: \"jelly\", \"clay\", "
+     "\"cream\", \"gloss\" or "
      "\"syrup\""},
     {{.rest = "[surface]\nvoxels = 4"},
      "scene.toml:9:10: surface.voxels: 4 is not allowed: a whole number in [8, 1024]"},
@@ -210,6 +211,12 @@ const Case k_cases[] = {
           "[[emitter]]\nmaterial = \"jelly\"\nradius = 1\nspacing = 1\nvelocity = [0, 0, 1]\nkeyframes = [{ "
           "time = 1 }]"},
      "scene.toml:12:12: emitter[0].velocity: is not allowed beside keyframes"},
+    {{.rest = "[[emitter]]\nmaterial = \"jelly\"\nspacing = 1\npoints = [[0, 0, 0], [1, 0]]"},
+     "scene.toml:11:22: emitter[0].points[1]: an array of 2 is not allowed: 3 finite numbers [x, y, z]"},
+    {{.rest = "[[emitter]]\nmaterial = \"jelly\"\nspacing = 1\nradius = 2\npoints = [[0, 0, 0], [1, 0, 0]]"},
+     "scene.toml:8:1: emitter[0].radius: is not allowed beside width, height or points: a nozzle is round, "
+     "or "
+     "has corners, or points of its own"},
     {{.rest = "[[emitter]]\nmaterial = \"jelly\"\nradius = 1\nspacing = 1\nspeed = [[0, 1], [1, -1]]"},
      "scene.toml:12:22: emitter[0].speed[1][1]: -1 is not allowed: a number >= 0"},
     {{.rest = "[[collider]]\nunion = []"},

@@ -67,6 +67,42 @@ TEST_F(build_scene, puts_bodies_into_groups_in_the_order_of_the_file) {
   EXPECT_EQ(velocities[12], Vec3(0, 0.5f, 1));
 }
 
+TEST_F(build_scene, says_what_its_parts_are_called_in_the_order_of_the_file) {
+  write("points.csv", "x,y,z,vx,vy,vz\n20,0,1,0.5,0,0\n21,0,1,0,0.5,0\n");
+  const Scene scene = read(k_two_groups + R"([[pin]]
+box = { min = [10, 0, 0], max = [12, 1, 2] }
+[[collider]]
+sphere = { center = [50, 0, 0], radius = 2.0 }
+[[emitter]]
+material = "jelly"
+points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+spacing = 1.0
+translate = [30, 0, 9]
+[[sink]]
+box = { min = [0, 0, -9], max = [1, 1, -5] }
+)");
+  SceneIds ids;
+  Simulation s = build(scene, 1, nullptr, &ids);
+  ASSERT_EQ(ids.bodies.size(), 3u);
+  EXPECT_EQ(s.name(ids.bodies[0]), "body[0]");
+  EXPECT_EQ(s.name(ids.bodies[1]), "pair");
+  EXPECT_EQ(ids.bodies[2], ids.bodies[1]) << "one piece";
+  EXPECT_EQ(ids.colliders, s.collider_ids());
+  EXPECT_EQ(std::get<Sphere>(s.collider(ids.colliders.at(1)).shape).radius, 2.0f);
+  ASSERT_EQ(ids.emitters.size(), 1u);
+  EXPECT_EQ(s.body(ids.emitters[0]), s.find_body("emitter[0]"));
+  EXPECT_EQ(s.emitter(ids.emitters[0]).points.size(), 3u);
+  const Simulation::Rows strand = s.rows(s.body(ids.emitters[0]));
+  EXPECT_EQ((strand.end - strand.begin) % 3, 0u) << "layers of three points";
+  ASSERT_EQ(ids.pins.size(), 2u);
+  s.set_velocity(ids.pins[1], {0, 2, 0});
+  s.step();
+  EXPECT_EQ(s.velocities()[s.rows(ids.bodies[1]).begin], Vec3(0, 2, 0));
+  s.remove_sink(ids.sinks.at(0));
+  s.remove_emitter(ids.emitters[0]);
+  s.step();
+}
+
 TEST_F(build_scene, samples_every_source) {
   write("tetra.off", "OFF\n4 4 0\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
   const auto points = [&](const BodySource& source) {

@@ -158,6 +158,11 @@ height = 3
 spacing = 0.5
 speed = [[0, 1.5], [2, 0]]
 keyframes = [{ time = 0.5, translate = [1, 2, 3] }, { time = 2.5, translate = [4, 5, 6], rotate = [90, 0, 0] }]
+[[emitter]]
+material = "jelly \"red\""
+points = [[0, 0, 0], [0.5, 0, 0], [0, 0.75, 2]]
+spacing = 0.5
+translate = [40, 0, 9]
 [[sink]]
 box = { min = [0, 0, -9], max = [1, 1, -5] }
 outside = false
@@ -305,6 +310,7 @@ TEST_F(every_key, reaches_its_member) {
   EXPECT_EQ(read.emitters.at(1).keyframes[1].pose.translation, Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(read.emitters.at(1).pose.translation, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(read.emitters.at(1).speed.at(1), 0.75f);
+  EXPECT_EQ(read.emitters.at(2).points, (std::vector<Vec3>{{0, 0, 0}, {0.5f, 0, 0}, {0, 0.75f, 2}}));
 
   EXPECT_EQ(read.pins.at(0).box.max, Vec3(1, 1, 0));
   EXPECT_EQ(read.pins.at(0).velocity, Vec3(0, 0, 2));
@@ -356,6 +362,7 @@ TEST_F(every_key, that_is_described_is_known_to_the_reader) {
       element = key.starts_with("emitter") ? 1 : 9;
     }
     if (key == "collider[].hull.points") element = 9;
+    if (key == "emitter[].points") element = 2;
     if (const auto at = key.find("paint[]"); at != std::string::npos) key.insert(at + 6, "0");
     if (const auto at = key.find("[]"); at != std::string::npos) key.insert(at + 1, std::to_string(element));
     const auto found = problems(k_every_key, {key + "=1979-05-27"});

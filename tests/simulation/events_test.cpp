@@ -189,6 +189,55 @@ TEST(contact_events, of_two_bodies_have_the_momentum_that_goes_from_one_to_the_o
   }
 }
 
+// What load() says of the floor, and what the body's spin does, from two other sides.
+TEST(contact_events, have_the_moment_that_goes_to_a_collider_and_into_the_spin_of_a_body) {
+  Simulation s(solver());
+  const BodyId body = s.add_body(cube(6, {20, 0, 6}), Material{.alpha = 0.2f});
+  s.set_velocity(body, {0.7f, 0, 0}, {0.05f, 0.1f, 0});
+  Collider slope{.shape = Plane{}, .friction = 0.4f, .measure_load = true};
+  slope.pose = {.translation = {3, 2, 1}, .rotation = {0, 0.1, 0, 0.995}};
+  const ColliderId floor = s.add_collider(slope);
+  s.report_contacts(0.0);
+  int hits = 0;
+  for (int k = 0; k < 60; ++k) {
+    s.step();
+    for (const BodyEvent& event : contacts(s, Kind::hit)) {
+      ++hits;
+      const ColliderLoad load = s.load(floor);
+      const Eigen::Vector3d impulse = event.impulse.cast<double>();
+      const Eigen::Vector3d arm = event.position.cast<double>() - slope.pose.translation;
+      const double size = impulse.norm() * arm.norm();
+      EXPECT_LT((impulse + load.impulse).norm(), 1e-6 * impulse.norm());
+      EXPECT_LT((event.torque.cast<double>() + arm.cross(impulse) + load.torque).norm(), 1e-6 * size);
+    }
+  }
+  EXPECT_GT(hits, 5);
+}
+
+TEST(contact_events, have_the_moment_that_turns_a_body_which_is_hit_by_another) {
+  Simulation s(solver(0));
+  const BodyId hit = s.add_body(cube(6, {0, 0, 0}), Material{.alpha = 0.0f, .friction = 0.5f});
+  s.add_body(cube(4, {4, 1, 9}, {0.1f, 0, -0.5f}), Material{.alpha = 0.0f, .friction = 0.5f});
+  s.report_contacts(0.0);
+  const auto spin = [&] {
+    Eigen::Vector3d sum(0, 0, 0);
+    const double mass = s.motion(hit).mass / 216;
+    const Simulation::Rows rows = s.rows(hit);
+    for (std::size_t row = rows.begin; row < rows.end; ++row)
+      sum += mass * s.positions()[row].cast<double>().cross(s.velocities()[row].cast<double>());
+    return sum;
+  };
+  Eigen::Vector3d given(0, 0, 0);
+  for (int k = 0; k < 60; ++k) {
+    s.step();
+    for (const BodyEvent& event : contacts(s, Kind::hit))
+      given += (event.torque + event.position.cross(event.impulse)).cast<double>();
+  }
+  EXPECT_GT(given.norm(), 10);
+  EXPECT_LT((spin() - given).norm(), 0.05 * given.norm())
+      << given.transpose() << " for " << spin().transpose();
+}
+
 TEST(contact_events, of_hits_are_those_above_the_impulse_that_is_asked_for) {
   const auto hits = [](double impulse) {
     Simulation s(solver());

@@ -152,7 +152,8 @@ Run begin(const RunOptions& options, int threads) {
   {
     const program::StageTimer timer(run.report.stage_seconds, program::Stage::build);
     std::vector<std::string> notes;
-    if (!options.series.empty())  // which tells of the loads; no scene file has a word for them
+    // Series and reports tell of the loads; no scene file has a word for them.
+    if (!options.series.empty() || !options.out.empty())
       for (Collider& collider : run.scene.colliders) collider.measure_load = true;
     run.simulation.emplace(build(run.scene, threads, &notes));
     print_notes(notes);

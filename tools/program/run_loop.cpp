@@ -158,7 +158,7 @@ RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> sk
       {
         const StageTimer timer(report.stage_seconds, Stage::motion);
         const StepReport step = simulation.step_towards(frame_end);
-        report.add(step, simulation.events());
+        report.add(step, simulation);
         if (series) series->add_step(step, simulation);
       }
       // At the end of a frame its files and its row come first.

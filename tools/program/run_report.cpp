@@ -10,6 +10,7 @@
 #include "mallow/errors.h"
 #include "mallow/files.h"
 #include "mallow/version.h"
+#include "program/loads.h"
 #include "program/machine.h"
 
 namespace mallow::program {
@@ -67,6 +68,42 @@ nlohmann::ordered_json compression_json(const RunReport& report) {
   return {{"mean", report.compression.mean}, {"largest", report.compression.largest}};
 }
 
+nlohmann::ordered_json loads_json(const RunReport& report) {
+  nlohmann::ordered_json loads = nlohmann::ordered_json::array();
+  const double seconds = report.simulated_time;
+  const auto mean = [&](const Eigen::Vector3d& sum) {
+    return to_json(seconds > 0 ? Eigen::Vector3d(sum / seconds) : Eigen::Vector3d(0, 0, 0));
+  };
+  for (const RunReport::Load& load : report.loads)
+    loads.push_back({{"collider", load.collider},
+                     {"mean_force", mean(load.sum.impulse)},
+                     {"mean_torque", mean(load.sum.torque)},
+                     {"largest_force", load.largest_force},
+                     {"largest_torque", load.largest_torque}});
+  return loads;
+}
+
+/// As a checkpoint keeps them.
+nlohmann::ordered_json kept_loads(const std::vector<RunReport::Load>& loads) {
+  nlohmann::ordered_json kept = nlohmann::ordered_json::array();
+  for (const RunReport::Load& load : loads)
+    kept.push_back({{"collider", load.collider},
+                    {"sum", to_json(load.sum)},
+                    {"largest_force", load.largest_force},
+                    {"largest_torque", load.largest_torque}});
+  return kept;
+}
+
+std::vector<RunReport::Load> loads_from(const nlohmann::ordered_json& kept) {
+  std::vector<RunReport::Load> loads;
+  for (const auto& load : kept)
+    loads.push_back({.collider = load.at("collider").get<std::size_t>(),
+                     .sum = load_from_json(load.at("sum")),
+                     .largest_force = load.at("largest_force").get<double>(),
+                     .largest_torque = load.at("largest_torque").get<double>()});
+  return loads;
+}
+
 nlohmann::ordered_json phases_json(const RunReport& report) {
   nlohmann::ordered_json phases = nlohmann::ordered_json::array();
   const double steps = static_cast<double>(std::max<std::int64_t>(report.steps, 1));
@@ -93,14 +130,29 @@ const char* name(Stage stage) {
   return k_names[static_cast<std::size_t>(stage)];
 }
 
-void RunReport::add(const StepReport& step, std::span<const BodyEvent> events_of_step) {
+void RunReport::add_loads(double time_step, const Simulation& simulation) {
+  const std::vector<ColliderId> ids = simulation.collider_ids();
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    if (!simulation.collider(ids[k]).measure_load) continue;
+    if (count == loads.size()) loads.push_back({.collider = k});
+    Load& of = loads[count++];
+    const ColliderLoad load = simulation.load(ids[k]);
+    program::add(load, of.sum);
+    of.largest_force = std::max(of.largest_force, load.impulse.norm() / time_step);
+    of.largest_torque = std::max(of.largest_torque, load.torque.norm() / time_step);
+  }
+}
+
+void RunReport::add(const StepReport& step, const Simulation& simulation) {
   ++steps;
   smallest_step = steps == 1 ? step.time_step : std::min(smallest_step, step.time_step);
   largest_step = std::max(largest_step, step.time_step);
   if (step.limited) ++limited_steps;
   if (step.updated_references > 0) reference_updates.push_back({steps, step.updated_references});
   for (std::size_t i = 0; i < k_phase_count; ++i) phase_seconds[i] += step.seconds[i];
-  for (const BodyEvent& event : events_of_step) {
+  add_loads(step.time_step, simulation);
+  for (const BodyEvent& event : simulation.events()) {
     if (event.kind == BodyEvent::Kind::yielded) ++events.yielded;
     if (event.kind == BodyEvent::Kind::torn) ++events.torn;
     if (event.kind == BodyEvent::Kind::merged) ++events.merged;
@@ -121,6 +173,7 @@ nlohmann::ordered_json RunReport::progress() const {
           {"reference_updates", updates_json(*this)},
           {"events", events_json(*this)},
           {"compression", compression_json(*this)},
+          {"loads", kept_loads(loads)},
           {"resumed_after", resumed_after},
           {"phase_seconds", phase_seconds},
           {"stage_seconds", stage_seconds}};
@@ -138,7 +191,7 @@ void RunReport::set_progress(const nlohmann::ordered_json& progress) {
   reference_updates.clear();
   for (const auto& update : progress.at("reference_updates"))
     reference_updates.push_back({update.at("step").get<std::int64_t>(), update.at("groups").get<int>()});
-  // Checkpoints of earlier versions have neither.
+  // Checkpoints of earlier versions have none of these.
   if (const auto counts = progress.find("events"); counts != progress.end()) {
     counts->at("yielded").get_to(events.yielded);
     counts->at("torn").get_to(events.torn);
@@ -148,6 +201,7 @@ void RunReport::set_progress(const nlohmann::ordered_json& progress) {
     found->at("mean").get_to(compression.mean);
     found->at("largest").get_to(compression.largest);
   }
+  if (const auto found = progress.find("loads"); found != progress.end()) loads = loads_from(*found);
   progress.at("resumed_after").get_to(resumed_after);
   progress.at("phase_seconds").get_to(phase_seconds);
   progress.at("stage_seconds").get_to(stage_seconds);
@@ -189,6 +243,7 @@ nlohmann::ordered_json to_json(const RunReport& report) {
           {"reference_updates", updates_json(report)},
           {"events", events_json(report)},
           {"compression", compression_json(report)},
+          {"loads", loads_json(report)},
           {"resumed_after", report.resumed_after},
           {"phases", phases_json(report)},
           {"stage_seconds", stages_json(report)},

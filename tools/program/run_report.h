@@ -68,6 +68,14 @@ struct RunReport {
     double mean = 0;     ///< over all particles, in the step where it was largest
     double largest = 0;  ///< of a particle, in any step
   } compression;
+  /// What particles gave a collider that measures it, in all steps.
+  struct Load {
+    std::size_t collider = 0;  ///< its number, as in the scene
+    ColliderLoad sum = {};
+    double largest_force = 0;   ///< |impulse|/Δt of a step [N]
+    double largest_torque = 0;  ///< likewise [N m]
+  };
+  std::vector<Load> loads;
   std::vector<std::int64_t> resumed_after;  ///< steps after which the run was taken up again
   PhaseTimes phase_seconds{};
   StageTimes stage_seconds{};
@@ -78,7 +86,10 @@ struct RunReport {
   /// The reverse. Throws nlohmann's exceptions.
   void set_progress(const nlohmann::ordered_json& progress);
   /// Takes in a step that has just been made, and what happened in it.
-  void add(const StepReport& step, std::span<const BodyEvent> events);
+  void add(const StepReport& step, const Simulation& simulation);
+
+ private:
+  void add_loads(double time_step, const Simulation& simulation);
 };
 
 nlohmann::ordered_json to_json(const RunReport& report);

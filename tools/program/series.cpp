@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "program/csv.h"
+#include "program/loads.h"
 
 namespace mallow::program {
 namespace fs = std::filesystem;
@@ -94,7 +95,7 @@ Series::Series(const fs::path& file, Simulation& simulation)
   for (const BodyId id : simulation.bodies()) bodies_.push_back({.id = id, .name = simulation.name(id)});
   find_rest_volumes(simulation);
   row_time_ = simulation.time();
-  impulses_.assign(colliders_.size(), Eigen::Vector3d::Zero());
+  loads_.resize(colliders_.size());
   file_.add(header());
 }
 
@@ -111,9 +112,8 @@ Series::Series(const std::string& text, const fs::path& file, Simulation& simula
   state.at("row_time").get_to(row_time_);
   state.at("largest_compression").get_to(largest_compression_);
   state.at("mean_compression").get_to(mean_compression_);
-  for (const auto& sum : state.at("impulses"))
-    impulses_.push_back({sum.at(0).get<double>(), sum.at(1).get<double>(), sum.at(2).get<double>()});
-  impulses_.resize(colliders_.size(), Eigen::Vector3d::Zero());
+  for (const auto& sum : state.at("loads")) loads_.push_back(load_from_json(nlohmann::ordered_json(sum)));
+  loads_.resize(colliders_.size());
 }
 
 void Series::find_rest_volumes(Simulation& simulation) {
@@ -143,8 +143,9 @@ std::string Series::header() const {
     line.add(std::string(name));
   if (has_collider_columns())
     for (std::size_t k = 0; k < colliders_.size(); ++k)
-      for (const char axis : {'x', 'y', 'z'})
-        line.add("collider[" + std::to_string(k) + "].force_" + axis + " [N]");
+      for (const auto& [what, unit] : {std::pair{".force_", " [N]"}, std::pair{".torque_", " [N m]"}})
+        for (const char axis : {'x', 'y', 'z'})
+          line.add("collider[" + std::to_string(k) + ']' + what + axis + unit);
   if (has_body_columns())
     for (const Body& body : bodies_)
       for (const char* name :
@@ -156,7 +157,7 @@ std::string Series::header() const {
 void Series::add_step(const StepReport& step, const Simulation& simulation) {
   largest_compression_ = std::max(largest_compression_, step.largest_compression);
   mean_compression_ = step.mean_compression;
-  for (std::size_t k = 0; k < colliders_.size(); ++k) impulses_[k] += simulation.load(colliders_[k]).impulse;
+  for (std::size_t k = 0; k < colliders_.size(); ++k) add(simulation.load(colliders_[k]), loads_[k]);
   for (const BodyEvent& event : simulation.events()) {
     if (event.kind != BodyEvent::Kind::torn && event.kind != BodyEvent::Kind::merged) continue;
     if (const auto body = std::ranges::find(bodies_, event.body, &Body::id); body != bodies_.end())
@@ -214,22 +215,23 @@ void Series::add_row(int frame, Simulation& simulation, const std::optional<doub
   line.add(mean_compression_);
   const double seconds = simulation.time() - row_time_;
   if (has_collider_columns())
-    for (const Eigen::Vector3d& impulse : impulses_)
-      line.add(seconds > 0 ? Eigen::Vector3d(impulse / seconds) : Eigen::Vector3d(0, 0, 0));
+    for (const ColliderLoad& load : loads_)
+      for (const Eigen::Vector3d& sum : {load.impulse, load.torque})
+        line.add(seconds > 0 ? Eigen::Vector3d(sum / seconds) : Eigen::Vector3d(0, 0, 0));
   line.add(of_bodies);
   file_.add(line.text());
   row_time_ = simulation.time();
   largest_compression_ = 0;
-  for (Eigen::Vector3d& impulse : impulses_) impulse.setZero();
+  std::ranges::fill(loads_, ColliderLoad{});
 }
 
 std::string Series::saved() const {
   file_.sync();
-  nlohmann::json bodies = nlohmann::json::array(), impulses = nlohmann::json::array();
+  nlohmann::json bodies = nlohmann::json::array(), loads = nlohmann::json::array();
   for (const Body& body : bodies_)
     bodies.push_back(
         {{"id", static_cast<std::uint64_t>(body.id)}, {"name", body.name}, {"parts", body.parts}});
-  for (const Eigen::Vector3d& sum : impulses_) impulses.push_back({sum.x(), sum.y(), sum.z()});
+  for (const ColliderLoad& load : loads_) loads.push_back(nlohmann::json(to_json(load)));
   const nlohmann::json state = {{"file", fs::absolute(file_.file()).string()},
                                 {"bytes", file_.size()},
                                 {"hash", file_.hash()},
@@ -237,7 +239,7 @@ std::string Series::saved() const {
                                 {"row_time", row_time_},
                                 {"largest_compression", largest_compression_},
                                 {"mean_compression", mean_compression_},
-                                {"impulses", impulses}};
+                                {"loads", loads}};
   return state.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -254,7 +256,8 @@ const char* series_help() {
          "awake_bodies: that do not sleep;\n"
          "largest_compression: of a particle in any step since the row before; mean_compression: over all\n"
          "  particles in the last step; both where solver.volume_iterations run, else 0;\n"
-         "collider[0].force_x, _y, _z: on each of up to 32 colliders, mean since the row before;\n"
+         "collider[0].force_x, _y, _z, .torque_x, _y, _z: on each of up to 32 colliders, mean since the row\n"
+         "  before; torques are about where its pose is, the origin of its shape;\n"
          "NAME.height, .top, .x, .y, .z (centre of mass), .kinetic_energy, .parts: of each body where there\n"
          "  are 2 to 32; empty once a body is gone.";
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -51,7 +50,7 @@ class Series {
   double row_time_ = 0;
   double largest_compression_ = 0;
   double mean_compression_ = 0;
-  std::vector<Eigen::Vector3d> impulses_;  ///< of each of `colliders_` [N s]
+  std::vector<ColliderLoad> loads_;  ///< of each of `colliders_`
 };
 
 /// What the columns mean, for a program's help.

@@ -213,10 +213,21 @@ MALLOW_EXPORT Scene with_quality(const Scene& scene, Quality quality);
 MALLOW_EXPORT Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int threads = 0);
 /// Gives points of a body, where the scene begins, what its paint says.
 MALLOW_EXPORT void paint(const SceneBody& body, const Material& material, Body& points);
+/// What the parts of a scene are called in its simulation: entry k is of the part k of each list of the
+/// scene.
+struct SceneIds {
+  std::vector<BodyId> bodies = {};  ///< bodies of one group share theirs
+  std::vector<ColliderId> colliders = {};
+  std::vector<PinId> pins = {};
+  std::vector<EmitterId> emitters = {};  ///< Simulation::body() has their strands
+  std::vector<SinkId> sinks = {};
+};
 /// The simulation of a scene, ready to step. `threads` as in SolverConfig. notes: where given, gets those of
-/// all bodies, each with the body's path in front. Throws ConfigError with all problems found.
-MALLOW_EXPORT Simulation build(const Scene& scene, int threads = 0,
-                               std::vector<std::string>* notes = nullptr);
+/// all bodies, each with the body's path in front. ids: where given, gets the ids of all parts. Bodies are
+/// called by their group or, without one, "body[k]"; strands "emitter[k]": see Simulation::find_body().
+/// Throws ConfigError with all problems found.
+MALLOW_EXPORT Simulation build(const Scene& scene, int threads = 0, std::vector<std::string>* notes = nullptr,
+                               SceneIds* ids = nullptr);
 /// The skins of a scene's bodies, in their order. simulation: what build() made, before its first step.
 /// `threads` as in SolverConfig. Throws ConfigError with all problems found: a mesh that is not near its
 /// body, an alpha that reaches 1, a file that cannot be read.

@@ -206,8 +206,8 @@ class MALLOW_EXPORT Simulation {
   /// An empty function takes the callback away. What it gives an acceleration to does not sleep.
   void set_force(ForceCallback callback);
 
-  /// [m/s²], finite. What follows from gravity where a config leaves it out stays as the first prepare()
-  /// settled it.
+  /// [m/s²]; wakes all that sleeps. What follows from gravity where a config leaves it out stays as the first
+  /// prepare() settled it. Throws ConfigError, and changes nothing, where a number is not finite.
   void set_gravity(const Vec3& gravity);
   /// How steps are taken from now on; take config() and change it. What may change is time_step_factor,
   /// gravity, rotation_iterations, volume_tolerance, neighbor_slack, acoustic_limit, sleep_speed, sleep_time,
@@ -239,13 +239,19 @@ class MALLOW_EXPORT Simulation {
   void set_twist(ColliderId collider, const Vec3& velocity, const Vec3& angular_velocity);
   /// Puts a collider where it then stands still, without keyframes. seconds: 0, it is there at once and moves
   /// nothing on the way; > 0, it takes so long [s] and moves what it meets. Throws ConfigError where a number
-  /// is out of range.
+  /// is out of range. There is no callback that a step asks for poses, as no state could save it: a program
+  /// that has a pose for every time says before each advance(seconds) where the collider is after it,
+  /// set_pose(collider, my_pose(time() + seconds), seconds). At the end of each the pose is that one,
+  /// whatever steps led there; in between it moves and turns evenly, so take seconds as short as the motion
+  /// asks for.
   void set_pose(ColliderId collider, const Pose& pose, double seconds = 0);
   /// The velocity of the particles of a pin from now on [m/s], finite.
   void set_velocity(PinId pin, const Vec3& velocity);
   /// The particles of a pin go `way` [m] in the next `seconds`, > 0, evenly, and stay there.
   void move_pin(PinId pin, const Vec3& way, double seconds);
-  /// Of all particles of a body that are not pinned: [m/s], and [rad/s] about its centre of mass.
+  /// Of all particles of a body that are not pinned: [m/s], and [rad/s] about its centre of mass, along the
+  /// axes of the world. Wakes it; costs a pass over its particles. Throws ConfigError, and changes nothing,
+  /// where there is none of this id, or a number is not finite.
   void set_velocity(BodyId body, const Vec3& velocity, const Vec3& angular_velocity = {0, 0, 0});
   /// Of particles that are not pinned [m/s]. Throws ConfigError, and changes nothing, where an id is not one.
   void set_velocity(std::span<const ParticleId> ids, const Vec3& velocity);
@@ -258,9 +264,10 @@ class MALLOW_EXPORT Simulation {
   /// the mass there. Returns how many particles got some; where there is none, none is given.
   std::size_t add_impulse(const Vec3& center, float radius, const Vec3& impulse);
   /// A body that is not enabled stands where it is, is met by nothing, and costs nothing. It is still seen in
-  /// every view.
+  /// every view, and goes on as fast as it was when it is enabled again. Throws ConfigError where there is
+  /// none of this id, or no longer.
   void enable(BodyId body, bool enabled);
-  /// As set last; true at first.
+  /// As set last; true at first. Throws as enable() does.
   bool is_enabled(BodyId body) const;
   /// From the next step on events() tells where bodies begin and cease to touch colliders and each other, and
   /// with `hit_impulse` [N s], >= 0, each step in which one gets at least that from what it touches; what
@@ -275,14 +282,16 @@ class MALLOW_EXPORT Simulation {
   /// The same for all contacts of one body; of two that say it the lower impulse counts.
   void report_contacts(BodyId body,
                        std::optional<double> hit_impulse = std::numeric_limits<double>::infinity());
-  /// What an application wants to find with a body again; saved with it.
+  /// What an application wants to find with a body again: any 64 bits, that no step looks at; saved with it.
+  /// Throws ConfigError where there is none of this id, or no longer.
   void set_user_data(BodyId body, std::uint64_t data);
-  /// As set last; 0 at first.
+  /// As set last; 0 at first. Throws as set_user_data() does.
   std::uint64_t user_data(BodyId body) const;
   /// Ends the sleep of a body and of those that fell asleep with it (SolverConfig::sleep_speed). What moves
-  /// beside it or pushes it, and every call here that changes something near it, does that too.
+  /// beside it or pushes it, and every call here that changes something near it, does that too. Where it is
+  /// awake, or not enabled, nothing changes. Throws ConfigError where there is none of this id, or no longer.
   void wake(BodyId body);
-  /// It is enabled and does not sleep.
+  /// It is enabled and does not sleep: steps move it. Throws as wake() does.
   bool is_awake(BodyId body) const;
 
   /// Allocates, sorts and builds what the first step needs; step() does it where it was not done. The first
@@ -309,9 +318,11 @@ class MALLOW_EXPORT Simulation {
   std::size_t body_count() const;
   /// Those that there are, in the order of their rows.
   std::vector<BodyId> bodies() const;
-  /// The first of this name.
+  /// The first body of this name, in the order of bodies(); nullopt where none is called so. Compares with
+  /// each name: keep the id.
   std::optional<BodyId> find_body(std::string_view name) const;
-  /// As it was added.
+  /// As it was added; where that was without one, a name was made. Valid until bodies come or go. Throws
+  /// ConfigError where there is none of this id, or no longer.
   const std::string& name(BodyId body) const;
   /// What happened to bodies in the last step, and in calls since the one before it; contacts by ascending
   /// ids, for each body colliders first. The same for any number of threads.
@@ -352,7 +363,7 @@ class MALLOW_EXPORT Simulation {
   };
   /// Where the body stands now.
   Rows rows(BodyId body) const;
-  /// h of the body [m].
+  /// h of the body [m]. Throws ConfigError where there is none of this id, or no longer.
   float spacing(BodyId body) const;
   /// What the body is made of.
   MaterialId material(BodyId body) const;
@@ -360,7 +371,7 @@ class MALLOW_EXPORT Simulation {
   /// The row of a particle in every view. Throws ConfigError where there is none of this id, or no longer.
   std::size_t row(ParticleId id) const;
   /// Heat of a body [J], above that of it solid at its solidus, or at 0 K where it has none; 0 where it
-  /// carries none. Summed in double.
+  /// carries none. Summed in double over its particles. Throws as spacing() does.
   double heat(BodyId body) const;
   /// Alpha of a particle now. Throws ConfigError as row() does.
   float alpha(ParticleId id) const;
@@ -391,23 +402,26 @@ class MALLOW_EXPORT Simulation {
   std::optional<ColliderHit> raycast_colliders(
       const Vec3& origin, const Vec3& direction,
       double farthest = std::numeric_limits<double>::infinity()) const;
-  /// Particles of enabled bodies whose centres are in a box, by ascending id. Looks at every particle.
+  /// Particles of enabled bodies whose centres are in a box [m], by ascending id. Looks at every particle.
+  /// Its corners may be infinite; throws ConfigError where min is above max, or either is not a number.
   std::vector<ParticleId> particles_in(const Aabb& box) const;
-  /// The same in a ball [m].
+  /// The same in a ball [m]. Throws ConfigError where a number is not finite, or radius not above 0.
   std::vector<ParticleId> particles_in(const Vec3& center, float radius) const;
   /// The particle of an enabled body that is nearest to a point [m]. Looks at every particle.
   std::optional<NearestParticle> nearest_particle(const Vec3& point) const;
-  /// The box around the particles of a body [m].
+  /// The box around the centres of a body's particles [m]. Looks at each of them. Throws ConfigError where
+  /// there is none of this id, or no longer.
   Aabb bounds(BodyId body) const;
-  /// What a body does as a whole.
+  /// What a body does as a whole: sums in double over its particles, in one order. Throws as bounds() does.
   BodyMotion motion(BodyId body) const;
 
   /// Energies as they are now, summed in double; slow, as every region is solved exactly. SPH pressure keeps
-  /// no energy that could be summed, so a fluid's is what it moves and falls with. Calls prepare().
-  Energy energy();
+  /// no energy that could be summed, so a fluid's is what it moves and falls with. What prepare() would do is
+  /// done first, and throws what that throws.
+  Energy energy() const;
   /// Those of one body, pinned particles left out; as costly, for its particles. Throws ConfigError where
   /// there is none of this id.
-  Energy energy(BodyId body);
+  Energy energy(BodyId body) const;
 
   /// 64 bits of positions and velocities in id order, time and step: equal states have equal hashes.
   std::uint64_t state_hash() const;
@@ -422,8 +436,8 @@ class MALLOW_EXPORT Simulation {
   static Simulation restore(const SavedState& saved, int threads = 0,
                             std::shared_ptr<Executor> executor = nullptr);
 
-  /// What runs and what it holds; calls prepare().
-  SimulationInfo info();
+  /// What runs and what it holds. What prepare() would do is done first, as energy() does it.
+  SimulationInfo info() const;
 
   struct State;  ///< internal
 

@@ -112,6 +112,7 @@ void bind_events(py::module_& module) {
       .field("position", &BodyEvent::position)
       .field("normal", &BodyEvent::normal)
       .field("impulse", &BodyEvent::impulse)
+      .field("torque", &BodyEvent::torque)
       .field("speed", &BodyEvent::speed)
       .done();
 }

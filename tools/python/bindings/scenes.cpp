@@ -263,6 +263,13 @@ void bind_reading(py::module_& module) {
 }
 
 void bind_building(py::module_& module) {
+  Struct<SceneIds>(module, "SceneIds", Change::live)
+      .field("bodies", &SceneIds::bodies, "", "a list of ids")
+      .field("colliders", &SceneIds::colliders, "", "a list of ids")
+      .field("pins", &SceneIds::pins, "", "a list of ids")
+      .field("emitters", &SceneIds::emitters, "", "a list of ids")
+      .field("sinks", &SceneIds::sinks, "", "a list of ids")
+      .done();
   module.def(
       "sample",
       [](const SceneBody body, const std::filesystem::path& scene_file, int threads) {
@@ -276,19 +283,22 @@ void bind_building(py::module_& module) {
       py::arg("body"), py::arg("material"), py::arg("points"), doc("paint"));
   module.def(
       "build",
-      [](const SceneObject& object, int threads, std::optional<py::list> notes) {
+      [](const SceneObject& object, int threads, std::optional<py::list> notes, SceneIds* ids) {
         const Scene scene = object.scene();
         std::vector<std::string> told;
+        SceneIds named;
         std::shared_ptr<SimulationCell> cell;
         {
           const py::gil_scoped_release release;
-          cell = std::make_shared<SimulationCell>(build(scene, threads, &told));
+          cell = std::make_shared<SimulationCell>(build(scene, threads, &told, &named));
         }
         if (notes)
           for (const std::string& note : told) notes->append(note);
+        if (ids) *ids = std::move(named);
         return cell;
       },
-      py::arg("scene"), py::arg("threads") = 0, py::arg("notes") = std::nullopt, doc("build"));
+      py::arg("scene"), py::arg("threads") = 0, py::arg("notes") = std::nullopt, py::arg("ids") = nullptr,
+      doc("build"));
   module.def(
       "skins",
       [](const SceneObject& scene, SimulationCell& cell, int threads) {

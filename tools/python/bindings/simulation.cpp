@@ -99,8 +99,9 @@ void bind_steps(SimulationClass& simulation) {
       .def("step_towards", long_verb(&Simulation::step_towards), py::arg("end"),
            doc("Simulation.step_towards"))
       .def("advance", &advance, py::arg("seconds"), doc("Simulation.advance"))
-      .def("energy", long_verb(py::overload_cast<>(&Simulation::energy)), doc("Simulation.energy"))
-      .def("energy", long_verb(py::overload_cast<BodyId>(&Simulation::energy)), py::arg("body"),
+      .def("energy", long_verb(py::overload_cast<>(&Simulation::energy, py::const_)),
+           doc("Simulation.energy"))
+      .def("energy", long_verb(py::overload_cast<BodyId>(&Simulation::energy, py::const_)), py::arg("body"),
            doc("Simulation.energy#2"))
       .def("info", long_verb(&Simulation::info), doc("Simulation.info"))
       .def(

@@ -89,6 +89,15 @@ auto long_verb(R (Simulation::*member)(A...)) {
     return (cell.simulation.*member)(arguments...);
   };
 }
+/// A read that may first prepare what a step would: nobody else may use the object meanwhile.
+template <class R, class... A>
+auto long_verb(R (Simulation::*member)(A...) const) {
+  return [member](SimulationCell& cell, A... arguments) -> std::decay_t<R> {
+    const Use use = changing(cell);
+    const py::gil_scoped_release release;
+    return (cell.simulation.*member)(arguments...);
+  };
+}
 
 using SimulationClass = py::class_<SimulationCell, std::shared_ptr<SimulationCell>>;
 void bind_changes(SimulationClass& simulation);
