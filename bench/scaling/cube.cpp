@@ -26,11 +26,23 @@ Vec3 stirred(const Vec3& x) {
   return k_stir / k_time_step * Vec3(wave(x.y()), wave(x.z()), wave(x.x()));
 }
 
+/// Of a body: they lie in a lattice that is about as wide as it is high.
+Vec3 place_of(const Cube& cube, std::size_t body) {
+  constexpr float k_apart = 4;  // beyond what SPH and contact look at
+  const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(cube.bodies)) - 1e-9));
+  const std::size_t cell[3] = {body % side, body / side % side, body / side / side};
+  Vec3 place;
+  for (int a = 0; a < 3; ++a)
+    place[a] = static_cast<float>(cell[a]) * (static_cast<float>(cube.count[static_cast<std::size_t>(a)]) +
+                                              (cube.between == "apart" ? k_apart : 0));
+  return place;
+}
+
 }  // namespace
 
 std::size_t Cube::particles() const {
   return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]) *
-         static_cast<std::size_t>(count[2]);
+         static_cast<std::size_t>(count[2]) * bodies;
 }
 
 std::span<const std::string> cube_materials() {
@@ -47,12 +59,13 @@ std::vector<std::size_t> cube_sizes(std::size_t min, std::size_t max) {
   return sizes;
 }
 
-Cube make_cube(const std::string& material, std::size_t particles) {
-  const auto n = static_cast<double>(particles);
+Cube make_cube(const std::string& material, std::size_t particles, std::size_t bodies,
+               const std::string& between) {
+  const double n = static_cast<double>(particles) / static_cast<double>(bodies);
   const double a = std::max(1.0, std::round(std::cbrt(n)));
   const double b = std::max(1.0, std::round(std::sqrt(n / a)));
   const double c = std::max(1.0, std::round(n / (a * b)));
-  return {material, {static_cast<int>(a), static_cast<int>(b), static_cast<int>(c)}};
+  return {material, {static_cast<int>(a), static_cast<int>(b), static_cast<int>(c)}, bodies, between};
 }
 
 double average_neighbors(const Cube& cube) {
@@ -68,7 +81,7 @@ double average_neighbors(const Cube& cube) {
         for (std::size_t a = 0; a < 3; ++a) points *= std::max(0, cube.count[a] - std::abs(offset[a]));
         pairs += points;
       }
-  return pairs / static_cast<double>(cube.particles());
+  return pairs * static_cast<double>(cube.bodies) / static_cast<double>(cube.particles());
 }
 
 Simulation build(const Cube& cube, int threads, std::shared_ptr<Executor> executor) {
@@ -85,10 +98,16 @@ Simulation build(const Cube& cube, int threads, std::shared_ptr<Executor> execut
   material.update_threshold = k_update_threshold;
   material.pressure_coefficient = k_pressure_coefficient;
   material.viscosity = k_viscosity;
-  Body body = sample(Lattice{.count = cube.count, .spacing = 1.0f, .jitter = 0});
-  body.velocities.reserve(body.positions.size());
-  for (const Vec3& x : body.positions) body.velocities.push_back(stirred(x));
-  simulation.add_body(body, material, cube.material);
+  const MaterialId id = simulation.add_material(material, cube.material);
+  const Body one = sample(Lattice{.count = cube.count, .spacing = 1.0f, .jitter = 0});
+  for (std::size_t b = 0; b < cube.bodies; ++b) {
+    Body body = one;
+    body.merges = cube.between == "merging";
+    for (Vec3& x : body.positions) x += place_of(cube, b);
+    body.velocities.reserve(body.positions.size());
+    for (const Vec3& x : body.positions) body.velocities.push_back(stirred(x));
+    simulation.add_body(body, id, cube.bodies == 1 ? cube.material : std::string());
+  }
   simulation.add_collider({.shape = Plane{}, .friction = 0.3f});
   return simulation;
 }

@@ -16,10 +16,12 @@ namespace mallow::bench {
 /// and the next at √5, so that small displacements do not change the count at once.
 inline constexpr float k_cube_radius = 2.1f;
 
-/// A body of the scaling runs.
+/// One body of the scaling runs, or several that are alike.
 struct Cube {
   std::string material;        ///< one of cube_materials()
-  std::array<int, 3> count{};  ///< lattice points a side
+  std::array<int, 3> count{};  ///< lattice points a side of a body
+  std::size_t bodies = 1;
+  std::string between = "apart";  ///< bodies: or "touching", or "merging", as parts of one do
   std::size_t particles() const;
 };
 
@@ -31,9 +33,10 @@ float cube_alpha(const std::string& material);
 /// min, 2 min, 4 min, ... up to max particles.
 std::vector<std::size_t> cube_sizes(std::size_t min, std::size_t max);
 /// The box nearest to a cube with `particles` points to within a percent or two, so that sizes double and two
-/// threads have twice the work of one.
-Cube make_cube(const std::string& material, std::size_t particles);
-/// Mean number of points within the support radius, the point itself included.
+/// threads have twice the work of one; or so many bodies that have their share each, one at least.
+Cube make_cube(const std::string& material, std::size_t particles, std::size_t bodies = 1,
+               const std::string& between = "apart");
+/// Mean number of points of its body within the support radius of one, the point itself included.
 double average_neighbors(const Cube& cube);
 
 /// The cube on a floor, at rest density, stirred by waves of velocity that are the same whatever the size:

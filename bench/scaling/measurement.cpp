@@ -117,6 +117,8 @@ Json measurement_row(const Measurement& m, const Measurement& single, const Meas
               {"material", m.cube.material},
               {"alpha", cube_alpha(m.cube.material)},
               {"particles", m.cube.particles()},
+              {"bodies", m.cube.bodies},
+              {"between", m.cube.bodies > 1 ? m.cube.between : std::string()},
               {"box", box_text(m.cube)},
               {"support_radius", k_cube_radius},
               {"average_neighbors", average_neighbors(m.cube)},

@@ -29,6 +29,8 @@ struct ScalingOptions : CommonOptions {
   std::vector<std::string> materials = {"paste"};
   int steps = 5;
   int repeats = 0;  ///< 0: by size
+  std::size_t bodies = 1;
+  std::string between = "apart";
 };
 
 int repeats_of(std::size_t particles, const ScalingOptions& options) {
@@ -51,6 +53,7 @@ Json settings(const ScalingOptions& options) {
           {"max_particles", options.max_particles},
           {"steps", options.steps},
           {"repeats", options.repeats},
+          {"bodies", options.bodies},
           {"support_radius", k_cube_radius},
           {"spacing", 1.0}};
 }
@@ -76,7 +79,7 @@ std::vector<Measurement> measure_material(const std::string& material, const Sca
   std::vector<std::pair<std::size_t, Measurement>> singles;
   std::vector<Measurement> measured;
   for (const std::size_t size : sizes) {
-    const Cube cube = make_cube(material, size);
+    const Cube cube = make_cube(material, size, options.bodies, options.between);
     measured = measure(cube, thread_counts(options.threads), options.steps, repeats_of(size, options));
     singles.emplace_back(size, measured.front());
     for (const Measurement& m : measured) {
@@ -129,8 +132,11 @@ void draw(const Results& results) {
 
 void print_tables(const Results& results, const MemoryRates& rates, const Json& extrapolation) {
   const Json& rows = results.rows();
-  std::vector<TableColumn> head = {
-      {"material", "material"}, {"particles", "particles"}, {"threads", "threads"}};
+  std::vector<TableColumn> head = {{"material", "material"},
+                                   {"particles", "particles"},
+                                   {"bodies", "bodies"},
+                                   {"between", "between"},
+                                   {"threads", "threads"}};
   std::vector<TableColumn> times = head, phases = head, shares = head;
   times.insert(times.end(), {{"ms_per_step.min", "ms/step", 3},
                              {"ms_per_step.median", "median", 3},
@@ -232,6 +238,18 @@ void add_scaling_command(CLI::App& app) {
       ->add_option("--steps", options->steps,
                    "Steps that are timed, after one that is not; the same for every size, as bodies deform")
       ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--bodies", options->bodies,
+          "Bodies that share the particles of each size: 1,000 of 64 cost about what one of 64,000 does")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
+      ->capture_default_str();
+  command
+      ->add_option("--between", options->between,
+                   "Of several bodies: apart (none is near another), touching (face to face), merging (one "
+                   "by their particles)")
+      ->check(CLI::IsMember({"apart", "touching", "merging"}))
       ->capture_default_str();
   command->add_option("--repeats", options->repeats, "Runs of each cube and number of threads; 0: by size")
       ->check(CLI::Range(0, 1000))

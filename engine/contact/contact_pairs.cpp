@@ -129,8 +129,9 @@ void find_all_candidates(std::size_t number, const ContactLanes& lanes, ContactP
   if (begin == end) return;
   thread_local Candidates others;
   others.reserve(4 * k_block);
-  block.points.reserve(k_room_near * k_block);
-  block.ends.reserve(k_block / k_cluster);
+  const std::size_t rows = near.blocks.blocks[number].end - near.blocks.blocks[number].begin;
+  block.points.reserve(k_room_near * rows);
+  block.ends.reserve((rows + k_cluster - 1) / k_cluster);
   for (std::uint32_t from = begin; from < end; from += k_cluster) {
     const std::size_t count = std::min<std::size_t>(k_cluster, end - from);
     find_candidates(pairs, number, box_around(pairs.positions, from, from + count), lanes, others);
@@ -209,7 +210,7 @@ void find_sides(std::uint32_t number, ContactPairs& pairs) {
   std::array<std::uint32_t, k_block> next{};
   for (const Found& one : found) ++next[one.point];
   BlockSides& block = pairs.sides[number];
-  block.points.reserve(k_block);
+  block.points.reserve(near.blocks.blocks[number].end - near.blocks.blocks[number].begin);
   std::uint32_t count = 0;
   for (std::uint32_t p = begin; p < end; ++p) {
     const std::uint32_t own = std::exchange(next[p - begin], count);

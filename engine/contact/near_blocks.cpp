@@ -62,11 +62,16 @@ bool are_as_found(const NearBlocks& near) {
   return true;
 }
 
-/// How far apart two points may be that touch in this step. spacing: the mean of theirs. closing: how fast
-/// they come nearer [m/s], at most.
-float touching_reach(float spacing, float closing, const BodyContactStep& step) {
+/// How far apart two points may be that touch in a step, however far they then come. spacing: the mean of
+/// theirs. closing: how fast they come nearer [m/s], at most.
+float unbounded_reach(float spacing, float closing, const BodyContactStep& step) {
   const float across = k_across * spacing, along = spacing + step.time_step * closing + pushed_together(step);
-  return std::min(step.reach, 1.001f * std::sqrt(across * across + along * along));
+  return 1.001f * std::sqrt(across * across + along * along);
+}
+
+/// The same in this step.
+float touching_reach(float spacing, float closing, const BodyContactStep& step) {
+  return std::min(step.reach, unbounded_reach(spacing, closing, step));
 }
 
 /// How far two of these may be apart and touch in this step.
@@ -74,49 +79,25 @@ float reach_between(const Moving& a, const Moving& b, float spacing, const BodyC
   return touching_reach(spacing, (a.velocity - b.velocity).norm() + (a.spread + b.spread), step);
 }
 
-/// Sweeps over the bodies along the axis on which they are spread most, each as wide as it may reach in a
-/// frame that moves with the mean of all.
-void find_other_bodies(const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
-                       NearBlocks& near) {
-  const std::size_t n = bodies.size();
-  near.other_bodies.resize(n);
-  near.by_place.resize(n);
-  near.lowest.resize(n);
-  near.highest.resize(n);
-  Aabb all = empty_box();
-  Vec3 velocity = Vec3::Zero();
-  for (std::uint32_t b = 0; b < n; ++b) {
-    near.other_bodies[b].clear();
-    near.by_place[b] = b;
-    const Vec3 low = near.body_motion[b].box.min;
-    all = box_around(all, {low, low});
-    velocity += near.body_motion[b].velocity / static_cast<float>(n);
-  }
-  int axis = 0;
-  (all.max - all.min).maxCoeff(&axis);
-  for (std::size_t b = 0; b < n; ++b) {
-    const Moving& body = near.body_motion[b];
-    const float closing = 2 * ((body.velocity - velocity).norm() + body.spread);
-    const float own = 0.5f * touching_reach(bodies[b].spacing, closing, step) + 0.25f * bodies[b].spacing;
-    near.lowest[b] = body.box.min[axis] - own;
-    near.highest[b] = body.box.max[axis] + own;
-  }
-  std::ranges::sort(near.by_place, [&](std::uint32_t a, std::uint32_t b) {
-    return near.lowest[a] != near.lowest[b] ? near.lowest[a] < near.lowest[b] : a < b;
-  });
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::uint32_t a = near.by_place[k];
-    for (std::size_t l = k + 1; l < n && near.lowest[near.by_place[l]] <= near.highest[a]; ++l) {
-      const std::uint32_t b = near.by_place[l];
-      if (bodies[a].group == bodies[b].group || (bodies[a].sleeps && bodies[b].sleeps)) continue;
-      const float reach = reach_between(near.body_motion[a], near.body_motion[b],
-                                        0.5f * (bodies[a].spacing + bodies[b].spacing), step);
-      if (!are_near(near.body_motion[a].box, near.body_motion[b].box, reach)) continue;
-      near.other_bodies[a].push_back(b);
-      near.other_bodies[b].push_back(a);
-    }
-  }
-  for (std::vector<std::uint32_t>& others : near.other_bodies) std::ranges::sort(others);
+/// The box of some of a body, so much wider that those of two that may touch in this step overlap: each has
+/// half of the way, in a frame that moves with the mean of all.
+Aabb widened(const Moving& own, float spacing, const BodyContactStep& step, const NearBlocks& near) {
+  const float closing = 2 * ((own.velocity - near.mean_velocity).norm() + own.spread);
+  // The reach of two is at most the mean of what each has by itself, and at most step.reach.
+  const float half = 0.5f * unbounded_reach(spacing, closing, step);
+  const float wider = std::min(step.reach, half) + 0.25f * spacing;
+  return {own.box.min.array() - wider, own.box.max.array() + wider};
+}
+
+/// Where bodies are.
+void place_bodies(const std::vector<TouchingBody>& bodies, const BodyContactStep& step, NearBlocks& near) {
+  near.mean_velocity.setZero();
+  for (const Moving& body : near.body_motion)
+    near.mean_velocity += body.velocity / static_cast<float>(bodies.size());
+  near.boxes.resize(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    near.boxes[b] = widened(near.body_motion[b], bodies[b].spacing, step, near);
+  near.tree.build(near.boxes);
 }
 
 /// Blocks of other bodies that a block may come near.
@@ -124,9 +105,16 @@ void find_other_blocks(const std::vector<TouchingBody>& bodies, const BodyContac
                        std::uint32_t number, NearBlocks& near) {
   const std::uint32_t body = near.blocks.blocks[number].range;
   const Moving& own = near.block_motion[number];
+  thread_local std::vector<std::uint32_t> other_bodies;
+  other_bodies.clear();
+  near.tree.for_overlapping(widened(own, bodies[body].spacing, step, near), [&](std::uint32_t other) {
+    if (bodies[other].group != bodies[body].group && !(bodies[other].sleeps && bodies[body].sleeps))
+      other_bodies.push_back(other);
+  });
+  std::ranges::sort(other_bodies);
   std::vector<NearBlocks::Other>& others = near.others[number];
   others.clear();
-  for (const std::uint32_t other : near.other_bodies[body]) {
+  for (const std::uint32_t other : other_bodies) {
     const float spacing = 0.5f * (bodies[body].spacing + bodies[other].spacing);
     const float reach = reach_between(own, near.body_motion[other], spacing, step);
     if (!are_near(own.box, near.body_motion[other].box, reach)) continue;
@@ -153,6 +141,16 @@ std::uint32_t find_points(const VectorColumn& positions, const NearBlocks& near,
 
 }  // namespace
 
+std::size_t NearBlocks::bytes() const {
+  std::size_t sum =
+      first_point.bytes() + row.bytes() + found.bytes() + tree.bytes() + boxes.capacity() * sizeof(Aabb) +
+      (block_motion.capacity() + body_motion.capacity() + found_motion.capacity()) * sizeof(Moving) +
+      others.capacity() * sizeof(others.front()) + blocks.blocks.capacity() * sizeof(RangeBlocks::Block) +
+      blocks.first.capacity() * sizeof(std::uint32_t);
+  for (const std::vector<Other>& block : others) sum += block.capacity() * sizeof(Other);
+  return sum;
+}
+
 LaneBox lane_box(const Aabb& box, float reach) {
   const Vec3 low = box.min.array() - reach, high = box.max.array() + reach;
   return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
@@ -166,7 +164,7 @@ bool find_near_blocks(const VectorColumn& positions, const VectorColumn& velocit
   for (Moving& block : near.block_motion) block.spread += step.slack;
   near.found_motion = near.block_motion;
   find_body_motions(near);
-  find_other_bodies(bodies, step, near);
+  place_bodies(bodies, step, near);
   const std::size_t blocks = near.blocks.blocks.size();
   near.others.resize(blocks);
   near.first_point.resize_unset(blocks + 1);

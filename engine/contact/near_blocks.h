@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "contact/contact_lanes.h"
+#include "core/box_tree.h"
 #include "core/column.h"
 #include "core/execution.h"
 #include "core/range_blocks.h"
@@ -57,13 +58,13 @@ struct NearBlocks {
 
   // Scratch.
   std::vector<Moving> block_motion, body_motion;
-  std::vector<Moving> found_motion;     ///< of blocks, by which all that was found, slack and all
-  std::vector<float> lowest, highest;   ///< of bodies, as wide as they may reach
-  std::vector<std::uint32_t> by_place;  ///< bodies by their lowest place
-  std::vector<std::vector<std::uint32_t>> other_bodies;  ///< per body, ascending
-  Column<std::uint32_t> found;                           ///< per block, from its first row on
+  std::vector<Moving> found_motion;  ///< of blocks, by which all that was found, slack and all
+  Vec3 mean_velocity;                ///< of bodies, where they were looked for [m/s]
+  std::vector<Aabb> boxes;           ///< of bodies, as wide as they may reach
+  BoxTree tree;                      ///< of these
+  Column<std::uint32_t> found;       ///< per block, from its first row on
 
-  std::size_t bytes() const { return first_point.bytes() + row.bytes() + found.bytes(); }
+  std::size_t bytes() const;
 };
 
 /// By how much more than they come by themselves two points may be pushed together in this step [m].

@@ -47,7 +47,7 @@ Points points_of(const Simulation::State& s, const Body& points) {
 }
 
 /// Throws ConfigError.
-Points checked_points(const Simulation::State& s, const BodyState& body, const Body& points) {
+Points checked_points(Simulation::State& s, const BodyState& body, const Body& points) {
   Points checked = points_of(s, points);
   refuse_overlaps(s, body, checked.positions, points.spacing, checked.origin);
   check_neighbors(s, body.material->settings, points);
@@ -57,12 +57,16 @@ Points checked_points(const Simulation::State& s, const BodyState& body, const B
 /// Puts points behind the last row of a body.
 void insert_points(Simulation::State& s, const Points& points, const Body& given, BodyState& body) {
   if (s.store.size() == 0) s.origin = points.origin;
-  s.store.insert(body.end, points.positions, points.velocities);
   const std::size_t begin = body.end;
+  PlacedRows placed;
+  if (begin == s.store.size()) std::swap(placed, s.placed);  // the other rows stay
+  s.store.insert(begin, points.positions, points.velocities);
   body.end += points.positions.size();
   paint_rows(s, body, begin, given);
   warm_rows(s, body, begin, given);
   s.rows_changed();
+  std::swap(placed, s.placed);
+  s.placed.extend(s.store.position);
 }
 
 std::vector<std::uint32_t> rows_of(const Simulation::State& s, std::span<const ParticleId> ids) {

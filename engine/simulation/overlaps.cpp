@@ -13,24 +13,6 @@ namespace {
 /// Particles nearer than this share of the spacing are an error of the scene.
 constexpr float k_overlap = 0.1f;
 
-/// Rows of the particles within `reach` of a box around points.
-std::vector<std::uint32_t> rows_near(const ParticleStore& store, std::span<const Vec3> points, float reach) {
-  Vec3 low = points.front(), high = low;
-  for (const Vec3& x : points) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  low.array() -= reach;
-  high.array() += reach;
-  const float *x = store.position.x(), *y = store.position.y(), *z = store.position.z();
-  std::vector<std::uint32_t> rows;
-  for (std::size_t i = 0; i < store.size(); ++i)
-    if (x[i] >= low.x() && x[i] <= high.x() && y[i] >= low.y() && y[i] <= high.y() && z[i] >= low.z() &&
-        z[i] <= high.z())
-      rows.push_back(static_cast<std::uint32_t>(i));
-  return rows;
-}
-
 /// A point of the new body, or a particle that is there.
 struct Particle {
   ParticleId id;
@@ -53,9 +35,10 @@ struct Particle {
 
 }  // namespace
 
-void refuse_overlaps(const Simulation::State& state, const BodyState& body, std::span<const Vec3> positions,
+void refuse_overlaps(Simulation::State& state, const BodyState& body, std::span<const Vec3> positions,
                      float spacing, const Vec3& origin) {
-  const std::vector<std::uint32_t> rows = rows_near(state.store, positions, k_overlap * spacing);
+  const std::vector<std::uint32_t> rows =
+      state.placed.near(state.store.position, state.step, spacing, positions, k_overlap * spacing);
   VectorColumn points(rows.size() + positions.size());
   for (std::size_t k = 0; k < rows.size(); ++k) points.set(k, state.store.position.get(rows[k]));
   for (std::size_t k = 0; k < positions.size(); ++k) points.set(rows.size() + k, positions[k]);

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
+#include <utility>
 
 #include "colliders/collider_checks.h"
 #include "config/validation.h"
@@ -23,13 +25,27 @@ bool merge(const BodyState& a, const BodyState& b) {
          std::abs(a.spacing - b.spacing) <= k_same_spacing * a.spacing;
 }
 
-/// One of these that the body may be part of; null: there is none, and the body is one of them now.
-const BodyState* first_like(const BodyState& body, std::vector<const BodyState*>& firsts) {
-  const auto found = std::ranges::find_if(firsts, [&](const BodyState* one) { return merge(*one, body); });
-  if (found != firsts.end()) return *found;
-  if (body.merges) firsts.push_back(&body);
-  return nullptr;
-}
+/// The first body of each group of those that may be one, by material and spacing: few are looked at for a
+/// body, however many there are.
+class FirstBodies {
+ public:
+  /// The earliest that the body may be part of; null: there is none, and the body is one of them now.
+  const BodyState* like(const BodyState& body) {
+    if (!body.merges) return nullptr;
+    const std::uint32_t material = body.material->number;
+    const float margin = 2 * k_same_spacing * body.spacing;
+    const BodyState* first = nullptr;
+    for (auto one = firsts_.lower_bound({material, body.spacing - margin});
+         one != firsts_.end() && one->first <= Key{material, body.spacing + margin}; ++one)
+      if (merge(*one->second, body) && (!first || one->second < first)) first = one->second;
+    if (!first) firsts_.emplace(Key{material, body.spacing}, &body);
+    return first;
+  }
+
+ private:
+  using Key = std::pair<std::uint32_t, float>;
+  std::map<Key, const BodyState*> firsts_;  ///< in one list of bodies, so that a pointer is a place in it
+};
 
 /// Of a particle in densities: its lattice has the same by either kernel.
 float kernel_volume(const Sph& sph, const BodyState& body) {
@@ -87,16 +103,17 @@ void describe_bodies(Simulation::State& state) {
   sph.bodies.clear();
   sph.viscous = false;
   sph.apart = state.config.contact == BodyContact::constraint;
-  sph.kernel = state.volume_iterations() > 0 ? DensityKernel::wendland : DensityKernel::poly6;
+  const bool keeps_volume = state.volume_iterations() > 0;
+  sph.kernel = keeps_volume ? DensityKernel::wendland : DensityKernel::poly6;
   double volume = 0;
-  std::vector<const BodyState*> merging, flowing;  // the first of each group
+  FirstBodies merging, flowing;
   std::uint32_t merge_groups = 0;
   for (BodyState& body : state.bodies) {
     volume += static_cast<double>(body.size()) * std::pow(static_cast<double>(body.spacing), 3);
     sph.viscous = sph.viscous || body.viscosity > 0;
-    const BodyState* merges_with = first_like(body, merging);
+    const BodyState* merges_with = merging.like(body);
     body.merge_group = merges_with ? merges_with->merge_group : merge_groups++;
-    const BodyState* flows_with = body.touches_what_it_merges_with() ? nullptr : first_like(body, flowing);
+    const BodyState* flows_with = body.touches_what_it_merges_with() ? nullptr : flowing.like(body);
     if (flows_with) {
       body.sph_group = flows_with->sph_group;
     } else {
@@ -110,7 +127,7 @@ void describe_bodies(Simulation::State& state) {
            .contact_share = 1,
            .viscosity = body.viscosity,
            .cohesion = 0});
-      if (state.volume_iterations() > 0)
+      if (keeps_volume)
         state.volume.groups.push_back(volume_group(sph.groups.back(), body.spacing, sph.support_radius));
     }
     sph.bodies.push_back({body.end, body.sph_group});
@@ -213,6 +230,7 @@ void prepare(Simulation::State& s) {
   check_memory(s);
 
   s.sph.kept.forget();
+  s.placed.forget();
   describe_bodies(s);
   prepare_heat(s);
   for (BodyState& body : s.bodies) {

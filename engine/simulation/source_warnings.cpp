@@ -15,7 +15,8 @@ constexpr float k_rounding_depth = 0.01f;
 
 class SourceWarnings {
  public:
-  explicit SourceWarnings(const Simulation::State& state) : state_(state) {}
+  explicit SourceWarnings(const Simulation::State& state)
+      : state_(state), needs_sph_(state.needs_sph()), keeps_volume_(state.keeps_volume()) {}
 
   std::vector<std::string> list() && {
     if (state_.step == 0) {
@@ -129,7 +130,7 @@ class SourceWarnings {
   }
 
   void look_at_parts(const BodyState& body) {
-    if (!body.shape.flows || !body.shape.built || body.most_alpha() > 0 || state_.keeps_volume()) return;
+    if (!body.shape.flows || !body.shape.built || body.most_alpha() > 0 || keeps_volume_) return;
     Parts parts;
     find_parts(body.shape, parts);
     if (parts.count > 1)
@@ -144,7 +145,7 @@ class SourceWarnings {
     const auto flows = [](const BodyState& body) {
       return body.paints_alpha || body.material->settings.alpha.highest() > 0;
     };
-    if (std::ranges::none_of(state_.bodies, flows) && !state_.needs_sph())
+    if (std::ranges::none_of(state_.bodies, flows) && !needs_sph_)
       add("solver.formulation = \"printed\" has no effect where alpha is 0: it is of the accelerations that "
           "alpha blends in");
   }
@@ -152,7 +153,7 @@ class SourceWarnings {
   void look_at_arithmetic() {
     if (state_.config.arithmetic == Arithmetic::exact || state_.bodies.empty()) return;
     const InstructionLevel level = state_.execution.level;
-    if (!state_.needs_sph() && !state_.keeps_volume())
+    if (!needs_sph_ && !keeps_volume_)
       add("solver.arithmetic = \"native\" has no effect: it is of sums of SPH and of volume iterations, and "
           "there are none where alpha is 0");
     else if (level == InstructionLevel::baseline)
@@ -161,6 +162,7 @@ class SourceWarnings {
   }
 
   const Simulation::State& state_;
+  const bool needs_sph_, keeps_volume_;  ///< asked once, not for each body
   float coldest_ = std::numeric_limits<float>::infinity(), warmest_ = -coldest_;
   std::vector<std::string> list_;
 };

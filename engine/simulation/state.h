@@ -20,6 +20,7 @@
 #include "shape_matching/parts.h"
 #include "shape_matching/shape_matching.h"
 #include "simulation/near_origin.h"
+#include "simulation/placed_rows.h"
 #include "sph/sph.h"
 #include "sph/volume.h"
 
@@ -244,6 +245,7 @@ struct Simulation::State {
   bool density_ran = false;       ///< in the last step
   bool sph_ran = false;           ///< accelerations of SPH in the last step
   std::vector<BodyState*> awake;  ///< bodies that move in the step under way
+  PlacedRows placed;              ///< between calls that add bodies
   // Scratch.
   RegionScratch region_scratch;
   Parts parts_before, parts_after;  ///< of a body whose reference shape is updated
@@ -251,7 +253,8 @@ struct Simulation::State {
   MatchedBodies matched;  ///< those whose shape is matched in the step under way
   FastestInput fastest;
   MovingBodies moving;
-  Column<std::uint32_t> fluid_order;
+  Column<std::uint32_t> fluid_order;      ///< by row of the store: rows of its body
+  std::vector<std::uint32_t> fluid_rows;  ///< of each body, those that are in it
   std::vector<TimeStepLimits::Pressure> pressures;
   std::vector<PlacedCollider> placed_colliders;
   std::vector<PinMotion> pin_motions;
@@ -292,6 +295,7 @@ struct Simulation::State {
   /// What knows particles by their rows forgets them.
   void rows_moved() {
     sph.kept.forget();
+    placed.forget();
     far_step = -1;
   }
   /// There are other rows than before: what a step left is of no use.

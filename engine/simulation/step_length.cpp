@@ -120,7 +120,7 @@ float longest_time_step(Simulation::State& state, StepReport& report) {
 MaterialLimits material_limits(const Simulation::State& state, const BodyState& body) {
   TimeStepLimits none{.time_step = std::numeric_limits<float>::infinity(),
                       .support_radius = state.support_radius(),
-                      .farthest = farthest_move(state),
+                      .farthest = std::numeric_limits<float>::infinity(),  // of no meaning at rest
                       .acoustic = state.config.acoustic_limit,
                       .pressures = {},
                       .viscous_time = std::numeric_limits<float>::infinity()};

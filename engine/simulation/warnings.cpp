@@ -55,7 +55,14 @@ constexpr float k_rounding_depth = 0.01f;
 
 class Warnings {
  public:
-  explicit Warnings(const Simulation::State& state) : state_(state) {}
+  explicit Warnings(const Simulation::State& state)
+      : state_(state),
+        needs_sph_(state.needs_sph()),
+        keeps_volume_(state.keeps_volume()),
+        volume_iterations_(state.volume_iterations()),
+        merging_(state.materials.size(), 0) {
+    for (const BodyState& body : state.bodies) merging_[body.material->number] += body.merges ? 1 : 0;
+  }
 
   std::vector<std::string> list() && {
     for (const BodyState& body : state_.bodies) {
@@ -105,12 +112,8 @@ class Warnings {
 
   /// What acts on another body as on itself rubs it only as a fluid does.
   void look_at_merging(const BodyState& body) {
-    const auto merges_with = [&](const BodyState& other) {
-      return &other != &body && other.merges && other.material == body.material;
-    };
     if (!body.merges || body.touches_what_it_merges_with() ||
-        body.material->settings.alpha.lowest() > k_all_but_fluid ||
-        std::ranges::none_of(state_.bodies, merges_with))
+        body.material->settings.alpha.lowest() > k_all_but_fluid || merging_[body.material->number] < 2)
       return;
     add(body, "slides along bodies that it merges with, as friction is between bodies that do not",
         body.shape.flows ? ": where they are not pressed together at once, leave merges out"
@@ -150,7 +153,7 @@ class Warnings {
   }
 
   void look_at_limits(const BodyState& body) {
-    if (!state_.needs_sph() || !state_.config.acoustic_limit) return;
+    if (!needs_sph_ || !state_.config.acoustic_limit) return;
     const double longest = static_cast<double>(state_.longest_step());
     const MaterialLimits limits = material_limits(state_, body);
     const auto shortens = [&](double step) {
@@ -207,7 +210,7 @@ class Warnings {
 
   /// What is as stiff as a step can carry leaves no room for another spring.
   void look_at_volume(const BodyState& body) {
-    if (state_.volume_iterations() == 0) return;
+    if (volume_iterations_ == 0) return;
     const float share = 2 * volume_relaxation(state_, body, state_.longest_step());
     if (share < k_least_share && !(state_.support_radius() > k_wide_radius * body.spacing))
       add(body, "elasticity and damping are so stiff for a step of ", state_.longest_step(),
@@ -218,7 +221,7 @@ class Warnings {
 
   /// Particles without stiffness, pressure and volume: nothing keeps them apart.
   void look_at_limp(const BodyState& body) {
-    if (!body.paints_stiffness || state_.volume_iterations() > 0) return;
+    if (!body.paints_stiffness || volume_iterations_ > 0) return;
     std::size_t limp = 0;
     for (std::size_t row = body.begin; row < body.end; ++row)
       limp += state_.store.stiffness[row] < k_limp && state_.store.alpha[row] < k_no_pressure ? 1 : 0;
@@ -246,7 +249,7 @@ class Warnings {
 
   void look_at_tolerance() {
     const float tolerance = state_.config.volume_tolerance;
-    if (tolerance > 0 && state_.volume_iterations() == 0)
+    if (tolerance > 0 && volume_iterations_ == 0)
       list_.push_back(
           "solver.volume_tolerance ends volume iterations, of which there are none: give volume_iterations");
     else if (tolerance > k_loose_tolerance)
@@ -274,7 +277,7 @@ class Warnings {
         add(body, field, ' ', radius, " is ", radius / body.spacing, " spacings: about ", std::round(each),
             " neighbours each, where 30 to 80 are usual; so few hold no body together, 2.1 spacings do");
     };
-    if (state_.needs_sph() || state_.keeps_volume()) {
+    if (needs_sph_ || keeps_volume_) {
       look("support_radius", state_.support_radius(), state_.store.size());
       if (state_.support_radius() > k_wide_radius * body.spacing && body.size() > 1)
         add(body, "support_radius ", state_.support_radius(), " is ", state_.support_radius() / body.spacing,
@@ -341,6 +344,10 @@ class Warnings {
   }
 
   const Simulation::State& state_;
+  // Of all bodies: asked once, not for each of them.
+  const bool needs_sph_, keeps_volume_;
+  const int volume_iterations_;
+  std::vector<std::size_t> merging_;  ///< bodies of each material that merge
   std::vector<std::string> list_;
 };
 
