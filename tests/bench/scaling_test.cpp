@@ -35,6 +35,20 @@ TEST_F(bench_scaling, one_thread_has_nothing_to_compare_with) {
   EXPECT_EQ(document.at("extrapolation").at("rows").size(), 0u);
 }
 
+TEST_F(bench_scaling, of_bodies_in_a_heap_tells_what_contact_takes_and_that_asleep_it_takes_nothing) {
+  for (const std::string between : {"heap", "asleep"}) {
+    const nlohmann::json document = run_command(
+        "scaling", {"--material", "elastic", "--bodies", "8", "--between", between, "--max-particles", "1000",
+                    "--steps", "2", "--repeats", "1", "--threads", "1"});
+    expect_valid("scaling");
+    const nlohmann::json& row = document["rows"].at(0);
+    EXPECT_EQ(row["between"], between);
+    EXPECT_EQ(row["bodies"], 8);
+    if (between == "heap") EXPECT_GT(row["contact_share"], 0.1);
+    if (between == "asleep") EXPECT_LT(row["ms_per_step"]["min"], 0.5);
+  }
+}
+
 TEST_F(bench_scaling, too_many_particles_are_refused_before_anything_runs) {
   // What is needed, what there is, and what fits.
   expect_refused("scaling", {"--max-particles", "10000000000000", "--threads", "1"},
@@ -44,7 +58,8 @@ TEST_F(bench_scaling, too_many_particles_are_refused_before_anything_runs) {
 TEST_F(bench_scaling, a_file_of_someone_else_is_not_overwritten) {
   const std::filesystem::path notes = folder_ / "notes.json";
   std::ofstream(notes) << "{\"mine\": 1}\n";
-  expect_refused("scaling", {"--json", notes.string()}, {"--json", "notes.json", "no results of mallow-bench"});
+  expect_refused("scaling", {"--json", notes.string()},
+                 {"--json", "notes.json", "no results of mallow-bench"});
   EXPECT_EQ(read_text(notes), "{\"mine\": 1}\n");
 }
 
