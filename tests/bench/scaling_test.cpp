@@ -44,8 +44,11 @@ TEST_F(bench_scaling, of_bodies_in_a_heap_tells_what_contact_takes_and_that_asle
     const nlohmann::json& row = document["rows"].at(0);
     EXPECT_EQ(row["between"], between);
     EXPECT_EQ(row["bodies"], 8);
-    if (between == "heap") EXPECT_GT(row["contact_share"], 0.1);
-    if (between == "asleep") EXPECT_LT(row["ms_per_step"]["min"], 0.5);
+    EXPECT_EQ(row["contact_share"].get<double>() > 0.1, between == "heap");
+    // So that a busy machine is no failure: moving, a step of these takes about 0.2 ms, asleep 0.003.
+    if (between == "asleep") {
+      EXPECT_LT(row["ms_per_step"]["min"].get<double>(), 0.05);
+    }
   }
 }
 
@@ -64,7 +67,7 @@ TEST_F(bench_scaling, a_file_of_someone_else_is_not_overwritten) {
 }
 
 TEST_F(bench_scaling, what_makes_no_sense_is_refused) {
-  expect_refused("scaling", {"--material", "jelly"}, {"jelly", "elastic, paste, fluid"});
+  expect_refused("scaling", {"--material", "jelly"}, {"jelly", "elastic, gel, paste, fluid"});
   expect_refused("scaling", {"--max-particles", "0"}, {"--max-particles"});
   expect_refused("scaling", {"--max-particles", "many"}, {"--max-particles"});
   expect_refused("scaling", {"--max-particles", "500"}, {"--max-particles", "--min-particles", "1000"});
