@@ -21,11 +21,15 @@ struct Cube {
   std::string material;        ///< one of cube_materials()
   std::array<int, 3> count{};  ///< lattice points a side of a body
   std::size_t bodies = 1;
-  std::string between = "apart";  ///< bodies: or "touching", or "merging", as parts of one do
+  /// Bodies: or "touching", or "merging", as parts of one do; or "heap", thrown into a bin and still falling
+  /// together, or "asleep", the same once all sleep.
+  std::string between = "apart";
+  bool in_a_bin() const { return between == "heap" || between == "asleep"; }
   std::size_t particles() const;
 };
 
-/// Names of what a cube can be made of: "elastic" has no SPH, "fluid" no shape matching, "paste" both.
+/// Names of what a cube can be made of: "elastic" has no SPH, "fluid" no shape matching, "gel" (alpha 0.3)
+/// and "paste" both.
 std::span<const std::string> cube_materials();
 /// alpha of a material of that name.
 float cube_alpha(const std::string& material);
@@ -42,5 +46,7 @@ double average_neighbors(const Cube& cube);
 /// The cube on a floor, at rest density, stirred by waves of velocity that are the same whatever the size:
 /// the regions of a body at rest would need no Newton iterations.
 Simulation build(const Cube& cube, int threads, std::shared_ptr<Executor> executor = nullptr);
+/// Runs what lies in a bin until it is what `between` says; nothing of others.
+void settle(const Cube& cube, Simulation& simulation);
 
 }  // namespace mallow::bench

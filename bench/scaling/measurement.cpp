@@ -70,6 +70,7 @@ CubeRun run_cube(const Cube& cube, int threads, int steps) {
   const PeakMemory peak;
   Simulation simulation = build(cube, threads);
   run.prepare_ms = milliseconds([&] { simulation.prepare(); });
+  settle(cube, simulation);
   simulation.step();
   const double count = steps;
   for (int step = 0; step < steps; ++step) {
@@ -128,6 +129,7 @@ Json measurement_row(const Measurement& m, const Measurement& single, const Meas
               {"ms_per_step", least_and_middle(steps)},
               {"ns_per_particle", least_and_middle(steps, 1e6 / n)},
               {"phase_ms", std::move(phases)},
+              {"contact_share", m.smallest_phase_ms(Phase::body_contact) / m.smallest_ms()},
               {"prepare_ms", least_and_middle(of_runs(m, [](const CubeRun& run) { return run.prepare_ms; }))},
               {"bytes_per_particle", memory_json(m)},
               {"speedup", nullptr},

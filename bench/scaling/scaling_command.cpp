@@ -141,6 +141,7 @@ void print_tables(const Results& results, const MemoryRates& rates, const Json& 
   times.insert(times.end(), {{"ms_per_step.min", "ms/step", 3},
                              {"ms_per_step.median", "median", 3},
                              {"ns_per_particle.min", "ns/particle", 1},
+                             {"contact_share", "contact", 3},
                              {"speedup", "speedup"},
                              {"efficiency", "efficiency"},
                              {"weak_efficiency", "weak"},
@@ -232,7 +233,7 @@ void add_scaling_command(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--material", options->materials,
-                   "elastic (no SPH), paste, fluid (no shape matching); several are allowed")
+                   "elastic (no SPH), gel, paste, fluid (no shape matching); several are allowed")
       ->capture_default_str();
   command
       ->add_option("--steps", options->steps,
@@ -245,8 +246,8 @@ void add_scaling_command(CLI::App& app) {
   command
       ->add_option("--between", options->between,
                    "Of several bodies: apart (none is near another), touching (face to face), merging (one "
-                   "by their particles)")
-      ->check(CLI::IsMember({"apart", "touching", "merging"}))
+                   "by their particles), heap (falling together in a bin), asleep (the same later)")
+      ->check(CLI::IsMember({"apart", "touching", "merging", "heap", "asleep"}))
       ->capture_default_str();
   command->add_option("--repeats", options->repeats, "Runs of each cube and number of threads; 0: by size")
       ->check(CLI::Range(0, 1000))

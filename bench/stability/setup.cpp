@@ -49,20 +49,23 @@ void pour_a_layer_a_step(Simulation& simulation, int step) {
   simulation.add_emitter({.radius = 2.0f, .pose = down, .speed = 6, .most_particles = 800}, MaterialId{0});
 }
 
+Trial trial_of(const Setup& setup, Trial trial) {
+  trial.spacing = setup.body.spacing;
+  trial.mass = setup.material.particle_mass.value_or(1.0f);
+  trial.other_mass = setup.other_mass;
+  if (!setup.other.positions.empty()) trial.other_begin = setup.body.positions.size();
+  trial.is_free = setup.config.gravity.isZero() && setup.colliders.empty();
+  trial.build = [setup] { return setup.build(); };
+  return trial;
+}
+
 void add_extremes(const std::string& name, const Setup& base, const Change& change, const Trial& trial,
                   std::vector<Extreme>& list) {
   for (const float alpha : {0.0f, 0.5f, 1.0f}) {
     Setup setup = base;
     setup.material.alpha = alpha;
     change(setup);
-    Trial t = trial;
-    t.spacing = setup.body.spacing;
-    t.mass = setup.material.particle_mass.value_or(1.0f);
-    t.other_mass = setup.other_mass;
-    if (!setup.other.positions.empty()) t.other_begin = setup.body.positions.size();
-    t.is_free = setup.config.gravity.isZero() && setup.colliders.empty();
-    t.build = [setup] { return setup.build(); };
-    list.push_back({name, alpha, t});
+    list.push_back({name, alpha, trial_of(setup, trial)});
   }
 }
 

@@ -35,6 +35,9 @@ void stir(Setup& setup, float velocity);
 /// To be called before a step: from a nozzle above the body.
 void pour_a_layer_a_step(Simulation& simulation, int step);
 
+/// The trial that pushes this setup: what it says of its bodies is filled in.
+Trial trial_of(const Setup& setup, Trial trial);
+
 using Change = std::function<void(Setup&)>;
 /// Of a solid, a paste and a fluid, whose alpha `change` finds.
 void add_extremes(const std::string& name, const Setup& base, const Change& change, const Trial& trial,

@@ -6,12 +6,14 @@
 #include <cstdio>
 #include <memory>
 #include <numeric>
+#include <sstream>
 
 #include "core/parallel.h"
 #include "harness/command.h"
 #include "program/failure.h"
 #include "stability/extremes.h"
 #include "stability/grid.h"
+#include "stability/panels.h"
 #include "stability/stability_map.h"
 
 namespace mallow::bench {
@@ -21,6 +23,7 @@ struct StabilityOptions : CommonOptions {
   int steps = 300;
   int long_steps = 1'000'000;
   bool thin = false;
+  bool panels = false;
   std::string extremes;  ///< a part of the names of those to run, without the grid; empty: all
 };
 
@@ -57,6 +60,19 @@ Json to_json(const Outcome& outcome) {
           {"momentum_drift", outcome.momentum_drift},
           {"angular_drift", outcome.angular_drift},
           {"message", outcome.message}};
+}
+
+/// Runs them and adds a row for each.
+std::vector<Outcome> run_extremes(const char* what, const std::vector<Extreme>& list, int threads,
+                                  Results& results) {
+  std::vector<Outcome> ends =
+      run_all(what, list.size(), threads, results, [&](std::size_t i) { return list[i].trial; });
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    Json row{{"kind", "extreme"}, {"name", list[i].name}, {"alpha", list[i].alpha}};
+    row.update(to_json(ends[i]));
+    results.add(row);
+  }
+  return ends;
 }
 
 /// How often each verdict was given, over one value of an axis.
@@ -103,25 +119,38 @@ Json rows_of(const Results& results, const std::string& kind) {
   return rows;
 }
 
+/// Runs the panels of bodies, draws their map and adds a row for each trial.
+void run_panels(const StabilityOptions& options, Results& results) {
+  std::vector<Panel> list = panels();
+  if (options.thin)
+    for (Panel& panel : list) panel.values = {panel.values.front(), panel.values[3], panel.values.back()};
+  const std::vector<float> alphas = panel_alphas(options.thin);
+  std::vector<Extreme> trials;
+  for (const Panel& panel : list)
+    for (const float value : panel.values) {
+      std::ostringstream name;
+      name << panel.name << ": " << value;
+      for (const float alpha : alphas) trials.push_back({name.str(), alpha, panel.trial(alpha, value)});
+    }
+  write_panels(results.file("_bodies.svg"), list, alphas,
+               run_extremes("panel", trials, options.threads, results));
+}
+
 void run_stability(const StabilityOptions& options) {
   StabilityGrid grid = options.thin ? thin_grid() : full_grid();
-  if (!options.extremes.empty()) grid.alphas.clear();
+  if (!options.extremes.empty() || options.panels) grid.alphas.clear();
   Results results("stability", options.output, options.threads,
                   {{"steps", options.steps}, {"long_steps", options.long_steps}, {"trials", grid.size()}});
   std::vector<Extreme> list = extremes(options.long_steps);
   std::erase_if(list,
                 [&](const Extreme& one) { return one.name.find(options.extremes) == std::string::npos; });
-  const std::vector<Outcome> ends =
-      run_all("extreme", list.size(), options.threads, results, [&](std::size_t i) { return list[i].trial; });
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    Json row{{"kind", "extreme"}, {"name", list[i].name}, {"alpha", list[i].alpha}};
-    row.update(to_json(ends[i]));
-    results.add(row);
-  }
+  if (options.panels) list.clear();
+  run_extremes("extreme", list, options.threads, results);
+  if (options.extremes.empty()) run_panels(options, results);
   const std::vector<Outcome> outcomes =
       run_all("grid", grid.size(), options.threads, results,
               [&](std::size_t i) { return falling_cube(grid_point(grid, i), options.steps); });
-  add_grid(grid, outcomes, results);
+  if (grid.size() > 0) add_grid(grid, outcomes, results);
   results.close();
   if (grid.size() > 0) write_map(results.file(".svg"), grid, outcomes);
 
@@ -161,6 +190,8 @@ void add_stability_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--extremes", options->extremes,
                       "Only extremes whose names have this in them, and no grid");
+  command->add_flag("--panels", options->panels,
+                    "Only the panels of bodies that touch, rest, come and are pushed");
   command->add_flag("--thin", options->thin, "A grid of few values, for a look");
 }
 

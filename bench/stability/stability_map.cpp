@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "mallow/files.h"
+#include "stability/panels.h"
 
 namespace mallow::bench {
 namespace {
@@ -42,6 +43,15 @@ std::string number(float value) {
   return text.str();
 }
 
+/// What the colours mean, from x on.
+void draw_legend(Drawing& drawing, int x) {
+  for (const Verdict verdict : {Verdict::stable, Verdict::limited, Verdict::refused, Verdict::unstable}) {
+    drawing.field(x, 30, 2 * k_field, color(verdict));
+    drawing.text(x + 25, 39, name(verdict), "start");
+    x += 110;
+  }
+}
+
 }  // namespace
 
 void write_map(const std::filesystem::path& svg, const StabilityGrid& grid,
@@ -54,12 +64,7 @@ void write_map(const std::filesystem::path& svg, const StabilityGrid& grid,
   Drawing drawing;
   drawing.text(width / 2, 20,
                "A cube that falls: stable, held by the limit on the step, refused with an error, unstable");
-  int x = width / 2 - 200;
-  for (const Verdict verdict : {Verdict::stable, Verdict::limited, Verdict::refused, Verdict::unstable}) {
-    drawing.field(x, 30, 2 * k_field, color(verdict));
-    drawing.text(x + 25, 39, name(verdict), "start");
-    x += 110;
-  }
+  draw_legend(drawing, width / 2 - 200);
   for (std::size_t a = 0; a < grid.alphas.size(); ++a)
     drawing.text(k_left + static_cast<int>(a) * panel_x + panel_x / 2, k_top - 8,
                  "&#945; " + number(grid.alphas[a]));
@@ -94,6 +99,31 @@ void write_map(const std::filesystem::path& svg, const StabilityGrid& grid,
     }
   }
   write_whole(svg, drawing.svg(width, height));
+}
+
+void write_panels(const std::filesystem::path& svg, const std::vector<Panel>& panels,
+                  const std::vector<float>& alphas, const std::vector<Outcome>& outcomes) {
+  constexpr int k_name = 260, k_across = 60, k_width = 760;
+  const int panel_y = static_cast<int>(alphas.size()) * k_field + 4 * k_gap;
+  Drawing drawing;
+  drawing.text(k_width / 2, 20,
+               "Bodies that touch, rest, come and are pushed; in each row alpha from " +
+                   number(alphas.front()) + " (top) to " + number(alphas.back()));
+  draw_legend(drawing, k_width / 2 - 200);
+  int y = k_top;
+  const Outcome* outcome = outcomes.data();
+  for (const Panel& panel : panels) {
+    drawing.text(k_name - k_gap, y + panel_y / 2 - k_gap, panel.name, "end");
+    int x = k_name;
+    for (const float value : panel.values) {
+      for (std::size_t a = 0; a < alphas.size(); ++a)
+        drawing.field(x, y + static_cast<int>(a) * k_field, k_across, color((outcome++)->verdict));
+      drawing.text(x + k_across / 2, y + panel_y - 2 * k_gap, number(value));
+      x += k_across + 2;
+    }
+    y += panel_y;
+  }
+  write_whole(svg, drawing.svg(k_width, y + k_gap));
 }
 
 }  // namespace mallow::bench

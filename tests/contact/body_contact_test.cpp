@@ -7,59 +7,13 @@
 #include <limits>
 #include <vector>
 
+#include "contact/cubes.h"
 #include "mallow/errors.h"
 
 namespace mallow {
 namespace body_contact_test {
 
-using Vec = Eigen::Vector3d;
-
-SolverConfig solver(float gravity) {
-  return {.time_step = 0.15f, .support_radius = 2.1f, .gravity = {0, 0, -gravity}, .threads = 2};
-}
-Body box(const std::array<int, 3>& count, const Vec3& corner, const Vec3& velocity = {0, 0, 0}) {
-  Body body = sample(Lattice{.count = count, .spacing = 1, .corner = corner, .jitter = 0.02f});
-  body.velocity = velocity;
-  return body;
-}
-Material material(float alpha) {
-  return {.alpha = alpha, .update_threshold = 1e9f};
-}
-void run(Simulation& s, double seconds) {
-  const double end = s.time() + seconds;
-  while (s.time() < end) s.step();
-}
-
-std::vector<Vec> centers(const Simulation& s) {
-  const std::vector<Vec3> x = s.positions_by_id();
-  const std::vector<std::uint32_t> body = s.bodies_by_id();
-  std::vector<Vec> sum;
-  std::vector<double> count;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (body[i] >= sum.size()) {
-      sum.resize(body[i] + 1, Vec::Zero());
-      count.resize(body[i] + 1, 0);
-    }
-    sum[body[i]] += x[i].cast<double>();
-    count[body[i]] += 1;
-  }
-  for (std::size_t b = 0; b < sum.size(); ++b) sum[b] /= count[b];
-  return sum;
-}
-/// The smallest distance between particles of two bodies.
-double nearest(const Simulation& s, std::size_t first_of_other) {
-  const std::vector<Vec3> x = s.positions_by_id();
-  double least = 1e9;
-  for (std::size_t i = 0; i < first_of_other; ++i)
-    for (std::size_t j = first_of_other; j < x.size(); ++j)
-      least = std::min(least, static_cast<double>((x[i] - x[j]).norm()));
-  return least;
-}
-double fastest(const Simulation& s) {
-  float most = 0;
-  for (const Vec3& v : s.velocities_by_id()) most = std::max(most, v.norm());
-  return static_cast<double>(most);
-}
+using namespace contact_tests;
 
 TEST(body_contact, cubes_stand_on_each_other) {
   for (const float alpha : {0.0f, 0.3f}) {
@@ -118,31 +72,6 @@ TEST(body_contact, a_pyramid_of_ten_stands_and_falls_asleep) {
   EXPECT_NEAR(at[9].z(), 20.4, 0.4);
   EXPECT_NEAR(at[9].x(), 12.45, 0.2);
   for (const Vec& center : at) EXPECT_NEAR(center.y(), 3, 0.2);
-}
-
-/// How far a cube slides in 10 s on a block that is held, where gravity leans by this tangent.
-double slide(float alpha, float friction, float tangent) {
-  const float length = std::sqrt(1 + tangent * tangent);
-  SolverConfig config = solver(0);
-  config.gravity = Vec3(tangent, 0, -1) * (0.1f / length);
-  Simulation s(config);
-  Material m = material(alpha);
-  m.friction = friction;
-  s.add_body(box({24, 12, 4}, {-7, -6, -4}), m);
-  s.add_body(box({6, 6, 6}, {-3, -3, 0}), m);
-  s.pin(Aabb{{-100, -100, -5}, {100, 100, -2}}, {0, 0, 0});
-  run(s, 20);
-  const double before = centers(s)[1].x();
-  run(s, 10);
-  return centers(s)[1].x() - before;
-}
-
-TEST(body_contact, a_cube_starts_to_slide_at_the_friction_of_both_within_a_tenth) {
-  for (const float alpha : {0.0f, 0.7f})
-    for (const float friction : {0.3f, 0.5f}) {
-      EXPECT_LT(std::abs(slide(alpha, friction, 0.9f * friction)), 0.15) << alpha << ' ' << friction;
-      EXPECT_GT(slide(alpha, friction, 1.1f * friction), 0.8) << alpha << ' ' << friction;
-    }
 }
 
 TEST(body_contact,

@@ -40,18 +40,35 @@ double rebound(Simulation s) {
   return last - 4;
 }
 
-TEST(damping, by_default_leaves_a_bounce_and_brings_what_hardly_moves_to_rest) {
-  EXPECT_GT(rebound(falling_cube(10, 0, {})), 0.95 * rebound(falling_cube(10, 0, 0.0f)));
-  for (const float alpha : {0.0f, 0.3f, 0.7f}) {
-    Simulation s = falling_cube(1, alpha, {}), undamped = falling_cube(1, alpha, 0.0f);
-    while (s.time() < 60) {
-      s.step();
-      undamped.step();
-    }
-    EXPECT_LT(fastest(s) * static_cast<double>(k_step), 1e-3) << alpha;
-    EXPECT_GT(fastest(undamped), 2 * fastest(s)) << alpha;
+/// From when on no particle is faster than 0.001 spacings a step [s].
+double quiet_since(Simulation s, double end) {
+  double since = 0;
+  while (s.time() < end) {
+    s.step();
+    if (fastest(s) * static_cast<double>(k_step) >= 1e-3) since = s.time();
   }
+  return since;
 }
+
+struct Fallen {
+  float height, alpha;
+  double rebound;  ///< share of what it is without damping, at least
+  double quiet;    ///< [s], at most
+};
+/// What holds of bench/PHYSICS.md's table: both, a rebound of 0.95 and quiet after 20 s, cannot.
+class FallenCube : public testing::TestWithParam<Fallen> {};
+
+TEST_P(FallenCube, damped_by_default_rebounds_and_then_comes_to_rest) {
+  const auto [height, alpha, share, quiet] = GetParam();
+  EXPECT_GT(rebound(falling_cube(height, alpha, {})), share * rebound(falling_cube(height, alpha, 0.0f)));
+  EXPECT_LT(quiet_since(falling_cube(height, alpha, {}), quiet + 8), quiet);
+  EXPECT_GT(quiet_since(falling_cube(height, alpha, 0.0f), quiet + 8), quiet + 7);
+}
+INSTANTIATE_TEST_SUITE_P(damping, FallenCube,
+                         testing::Values(Fallen{1, 0, 0.69, 40}, Fallen{1, 0.3f, 0.69, 30},
+                                         Fallen{1, 0.7f, 0.22, 25}, Fallen{3, 0.3f, 0.89, 40},
+                                         Fallen{3, 0.7f, 0.78, 32}, Fallen{10, 0, 0.96, 135},
+                                         Fallen{10, 0.3f, 0.96, 58}, Fallen{10, 0.7f, 0.94, 48}));
 
 /// A free cube that spins and is stretched.
 Simulation stretched(const Material& material, const Vec3& spin) {
