@@ -73,10 +73,7 @@ std::vector<Call> calls_with_bodies() {
   add_stale(calls, "spacing", [](Simulation& s, BodyId id) { s.spacing(id); });
   add_stale(calls, "heat", [](Simulation& s, BodyId id) { s.heat(id); });
   add_stale(calls, "set_velocity", [](Simulation& s, BodyId id) { s.set_velocity(id, Vec3{0, 0, 1}); });
-  add_stale(calls, "rotations", [](Simulation& s, BodyId id) {
-    std::vector<Eigen::Quaternionf> turns(64);
-    s.rotations(id, turns);
-  });
+  add_stale(calls, "rotations", [](Simulation& s, BodyId id) { s.rotations(id); });
   return calls;
 }
 
@@ -112,17 +109,7 @@ std::vector<Call> calls_with_numbers() {
          crowd.s.set_velocity(crowd.there, {0, 0, 0}, {k_nan, 0, 0});
        },
        "body.angular_velocity"},
-      {"rotations",
-       [](Crowd& crowd) {
-         std::vector<Eigen::Quaternionf> turns(63);
-         crowd.s.rotations(crowd.there, turns);
-       },
-       "rotations"},
-      {"rotations",
-       [](Crowd& crowd) {
-         std::vector<Eigen::Quaternionf> turns(64);
-         crowd.s.rotations(crowd.fluid, turns);
-       },
+      {"rotations", [](Crowd& crowd) { crowd.s.rotations(crowd.fluid); },
        "'fluid', which has no reference shape"},
   };
 }

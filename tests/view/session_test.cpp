@@ -113,6 +113,43 @@ TEST(view_session, a_grab_lifts_what_it_holds_and_lets_go) {
   EXPECT_LT(held.simulation().motion(body).center_of_mass.z(), high) << "it falls again";
 }
 
+TEST(view_session, marks_change_nothing_of_what_moves) {
+  Session plain = session_of(cube()), marked = session_of(cube());
+  marked.show_marks({.pins = true, .region = true, .contacts = true});
+  Frame frame;
+  for (int k = 0; k < 90; ++k) {
+    go(plain, 1);
+    go(marked, 1);
+    marked.fill(0, frame);
+  }
+  const VectorView a = plain.simulation().positions(), b = marked.simulation().positions();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t row = 0; row < a.size(); ++row) ASSERT_EQ(Vec3(a[row]), Vec3(b[row]));
+}
+
+TEST(view_session, what_is_pinned_is_marked_and_is_no_more_after_going_back) {
+  Session session = session_of(cube());
+  go(session, 10);
+  const double before = session.simulation().time();
+  const BodyId body = session.simulation().bodies().front();
+  const Vec3 middle = session.simulation().motion(body).center_of_mass.cast<float>();
+  const Ray ray{middle + Vec3(0, 0, 1000), {0, 0, -1}};
+  session.show_marks({.pins = true, .region = true});
+  session.pin(ray, 2.5f * session.simulation().spacing(body));
+  session.choose(ray);
+  go(session, 10);
+  Frame frame;
+  session.fill(0, frame);
+  EXPECT_GT(frame.marks.pins.size(), 3u);
+  ASSERT_TRUE(frame.marks.chosen);
+  const float radius = session.simulation().info().bodies.front().region_radius;
+  EXPECT_GT(frame.marks.region.size(), 3u);
+  for (const Vec3& x : frame.marks.region) EXPECT_LT((x - *frame.marks.chosen).norm(), 1.3f * radius);
+  session.go_to(before);
+  session.fill(0, frame);
+  EXPECT_EQ(frame.marks.pins.size(), 0u);
+}
+
 TEST(view_session, verbs_do_what_they_say) {
   Session session = session_of(cube());
   go(session, 10);

@@ -44,7 +44,7 @@ std::string why_no_window() {
   static const std::string why = [] {
     if (!program::is_installed("xvfb-run") || !program::is_installed("Xvfb"))
       return std::string("Xvfb is not installed (Debian: xvfb)");
-    const Played tried = play({"--scenes", "/nonexistent"}, "close\n");
+    const Played tried = play({std::string(MALLOW_DATA_DIR) + "/scenes/cube.toml", "--paused"}, "close\n");
     if (tried.exit_code == 0) return std::string();
     const bool no_gl = tried.out.find("needs OpenGL") != std::string::npos;
     return no_gl ? "there is no OpenGL 3.3 here (Debian: libgl1-mesa-dri): " + tried.out : std::string();

@@ -1,10 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <regex>
 #include <string>
+#include <vector>
 
+#include "program/external_program.h"
+#include "program/shell_word.h"
 #include "view/viewer_program.h"
 
 namespace mallow {
@@ -96,6 +101,66 @@ TEST_F(view_window, a_scene_that_is_wrong_is_said_and_ends_with_2) {
   const Played played = play({"/nonexistent.toml"}, "close\n");
   EXPECT_EQ(played.exit_code, 2) << played.out;
   EXPECT_NE(played.out.find("/nonexistent.toml"), std::string::npos) << played.out;
+}
+
+TEST_F(view_window, a_folder_without_scenes_is_said_and_ends_with_2) {
+  const std::filesystem::path empty = scratch() / "empty";
+  std::filesystem::create_directories(empty);
+  for (const std::string& folder : {std::string("/nonexistent"), empty.string()}) {
+    const Played played = play({"--scenes", folder}, "close\n");
+    EXPECT_EQ(played.exit_code, 2) << played.out;
+    EXPECT_NE(played.out.find("'" + folder + "'"), std::string::npos) << played.out;
+    EXPECT_NE(played.out.find("*.toml"), std::string::npos) << played.out;
+  }
+}
+
+TEST_F(view_window, marks_show_pins_the_region_of_a_particle_and_contacts) {
+  const std::string click = "move 0.5 0.5\npictures 2\npress 0\nrelease 0\npictures 4\n";
+  const Played played =
+      play({k_cube},
+           "ready\nkey =\nmark contacts\nframes 110\nkey space\npictures 4\nscreenshot touching.png\nmarks\n"
+           "mark contacts\nkey 7\n" +
+               click + "marks\nkey 6\n" + click +
+               "mark pins\npictures 4\nmarks\nscreenshot pinned.png\n"
+               "mark pins\nmark region\npictures 4\nmarks\nscreenshot bare.png\nclose\n");
+  ASSERT_EQ(played.exit_code, 0) << played.out;
+  const std::regex counts("marks pins (\\d+) region (\\d+) contacts (\\d+)");
+  std::vector<std::array<int, 3>> seen;
+  for (auto at = std::sregex_iterator(played.out.begin(), played.out.end(), counts);
+       at != std::sregex_iterator(); ++at)
+    seen.push_back({std::stoi((*at)[1]), std::stoi((*at)[2]), std::stoi((*at)[3])});
+  ASSERT_EQ(seen.size(), 4u) << played.out;
+  EXPECT_EQ(seen[0], (std::array{0, 0, 1})) << "the cube lies on the floor";
+  EXPECT_EQ(seen[1][0], 0);
+  EXPECT_GT(seen[1][1], 10) << "a region is of some dozen particles";
+  EXPECT_EQ(seen[1][2], 0);
+  EXPECT_GT(seen[2][0], 0);
+  EXPECT_EQ(seen[3], (std::array{0, 0, 0}));
+  const Picture bare = read_png(scratch() / "bare.png");
+  for (const char* const marked : {"touching.png", "pinned.png"})
+    EXPECT_GT(far_off(read_png(scratch() / marked), bare, 16), 1e-4) << marked;
+}
+
+TEST_F(view_window, a_film_holds_every_frame_of_the_scene_once) {
+  const Played played = play({k_cube, "--width", "320", "--height", "240"},
+                             "ready\nkey f\nframes 8\npictures 2\nkey f\npictures 2\nclose\n");
+  ASSERT_EQ(played.exit_code, 0) << played.out;
+  if (!program::is_installed("ffmpeg") || !program::is_installed("ffprobe")) {
+    EXPECT_TRUE(std::filesystem::exists(scratch() / "view.mp4.frames" / "images")) << "as no ffmpeg is here";
+    GTEST_SKIP() << "ffmpeg is not installed (Debian: ffmpeg): pictures were made, and no film";
+  }
+  const std::filesystem::path film = scratch() / "view.mp4";
+  ASSERT_TRUE(std::filesystem::exists(film)) << played.out;
+  EXPECT_FALSE(std::filesystem::exists(film.string() + ".frames")) << "pictures are joined, and taken away";
+  const std::string probe =
+      "ffprobe -v error -count_frames -select_streams v -of csv=p=0 -show_entries "
+      "stream=nb_read_frames " +
+      program::shell_word(film.string()) + " > " + program::shell_word((scratch() / "count.txt").string());
+  ASSERT_EQ(std::system(probe.c_str()), 0);
+  int count = 0;
+  std::ifstream(scratch() / "count.txt") >> count;
+  EXPECT_GE(count, 8);
+  EXPECT_LE(count, 12) << "frames that ended until the key was read";
 }
 
 }  // namespace view_window_test

@@ -13,6 +13,7 @@
 #include "mallow/report.h"
 #include "mallow/scene.h"
 #include "render/renderer.h"
+#include "view/marks.h"
 
 namespace mallow::view {
 
@@ -78,6 +79,7 @@ struct Frame {
   std::vector<Collider> colliders;            ///< that are seen, where they are
   std::vector<std::uint32_t> collider_slots;  ///< of each, which tells whether its form is known
   std::optional<std::array<Vec3, 2>> grab;    ///< from what is held to where it is pulled [m]
+  PlacedMarks marks;
   std::string message;  ///< why it stands still, with advice; or what a verb could not do
   bool failed = false;  ///< the message is an error, and the scene stands at its last good state
   FrameStats stats;

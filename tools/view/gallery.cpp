@@ -92,6 +92,15 @@ std::vector<GalleryScene> find_scenes(const fs::path& folder) {
   return scenes;
 }
 
+void check_scenes(const fs::path& folder, const std::string& option) {
+  const char* const allowed =
+      "give a folder with scene files (*.toml) in it or below, or a scene: mallow view SCENE";
+  if (!fs::is_directory(folder))
+    throw ConfigError(option, "'" + folder.string() + "' is no folder; " + allowed);
+  if (find_scenes(folder).empty())
+    throw ConfigError(option, "there are no scenes in '" + folder.string() + "'; " + allowed);
+}
+
 fs::path thumbnail_file(const GalleryScene& scene) {
   std::error_code error;
   const std::string key = fs::absolute(scene.file).string() + '\n' +
@@ -198,7 +207,7 @@ std::optional<fs::path> Gallery::draw(double) {
   ImGui::SetWindowFontScale(1.5f);
   ImGui::TextUnformatted("mallow");
   ImGui::SetWindowFontScale(1);
-  if (scenes_.empty())
+  if (scenes_.empty())  // since the start
     ImGui::TextWrapped("There are no scenes in %s. Open one: mallow view SCENE", folder_.string().c_str());
   else
     ImGui::TextDisabled("choose a scene to play with; what the mouse and the keys do is under ? (H)");

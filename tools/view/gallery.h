@@ -22,6 +22,8 @@ struct GalleryScene {
 };
 /// The scenes of a folder and its folders, by name: those of the folder itself first.
 std::vector<GalleryScene> find_scenes(const std::filesystem::path& folder);
+/// Throws ConfigError where there are none: `option` names what said where to look.
+void check_scenes(const std::filesystem::path& folder, const std::string& option);
 /// Where the picture of a scene is kept: the name changes with the file.
 std::filesystem::path thumbnail_file(const GalleryScene& scene);
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "view/verbs.h"
+
 namespace mallow::view {
 namespace {
 
@@ -11,15 +13,6 @@ namespace {
 constexpr float k_stiffness = 0.35f;
 /// Spacings in a step by step, at most, that the pull adds to velocities.
 constexpr float k_most = 0.5f;
-
-/// The row of a particle that may be gone.
-std::optional<std::size_t> row_of(const Simulation& simulation, ParticleId id) {
-  try {
-    return simulation.row(id);
-  } catch (const ConfigError&) {
-    return std::nullopt;
-  }
-}
 
 }  // namespace
 

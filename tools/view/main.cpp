@@ -8,6 +8,7 @@
 #include "mallow/version.h"
 #include "program/failure.h"
 #include "program/threads_option.h"
+#include "view/gallery.h"
 #include "view/script.h"
 #include "view/viewer.h"
 
@@ -50,7 +51,8 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
       ->type_name("SCENE");
   app.add_option("--set", options.overrides, "Change a setting, as section.key=value")
       ->type_name("KEY=VALUE");
-  app.add_option("--scenes", scenes, "Folder of scenes that the gallery shows")->type_name("DIR");
+  const CLI::Option* const chosen_scenes =
+      app.add_option("--scenes", scenes, "Folder of scenes that the gallery shows")->type_name("DIR");
   program::add_threads_option(app, options.threads, "Threads of the simulation; left out: all but one", 1);
   app.add_option("--samples", options.samples, "Samples a pixel; 0: 4, or 1 where no graphics card draws")
       ->check(CLI::Range(0, 16));
@@ -67,6 +69,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
     options.scene = scene;
     options.scenes = scenes;
     options.window.wait_for_screen = script.empty();
+    if (scene.empty() || chosen_scenes->count() > 0) view::check_scenes(options.scenes, "--scenes");
     return play(options, script);
   });
 }

@@ -31,7 +31,7 @@ void draw_help(ViewState& state) {
   ImGui::SetNextWindowPos(ImVec2(16, 64));
   ImGui::Begin("help", nullptr, k_quiet);
   ImGui::TextUnformatted(
-      "left button      the tool at hand: 1 grab  2 throw  3 poke  4 cut  5 heat  6 pin\n"
+      "left button      the tool at hand: 1 grab  2 throw  3 poke  4 cut  5 heat  6 pin  7 choose\n"
       "                 beside matter it turns the view\n"
       "right button     turn the view       middle button, or shift and right: move it\n"
       "wheel            nearer and farther  Home: the view as it was\n"

@@ -63,8 +63,13 @@ void Mouse::press(const Frame& frame, const OrbitCamera& camera, ViewState& stat
       });
       break;
     case Tool::pin:
-      act([](Simulation& simulation, const Ray& along, float) {
-        return pin(simulation, along, 0.7f * reach_of(simulation));
+      send([ray](Session& session) { session.pin(ray, 0.7f * reach_of(session.simulation())); });
+      break;
+    case Tool::choose:
+      state.marks.region = true;
+      send([ray, marks = state.marks](Session& session) {
+        session.show_marks(marks);
+        session.choose(ray);
       });
       break;
     default:

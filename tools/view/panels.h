@@ -20,6 +20,8 @@ void draw_top_bar(const Frame& frame, ViewState& state, double drawn_per_second)
 void draw_time_bar(const Frame& frame, ViewState& state, bool recording, const Send& send);
 /// Alpha first, presets, speed and accuracy, then every setting.
 void draw_settings(const Frame& frame, SettingsModel& settings, ViewState& state, const Send& send);
+/// Boxes that ask for marks.
+void draw_marks_panel(ViewState& state, const Send& send);
 /// Messages of the session, and of the viewer.
 void draw_message(const Frame& frame, const ViewState& state, double wall);
 void draw_help(ViewState& state);

@@ -5,6 +5,7 @@
 #include <deque>
 #include <vector>
 
+#include "mallow/ids.h"
 #include "mallow/material.h"
 #include "mallow/saved_state.h"
 #include "mallow/solver_config.h"
@@ -25,6 +26,7 @@ struct Moment {
   int frame = 0;          ///< frames of the scene that were finished
   Settings settings;
   SavedState state;
+  std::vector<ParticleId> pinned = {};
 };
 
 /// Saved states by time, the newest last. What a simulation does after one of them is restored is what it

@@ -1,5 +1,6 @@
 #include "view/scene_drawer.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -10,12 +11,6 @@ namespace mallow::view {
 namespace {
 
 constexpr int k_palette_width = 1024;
-
-std::string with_light(bool plain, const char* text, int finish = -1) {
-  const std::string one = finish < 0 ? "" : "#define FINISH " + std::to_string(finish) + "\n";
-  return std::string("#version 330 core\n") + (plain ? "#define PLAIN\n" : "") + one + shaders::k_light +
-         text;
-}
 
 void point_attribute(GLuint place, GLint components) {
   glEnableVertexAttribArray(place);
@@ -40,8 +35,7 @@ SceneDrawer::SceneDrawer(bool plain)
       shadow_size_(plain ? 512 : 1024),
       particles_(shaders::k_particle_vertex, with_light(plain_, shaders::k_particle_fragment)),
       obstacles_(shaders::k_obstacle_vertex, with_light(plain_, shaders::k_obstacle_fragment)),
-      studio_(shaders::k_studio_vertex, with_light(plain_, shaders::k_studio_fragment)),
-      floor_program_(shaders::k_floor_vertex, with_light(plain_, shaders::k_floor_fragment)),
+      backdrop_(plain_),
       mesh_shadow_(shaders::k_mesh_vertex, shaders::k_nothing_fragment),
       particle_shadow_(shaders::k_particle_vertex, shaders::k_nothing_fragment),
       obstacle_shadow_(shaders::k_obstacle_vertex, shaders::k_nothing_fragment) {
@@ -112,15 +106,19 @@ void SceneDrawer::take(const Frame& frame) {
   take_mesh(frame);
   take_particles(frame);
   take_colliders(frame);
+  throwers_ = bounds_of_throwers(frame);
   skips_shadows_ = plain_ && !skips_shadows_;
   shadow_is_old_ = shadow_is_old_ || !skips_shadows_;
 }
 
 GlProgram& SceneDrawer::mesh_program() {
   std::unique_ptr<GlProgram>& program = mesh_programs_[finish_];
+  if (!program && plain_)
+    program = std::make_unique<GlProgram>(with_light(true, shaders::k_plain_mesh_vertex, finish_),
+                                          shaders::k_plain_lit_fragment);
   if (!program)
     program = std::make_unique<GlProgram>(shaders::k_mesh_vertex,
-                                          with_light(plain_, shaders::k_mesh_fragment, finish_));
+                                          with_light(false, shaders::k_mesh_fragment, finish_));
   return *program;
 }
 
@@ -189,6 +187,20 @@ void SceneDrawer::take_palette(const Frame& frame) {
                GL_FLOAT, texels.data());
 }
 
+Eigen::Matrix4f SceneDrawer::to_shadow() const {
+  Eigen::Matrix4f to_map = Eigen::Matrix4f::Identity();
+  to_map.diagonal().head<3>().setConstant(0.5f);
+  to_map.col(3).head<3>().setConstant(0.5f);
+  return to_map * to_light_;
+}
+
+Aabb SceneDrawer::on_shadow_map(const Aabb& box) const {
+  const auto seen = Eigen::AlignedBox3f(box.min, box.max).transformed(Eigen::Affine3f(to_shadow()));
+  // A little larger, as the map is read beside, and between its texels.
+  const Vec3 around = Vec3::Constant(4 / static_cast<float>(shadow_size_));
+  return {seen.min() - around, seen.max() + around};
+}
+
 void SceneDrawer::set_light(GlProgram& program, const OrbitCamera& camera) {
   program.use();
   program.set("projection_view", camera.projection_view());
@@ -202,10 +214,7 @@ void SceneDrawer::set_light(GlProgram& program, const OrbitCamera& camera) {
   program.set("sky_zenith", zenith_);
   program.set("open_floor", open_floor_);
   program.set("wall", wall_);
-  Eigen::Matrix4f to_map = Eigen::Matrix4f::Identity();
-  to_map.diagonal().head<3>().setConstant(0.5f);
-  to_map.col(3).head<3>().setConstant(0.5f);
-  program.set("to_shadow", Eigen::Matrix4f(to_map * to_light_));
+  program.set("to_shadow", to_shadow());
   program.set("shadow_texel", 1.0f / static_cast<float>(shadow_size_));
   program.set("shadow_bias", 2.5f * shadow_length_);
   program.set("floor_height", floor_.value_or(-1e30f));
@@ -217,6 +226,7 @@ void SceneDrawer::draw_shadows() {
   glBindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer_);
   glViewport(0, 0, shadow_size_, shadow_size_);
   glClear(GL_DEPTH_BUFFER_BIT);
+  on_map_ = on_shadow_map(throwers_);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5f, 2);
   if (index_count_ > 0) {
@@ -257,7 +267,9 @@ void SceneDrawer::draw(const OrbitCamera& camera, int width, int height) {
   glViewport(0, 0, width, height);
   glClear(GL_DEPTH_BUFFER_BIT);
   if (index_count_ > 0) {
-    set_light(mesh_program(), camera);
+    GlProgram& program = mesh_program();
+    set_light(program, camera);
+    program.set("has_insides", closed_ ? 0 : 1);
     if (closed_) glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
     glBindVertexArray(mesh_array_);
@@ -276,17 +288,12 @@ void SceneDrawer::draw(const OrbitCamera& camera, int width, int height) {
   }
   set_light(obstacles_, camera);
   draw_solids(obstacles_, false);
-  glBindVertexArray(empty_array_);
-  const bool sees_floor = floor_ && camera.eye().z() > *floor_;
-  if (sees_floor) {
-    set_light(floor_program_, camera);
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  }
   // Last, and far behind all: what is hidden costs nothing.
-  set_light(studio_, camera);
-  studio_.set("from_clip", Eigen::Matrix4f(camera.projection_view().inverse()));
-  studio_.set("has_floor", sees_floor ? 1 : 0);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glBindVertexArray(empty_array_);
+  backdrop_.draw({.from_clip = camera.projection_view().inverse(),
+                  .sees_floor = floor_ && camera.eye().z() > *floor_,
+                  .shadows = on_map_},
+                 [&](GlProgram& program) { set_light(program, camera); });
   glBindVertexArray(0);
   glDisable(GL_DEPTH_TEST);
   glActiveTexture(GL_TEXTURE0);

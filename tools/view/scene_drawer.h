@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "view/backdrop.h"
 #include "view/camera.h"
 #include "view/frame.h"
 #include "view/gl_program.h"
@@ -38,6 +39,7 @@ class SceneDrawer {
     std::unique_ptr<GlBuffer> vertices, normals, indices;
     GLsizei count = 0;
     bool inside = false, is_flat = false;
+    Aabb box;  ///< of its own frame [m]
     Pose pose;
   };
   void take_mesh(const Frame& frame);
@@ -46,6 +48,10 @@ class SceneDrawer {
   void take_colliders(const Frame& frame);
   std::vector<Solid>& solids_of(const Collider& collider, std::uint32_t slot);
   void place_light(const Vec3& low, const Vec3& high);
+  /// What throws shadows [m].
+  Aabb bounds_of_throwers(const Frame& frame) const;
+  Eigen::Matrix4f to_shadow() const;
+  Aabb on_shadow_map(const Aabb& box) const;
   void draw_shadows();
   void set_light(GlProgram& program, const OrbitCamera& camera);
   void draw_solids(GlProgram& program, bool shadows);
@@ -55,7 +61,9 @@ class SceneDrawer {
   bool skips_shadows_ = false;
   /// The program for meshes of one finish, or of all where they have several.
   GlProgram& mesh_program();
-  GlProgram particles_, obstacles_, studio_, floor_program_, mesh_shadow_, particle_shadow_, obstacle_shadow_;
+  GlProgram particles_, obstacles_;
+  Backdrop backdrop_;
+  GlProgram mesh_shadow_, particle_shadow_, obstacle_shadow_;
   std::map<int, std::unique_ptr<GlProgram>> mesh_programs_;  ///< by finish; -1: of all
   int finish_ = -1;                                          ///< of all bodies
   GLuint mesh_array_ = 0, particle_array_ = 0, empty_array_ = 0;
@@ -74,8 +82,9 @@ class SceneDrawer {
   std::vector<std::uint32_t> slots_;                    ///< that are there
   Vec3 to_key_{0, 0, 1}, key_color_{1, 1, 1}, horizon_, zenith_, open_floor_, wall_;
   std::array<Vec3, 6> ambient_;
-  Eigen::Matrix4f to_light_ = Eigen::Matrix4f::Identity();  ///< world to the clip space of the key light
-  float shadow_length_ = 1;                                 ///< of a texel of the shadow map [m]
+  Eigen::Matrix4f to_light_ = Eigen::Matrix4f::Identity();    ///< world to the clip space of the key light
+  float shadow_length_ = 1;                                   ///< of a texel of the shadow map [m]
+  Aabb throwers_{{0, 0, 0}, {1, 1, 1}}, on_map_ = throwers_;  ///< [m], and on the map as it is
   bool shadow_is_old_ = true;
   bool closed_ = true;  ///< the mesh is, and its insides are never seen
 };

@@ -115,6 +115,15 @@ void Script::begin_other(Viewer& viewer, const std::vector<std::string>& words) 
     const auto [wall, processor] = viewer.measure_drawing(std::stoi(words[1]));
     std::printf("measure %zu triangles %d x %d %.2f ms %.2f processor_ms %s\n", viewer.triangles(),
                 window.width(), window.height(), 1e3 * wall, 1e3 * processor, window.renderer().c_str());
+  } else if (what == "mark") {
+    Marks& marks = viewer.state().marks;
+    bool& one = words[1] == "pins" ? marks.pins : words[1] == "region" ? marks.region : marks.contacts;
+    one = !one;
+    viewer.send([marks](Session& session) { session.show_marks(marks); });
+  } else if (what == "marks") {
+    const PlacedMarks& marks = viewer.frame().marks;
+    std::printf("marks pins %zu region %zu contacts %zu\n", marks.pins.size(), marks.region.size(),
+                marks.contacts.size());
   } else if (what == "center") {
     const Vec3 center = center_of(viewer.frame());
     std::printf("center %.6g %.6g %.6g\n", static_cast<double>(center.x()), static_cast<double>(center.y()),

@@ -25,6 +25,7 @@ namespace mallow::view {
 ///   sweep                every slider once through its range, and back
 ///   measure N            draws N pictures and prints what one takes
 ///   center               prints the middle of what is seen of bodies
+///   mark NAME            a box of marks: pins, region or contacts; marks: prints how many are shown
 ///   status               prints time, frame, message
 ///   thumbnails           until all pictures of the gallery are made
 class Script {

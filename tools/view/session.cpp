@@ -41,6 +41,7 @@ void Session::open(const Scene& scene) {
   grab_.reset();
   simulation_.emplace(build(scene, options_.threads));
   skins_ = skins(scene, *simulation_, options_.threads);
+  pinned_ = pinned_by(scene, *simulation_);
   frame_ = first_frame_ = 0;
   begin(scene);
 }
@@ -57,6 +58,8 @@ void Session::begin(Scene scene) {
   bounds_ = program::bounds_now(scene_, *simulation_);
   camera_ = render::frame_camera(bounds_, scene_.render, program::visible_colliders(scene_));
   values_ = {};
+  chosen_.reset();
+  report_contacts();
   ring_.clear();
   samples_.clear();
   steps_rate_.clear();
@@ -144,7 +147,8 @@ void Session::take_step(double wall) {
 void Session::keep_moment(double wall) {
   if (wall - last_save_ < save_time_.mean() / k_save_share) return;
   const auto started = Clock::now();
-  Moment moment{simulation_->time(), simulation_->step_count(), frame_, settings(), simulation_->save()};
+  Moment moment{simulation_->time(), simulation_->step_count(), frame_,
+                settings(),          simulation_->save(),       pinned_};
   for (std::size_t k = 0; k < skins_.size(); ++k)
     moment.state.chunks.push_back({skin_chunk(k), skins_[k].save()});
   ring_.add(std::move(moment));
@@ -179,6 +183,9 @@ void Session::restore(const Moment& moment) {
   take_settings(moment.settings);
   make_surface();
   values_ = {};
+  pinned_ = moment.pinned;
+  last_ = {};
+  report_contacts();
   samples_.clear();
   failed_ = finished_ = false;
   frame_seconds_ = 0;
@@ -222,6 +229,31 @@ void Session::show(Drawn drawn, Shown shown) {
   drawn_ = drawn;
   shown_ = shown;
   changed_ = true;
+}
+
+void Session::report_contacts() {
+  simulation_->report_contacts(marks_.contacts ? std::optional(0.0) : std::nullopt);
+}
+
+void Session::show_marks(const Marks& marks) {
+  const bool others = marks.contacts != marks_.contacts;
+  marks_ = marks;
+  if (simulation_ && others) report_contacts();
+  changed_ = true;
+}
+
+void Session::choose(const Ray& ray) {
+  if (!simulation_) return;
+  chosen_ = hit_of(*simulation_, ray).particle;
+  changed_ = true;
+}
+
+void Session::pin(const Ray& ray, float radius) {
+  act([&](Simulation& simulation) {
+    const std::vector<ParticleId> ids = view::pin(simulation, ray, radius);
+    pinned_.insert(pinned_.end(), ids.begin(), ids.end());
+    return "pinned " + std::to_string(ids.size()) + (ids.size() == 1 ? " particle" : " particles");
+  });
 }
 
 void Session::grab(const Vec3& at, float strength) {

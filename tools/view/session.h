@@ -14,6 +14,7 @@
 #include "view/frame.h"
 #include "view/frame_governor.h"
 #include "view/grab.h"
+#include "view/marks.h"
 #include "view/pace.h"
 #include "view/particle_values.h"
 #include "view/rates.h"
@@ -74,6 +75,9 @@ class Session {
 
   // What the window shows.
   void show(Drawn drawn, Shown shown);
+  void show_marks(const Marks& marks);
+  /// Shows the region of the particle that the ray meets first.
+  void choose(const Ray& ray);
   void ask_for_hash() {
     hash_asked_ = true;
     changed_ = true;
@@ -95,6 +99,7 @@ class Session {
   void release();
   void throw_ball(const Ray& ray, float speed);
   void act(const std::function<std::string(Simulation&)>& verb);
+  void pin(const Ray& ray, float radius);
 
   const Scene& scene() const { return scene_; }
   Simulation& simulation() { return *simulation_; }
@@ -121,6 +126,7 @@ class Session {
   void fill_stats(double wall, FrameStats& stats);
   void add_sample(double wall);
   std::vector<Appearance> palette() const;
+  void report_contacts();
   MaterialId material_id(std::size_t index) const;
   double frame_end() const { return (frame_ + 1) * frame_time_; }
 
@@ -159,6 +165,9 @@ class Session {
   Shown shown_ = Shown::appearance;
   bool changed_ = true, hash_asked_ = false;
   std::uint64_t frames_filled_ = 0;
+  Marks marks_;
+  std::vector<ParticleId> pinned_;
+  std::optional<ParticleId> chosen_;
   StepReport last_;
   Rate steps_rate_, frames_rate_, time_rate_, surface_time_, save_time_;
   MeanPhases phases_;

@@ -149,6 +149,7 @@ void Session::fill(double wall, Frame& frame) {
     frame.mesh = {};
     frame.positions.clear();
     frame.colliders.clear();
+    frame.marks = {};
     return;
   }
   const bool moves = !paused_ && !failed_;
@@ -169,6 +170,7 @@ void Session::fill(double wall, Frame& frame) {
   fill_colliders(frame);
   frame.grab.reset();
   if (grab_) frame.grab = {grab_->middle(*simulation_), grab_->target()};
+  frame.marks = place(marks_, *simulation_, pinned_, chosen_, last_.time_step);
   if (moves || samples_.empty()) add_sample(wall);
   frame.samples = samples_;
   fill_stats(wall, frame.stats);

@@ -81,6 +81,7 @@ void draw_settings(const Frame& frame, SettingsModel& settings, ViewState& state
                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
   draw_alphas(settings, send);
   draw_speed(frame, state, send);
+  draw_marks_panel(state, send);
   if (settings.waits_for_rebuild()) {
     ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.75f, 0.42f, 0.10f, 1));
     state.rebuild |= ImGui::Button("Build the scene anew", ImVec2(-1, 0));

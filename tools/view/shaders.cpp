@@ -222,11 +222,9 @@ void main() {
 }
 )";
 
-const char* const k_studio_fragment = R"(
-in vec3 far;
+const char* const k_studio_light = R"(
 uniform int has_floor;
-out vec4 color;
-void main() {
+vec3 studio(vec3 far) {
   vec3 d = normalize(far - eye);
   vec3 light = backdrop(d);
   if (has_floor == 1) {
@@ -234,8 +232,14 @@ void main() {
     vec2 away = (eye.xy + t * d.xy - middle.xy) / floor_fade;
     light = mix(open_floor, light, smoothstep(1.5, 6.0, d.z < 0.0 ? length(away) : 6.0));
   }
-  color = vec4(develop(light), 1.0);
+  return light;
 }
+)";
+
+const char* const k_studio_fragment = R"(
+in vec3 far;
+out vec4 color;
+void main() { color = vec4(develop(studio(far)), 1.0); }
 )";
 
 const char* const k_floor_vertex = R"(#version 330 core
@@ -251,21 +255,22 @@ void main() {
 )";
 
 // Near the bodies, where there are shadows; farther away the studio draws it.
+const char* const k_floor_light = R"(
+vec3 floor_light(vec3 x, float shadow) {
+  float key_share = key_color.g * to_key.z / (key_color.g * to_key.z + ambient_sides[4].g);
+  vec3 light = open_floor * (1.0 - key_share * (1.0 - shadow) * vec3(1.0, 0.97, 0.92));
+  float away = length(x.xy - middle.xy) / floor_fade;
+  return mix(light, backdrop(normalize(x - eye)), smoothstep(1.5, 6.0, away));
+}
+)";
+
 const char* const k_floor_fragment = R"(
 in vec3 x;
 out vec4 color;
 void main() {
   vec3 n = vec3(0.0, 0.0, 1.0);
-#ifdef PLAIN
-  float shadow = lit(x, n);
-#else
   float shadow = 0.5 * (lit(x, n) + lit_softly(x, n, 3.5));
-#endif
-  float key_share = key_color.g * to_key.z / (key_color.g * to_key.z + ambient_sides[4].g);
-  vec3 light = open_floor * (1.0 - key_share * (1.0 - shadow) * vec3(1.0, 0.97, 0.92));
-  float away = length(x.xy - middle.xy) / floor_fade;
-  light = mix(light, backdrop(normalize(x - eye)), smoothstep(1.5, 6.0, away));
-  color = vec4(develop(light), 1.0);
+  color = vec4(develop(floor_light(x, shadow)), 1.0);
 }
 )";
 

@@ -35,6 +35,7 @@ std::vector<SceneDrawer::Solid>& SceneDrawer::solids_of(const Collider& collider
     Solid& solid = solids.emplace_back();
     solid.inside = form.inside;
     solid.is_flat = form.is_flat;
+    solid.box = mallow::bounds(form.mesh);
     solid.count = static_cast<GLsizei>(3 * form.mesh.triangles.size());
     solid.vertices = std::make_unique<GlBuffer>();
     solid.normals = std::make_unique<GlBuffer>();
@@ -74,6 +75,28 @@ void SceneDrawer::take_colliders(const Frame& frame) {
     for (Solid& solid : solids_of(collider, frame.collider_slots[k])) solid.pose = collider.pose;
     slots_.push_back(frame.collider_slots[k]);
   }
+}
+
+Aabb SceneDrawer::bounds_of_throwers(const Frame& frame) const {
+  Eigen::AlignedBox3f all;
+  if (!frame.mesh.vertices.empty()) {
+    const Aabb box = mallow::bounds(frame.mesh);
+    all.extend(Eigen::AlignedBox3f(box.min, box.max));
+  }
+  for (const Vec3& x : frame.positions) all.extend(x);
+  if (!frame.positions.empty()) {
+    const float most = frame.radii.empty() ? 0 : std::ranges::max(frame.radii);
+    all.extend(all.max() + Vec3::Constant(2 * most));
+    all.extend(all.min() - Vec3::Constant(2 * most));
+  }
+  for (const std::uint32_t slot : slots_)
+    for (const Solid& solid : solids_.at(slot)) {
+      if (solid.inside || solid.is_flat) continue;  // as draw_solids() has it
+      const Eigen::AlignedBox3f box(solid.box.min, solid.box.max);
+      all.extend(box.transformed(Eigen::Affine3f(matrix_of(solid.pose))));
+    }
+  if (all.isEmpty()) return {};
+  return {all.min(), all.max()};
 }
 
 void SceneDrawer::draw_solids(GlProgram& program, bool shadows) {

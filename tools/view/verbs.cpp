@@ -7,12 +7,6 @@
 namespace mallow::view {
 namespace {
 
-BodyHit hit_of(const Simulation& simulation, const Ray& ray) {
-  const auto hit = simulation.raycast(ray.origin, ray.direction);
-  if (!hit) throw ConfigError("mouse", "there is no matter under the mouse");
-  return *hit;
-}
-
 float inside(const Vec3& x, const Vec3& middle, float radius) {
   const float share = (x - middle).squaredNorm() / (radius * radius);
   return share < 1 ? (1 - share) * (1 - share) : 0;
@@ -29,6 +23,20 @@ std::string count_text(std::size_t count, const char* what) {
 }
 
 }  // namespace
+
+BodyHit hit_of(const Simulation& simulation, const Ray& ray) {
+  const auto hit = simulation.raycast(ray.origin, ray.direction);
+  if (!hit) throw ConfigError("mouse", "there is no matter under the mouse");
+  return *hit;
+}
+
+std::optional<std::size_t> row_of(const Simulation& simulation, ParticleId id) {
+  try {
+    return simulation.row(id);
+  } catch (const ConfigError&) {
+    return std::nullopt;
+  }
+}
 
 float reach_of(const Simulation& simulation) {
   float spacing = std::numeric_limits<float>::max(), size = 0;
@@ -110,11 +118,11 @@ std::string heat(Simulation& simulation, const Ray& ray, float radius, float kel
                       : "melted " + count_text(count, "(alpha rises, as this material carries no heat)");
 }
 
-std::string pin(Simulation& simulation, const Ray& ray, float radius) {
+std::vector<ParticleId> pin(Simulation& simulation, const Ray& ray, float radius) {
   const BodyHit hit = hit_of(simulation, ray);
-  const std::vector<ParticleId> ids = simulation.particles_in(hit.position, radius);
+  std::vector<ParticleId> ids = simulation.particles_in(hit.position, radius);
   simulation.pin(ids);
-  return "pinned " + count_text(ids.size(), "");
+  return ids;
 }
 
 }  // namespace mallow::view

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "mallow/simulation.h"
 #include "view/camera.h"
@@ -25,8 +27,12 @@ std::string cut(Simulation& simulation, const Ray& from, const Ray& to);
 /// Warms what is around the place that the ray meets by up to `kelvins`; matter that carries no heat melts:
 /// its alpha rises by up to `softer`.
 std::string heat(Simulation& simulation, const Ray& ray, float radius, float kelvins, float softer);
-/// Holds what is around the place that the ray meets where it is.
-std::string pin(Simulation& simulation, const Ray& ray, float radius);
+/// Holds what is around the place that the ray meets where it is, and gives it.
+std::vector<ParticleId> pin(Simulation& simulation, const Ray& ray, float radius);
+/// What the ray meets first. Throws ConfigError where that is nothing.
+BodyHit hit_of(const Simulation& simulation, const Ray& ray);
+/// Where a particle is, if it is still there.
+std::optional<std::size_t> row_of(const Simulation& simulation, ParticleId id);
 
 /// What the mouse has at hand, as far as a scene is large: a seventh of its size, three spacings at least.
 float reach_of(const Simulation& simulation);

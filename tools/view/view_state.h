@@ -12,21 +12,24 @@
 namespace mallow::view {
 
 /// What the left button does.
-enum class Tool : std::uint8_t { grab, throw_ball, poke, cut, heat, pin };
-inline constexpr std::array<const char*, 6> k_tool_names = {"grab", "throw", "poke", "cut", "heat", "pin"};
-inline constexpr std::array<const char*, 6> k_tool_docs = {
+enum class Tool : std::uint8_t { grab, throw_ball, poke, cut, heat, pin, choose };
+inline constexpr std::array<const char*, 7> k_tool_names = {"grab", "throw", "poke",  "cut",
+                                                            "heat", "pin",   "choose"};
+inline constexpr std::array<const char*, 7> k_tool_docs = {
     "take hold of matter and pull it",
     "throw a ball of rubber from where you are",
     "hit what is under the mouse",
     "draw a line: a layer two spacings thick is cut out along it",
     "warm what is under the mouse: it melts where it carries no heat",
-    "hold what is under the mouse in place"};
+    "hold what is under the mouse in place",
+    "show the region of the particle under the mouse"};
 
 /// What panels and hand have set, and what they ask the viewer for.
 struct ViewState {
   Drawn drawn = Drawn::surface;
   Shown shown = Shown::appearance;
   Tool tool = Tool::grab;
+  Marks marks;
   float strength = 1;  ///< of what tools do
   double speed = 1;    ///< of the pace of a film
   bool as_fast_as_possible = false;

@@ -207,6 +207,7 @@ Vec3 Viewer::on_screen(const Vec3& x) const {
 }
 
 void Viewer::draw_marks() {
+  draw_placed_marks();
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   constexpr ImU32 k_mark = IM_COL32(255, 160, 50, 230);
   if (frame().grab) {

@@ -69,6 +69,7 @@ class Viewer {
   void show_picture();
   void draw_gui();
   void draw_marks();
+  void draw_placed_marks();
   void do_what_was_asked();
   void toggle_film();
   void notice(const std::string& text);
