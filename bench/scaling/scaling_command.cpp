@@ -239,10 +239,7 @@ void add_scaling_command(CLI::App& app) {
                    "Steps that are timed, after one that is not; the same for every size, as bodies deform")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command
-      ->add_option(
-          "--bodies", options->bodies,
-          "Bodies that share the particles of each size: 1,000 of 64 cost about what one of 64,000 does")
+  command->add_option("--bodies", options->bodies, "Bodies that share the particles of each size")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
       ->capture_default_str();
   command

@@ -35,6 +35,19 @@ TEST_F(bench_scaling, one_thread_has_nothing_to_compare_with) {
   EXPECT_EQ(document.at("extrapolation").at("rows").size(), 0u);
 }
 
+TEST_F(bench_scaling, bodies_share_the_particles) {
+  const nlohmann::json document =
+      run_command("scaling", {"--max-particles", "1000", "--steps", "2", "--repeats", "1", "--threads", "2",
+                              "--bodies", "125", "--between", "touching"});
+  expect_valid("scaling");
+  for (const nlohmann::json& row : document.at("rows")) {
+    EXPECT_EQ(row.at("particles"), 1000);
+    EXPECT_EQ(row.at("bodies"), 125);
+    EXPECT_EQ(row.at("box"), "2x2x2");
+    EXPECT_EQ(row.at("between"), "touching");
+  }
+}
+
 TEST_F(bench_scaling, too_many_particles_are_refused_before_anything_runs) {
   // What is needed, what there is, and what fits.
   expect_refused("scaling", {"--max-particles", "10000000000000", "--threads", "1"},
@@ -44,7 +57,8 @@ TEST_F(bench_scaling, too_many_particles_are_refused_before_anything_runs) {
 TEST_F(bench_scaling, a_file_of_someone_else_is_not_overwritten) {
   const std::filesystem::path notes = folder_ / "notes.json";
   std::ofstream(notes) << "{\"mine\": 1}\n";
-  expect_refused("scaling", {"--json", notes.string()}, {"--json", "notes.json", "no results of mallow-bench"});
+  expect_refused("scaling", {"--json", notes.string()},
+                 {"--json", "notes.json", "no results of mallow-bench"});
   EXPECT_EQ(read_text(notes), "{\"mine\": 1}\n");
 }
 

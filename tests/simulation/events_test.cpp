@@ -234,7 +234,7 @@ TEST(contact_events, have_the_moment_that_turns_a_body_which_is_hit_by_another) 
       given += (event.torque + event.position.cross(event.impulse)).cast<double>();
   }
   EXPECT_GT(given.norm(), 10);
-  EXPECT_LT((spin() - given).norm(), 0.05 * given.norm())
+  EXPECT_LT((spin() - given).norm(), 0.02 * given.norm())
       << given.transpose() << " for " << spin().transpose();
 }
 
