@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <set>
 
 #include "program/failure.h"
 #include "program/film_bounds.h"
@@ -17,7 +18,9 @@ namespace {
 
 constexpr double k_reference_share = 0.5;  ///< of the budget
 constexpr double k_first_share = 0.06;     ///< that the scene as it is may take
-constexpr double k_settings_share = 0.85;  ///< by which first runs of settings have begun
+constexpr double k_settings_share = 0.7;   ///< by which first runs of settings have begun
+constexpr double k_search_share = 0.8;     ///< by which those that lead on from the best have begun
+constexpr int k_most_rounds = 8;           ///< of turning knobs on
 constexpr int k_moments = 24;
 /// The reference is converged where its last halving moved particles by less than this share of what the
 /// scene as it is is off.
@@ -26,6 +29,7 @@ constexpr double k_little = 0.1;
 constexpr double k_chaos = 0.5;
 /// Below this order of convergence, halving the step leads nowhere.
 constexpr double k_no_order = 0.5;
+constexpr double k_grown = 1.25;  ///< see parts_again()
 constexpr double k_late = 0.75;
 constexpr float k_shortest_factor = 0.01f;
 
@@ -38,6 +42,12 @@ double median(std::vector<double> values) {
   std::ranges::sort(values);
   const std::size_t middle = values.size() / 2;
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+/// Whether the last halving moved particles farther than the one before, by more than chance.
+bool parts_again(const std::vector<double>& differences) {
+  const std::size_t n = differences.size();
+  return n > 1 && differences[n - 1] > k_grown * differences[n - 2];
 }
 
 /// One particle of each body gets so little speed that the first step moves it by its last bits.
@@ -123,6 +133,7 @@ class Maker {
     find_reference();
     run_settings();
     run_last_bit();
+    search();
     repeat();
     judge();
     study_.spent = now() - start_;
@@ -199,6 +210,9 @@ class Maker {
       if (!motion.failure.empty() || motion.moments.size() != before.moments.size()) break;
       reference.factors.push_back(factor);
       reference.differences.push_back(motion_error(before, motion).rms);
+      // The one before stays the reference: in still shorter steps rounding counts more than the step.
+      reference.parts_again = parts_again(reference.differences);
+      if (reference.parts_again) break;
       reference.factor = factor;
       reference.motion = motion;
       before = std::move(motion);
@@ -207,7 +221,9 @@ class Maker {
       if (reference.converged) break;
     }
     reference.order = convergence_order(reference.differences);
-    if (!reference.differences.empty()) {
+    if (reference.parts_again) {
+      reference.error = reference.differences.back();
+    } else if (!reference.differences.empty()) {
       // What is left of a geometric series; with no order known, as much as the last difference.
       const double ratio = reference.order && *reference.order > 0.2 ? std::exp2(*reference.order) : 2;
       reference.error = reference.differences.back() / (ratio - 1);
@@ -223,18 +239,41 @@ class Maker {
     for (Setting& setting : settings_around(scene_, traits_)) settings.push_back(std::move(setting));
     for (const Setting& setting : settings) {
       // The last bit is still to come, which is one more run.
-      if (setting.cost * plain_cost_ + plain_cost_ > left(k_settings_share)) {
-        study_.left_out.push_back(setting.name);
-        continue;
-      }
-      say(setting.name);
-      Motion motion = runner_->run(setting.scene, start_ + options_.budget, options_.surface);
-      if (motion.failure.empty() && static_cast<int>(motion.frame_seconds.size()) == study_.frames)
-        add_row(setting, std::move(motion));
-      else if (motion.failure.empty())
+      if (setting.cost * plain_cost_ + plain_cost_ > left(k_settings_share))
         study_.left_out.push_back(setting.name);
       else
-        study_.failed.push_back(setting.name + ": " + motion.failure);
+        run_setting(setting);
+    }
+    listed_ = study_.rows.size();
+  }
+
+  void run_setting(const Setting& setting) {
+    say(setting.name);
+    Motion motion = runner_->run(setting.scene, start_ + options_.budget, options_.surface);
+    if (motion.failure.empty() && static_cast<int>(motion.frame_seconds.size()) == study_.frames)
+      add_row(setting, std::move(motion));
+    else if (motion.failure.empty())
+      study_.left_out.push_back(setting.name);
+    else
+      study_.failed.push_back(setting.name + ": " + motion.failure);
+  }
+
+  /// Turns knobs of the setting that is best by the limit, as long as that leads to a better one: so knobs
+  /// come together that no list has.
+  void search() {
+    if (!options_.limit) return;
+    std::set<std::string> known;
+    for (const Row& row : study_.rows) known.insert(print_scene(row.setting.scene));
+    std::set<std::size_t> turned;
+    for (int round = 0; round < k_most_rounds; ++round) {
+      judge();
+      const auto best = options_.limit->pick(study_.trades());
+      if (!best || !turned.insert(best->index).second) return;
+      const Setting from = study_.rows[best->index].setting;
+      for (const Setting& setting : settings_from(from, traits_))
+        if (setting.cost * plain_cost_ < left(k_search_share) &&
+            known.insert(print_scene(setting.scene)).second)
+          run_setting(setting);
     }
   }
 
@@ -248,11 +287,14 @@ class Maker {
     study_.last_bit_late = motion_error(moved, plain, k_late);
   }
 
-  /// Timed runs, of all settings in turn, until the budget or their number is reached.
+  /// Timed runs, of all settings in turn that may be picked, until the budget or their number is reached.
   void repeat() {
+    judge();
+    const std::optional<Limit>& limit = options_.limit;
     for (int repeat = 1; repeat < options_.repeats; ++repeat) {
       say("run " + std::to_string(repeat + 1) + " of every setting");
       for (Row& row : study_.rows) {
+        if (limit && !limit->is_time && study_.error(row) > limit->most) continue;
         const double cost = row.motion.other_seconds + row.seconds.front() * study_.frames +
                             row.drawing.front() * static_cast<double>(row.motion.draw_seconds.size());
         if (1.2 * cost > left()) continue;
@@ -267,11 +309,12 @@ class Maker {
   void judge() {
     const Motion& reference = study_.reference.motion;
     const PixelOf pixel = camera_of(scene_, study_.rows.front().motion);
-    std::vector<double> errors;
+    std::vector<double> errors;  // of the settings that any study has, wherever a search led
     for (Row& row : study_.rows) {
       row.error = motion_error(row.motion, reference, 0, pixel);
       row.late = motion_error(row.motion, reference, k_late, pixel);
-      errors.push_back(row.error.rms);
+      row.on_front = false;
+      if (errors.size() < listed_) errors.push_back(row.error.rms);
     }
     const double typical = k_chaos * median(errors);
     const Reference& found = study_.reference;
@@ -287,7 +330,8 @@ class Maker {
   double start_;
   std::optional<Runner> runner_;
   SceneTraits traits_;
-  double plain_cost_ = 0;  ///< wall time of a run as it is [s]
+  std::size_t listed_ = 0;  ///< rows before any search
+  double plain_cost_ = 0;   ///< wall time of a run as it is [s]
   Study study_;
 };
 
@@ -300,9 +344,13 @@ double Row::median_drawing() const {
   return median(drawing);
 }
 
+double Row::least_frame_seconds() const {
+  return std::ranges::min(seconds) + std::ranges::min(drawing);
+}
+
 std::vector<Trade> Study::trades() const {
   std::vector<Trade> trades;
-  for (const Row& row : rows) trades.push_back({row.frame_seconds(), error(row)});
+  for (const Row& row : rows) trades.push_back({row.least_frame_seconds(), error(row)});
   return trades;
 }
 
