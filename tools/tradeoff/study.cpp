@@ -1,17 +1,15 @@
 #include "tradeoff/study.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <set>
 
 #include "program/failure.h"
 #include "program/film_bounds.h"
-#include "program/frame_surface.h"
 #include "program/machine.h"
 #include "render/viewport.h"
+#include "tradeoff/runner.h"
 
 namespace mallow::tradeoff {
 namespace {
@@ -21,7 +19,6 @@ constexpr double k_first_share = 0.06;     ///< that the scene as it is may take
 constexpr double k_settings_share = 0.7;   ///< by which first runs of settings have begun
 constexpr double k_search_share = 0.8;     ///< by which those that lead on from the best have begun
 constexpr int k_most_rounds = 8;           ///< of turning knobs on
-constexpr int k_moments = 24;
 /// The reference is converged where its last halving moved particles by less than this share of what the
 /// scene as it is is off.
 constexpr double k_little = 0.1;
@@ -32,10 +29,6 @@ constexpr double k_no_order = 0.5;
 constexpr double k_grown = 1.25;  ///< see parts_again()
 constexpr double k_late = 0.75;
 constexpr float k_shortest_factor = 0.01f;
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -48,22 +41,6 @@ double median(std::vector<double> values) {
 bool parts_again(const std::vector<double>& differences) {
   const std::size_t n = differences.size();
   return n > 1 && differences[n - 1] > k_grown * differences[n - 2];
-}
-
-/// One particle of each body gets so little speed that the first step moves it by its last bits.
-void move_by_last_bit(Simulation& simulation) {
-  simulation.prepare();
-  const float step = simulation.info().longest_step;
-  for (const BodyId body : simulation.bodies()) {
-    const auto [begin, end] = simulation.rows(body);
-    if (begin == end) continue;
-    const std::size_t row = begin + (end - begin) / 2;
-    const ParticleId id = simulation.ids()[row];
-    Vec3 velocity = simulation.velocities()[row];
-    const float x = std::max(std::abs(simulation.positions()[row].x()), simulation.spacing(body));
-    velocity.x() += 2 * (std::nextafter(x, std::numeric_limits<float>::infinity()) - x) / step;
-    simulation.set_velocity(std::vector<ParticleId>{id}, velocity);
-  }
 }
 
 /// The pixels of the scene's camera.
@@ -81,52 +58,11 @@ PixelOf camera_of(const Scene& scene, const Motion& motion) {
   };
 }
 
-/// Runs settings of one scene, all in the same way.
-class Runner {
- public:
-  Runner(const StudyOptions& options, int frames, double frame_time)
-      : options_(options), threads_(program::resolve_threads(options.threads)) {
-    plan_.frames = frames;
-    plan_.frame_time = frame_time;
-    plan_.moments = k_moments;
-  }
-
-  /// deadline: when it ends as it is, by now(); drawn: its surface is drawn, and timed, at each moment.
-  Motion run(const Scene& scene, double deadline, bool drawn, bool last_bit = false) {
-    MotionPlan plan = plan_;
-    plan.stop = [&] {
-      if (options_.stop && options_.stop()) throw Stopped{};
-      return now() > deadline;
-    };
-    std::vector<Skin> skins;
-    std::optional<program::FrameSurface> surface;
-    if (drawn) plan.draw = [&](const Simulation& simulation) { surface->draw(simulation); };
-    return record_motion(
-        [&] {
-          Simulation simulation = build(scene, threads_);
-          if (drawn) {
-            skins = mallow::skins(scene, simulation, threads_);
-            surface.emplace(scene.surface, skins, threads_);
-          }
-          if (last_bit) move_by_last_bit(simulation);
-          return simulation;
-        },
-        plan);
-  }
-
-  MotionPlan& plan() { return plan_; }
-  int threads() const { return threads_; }
-
- private:
-  const StudyOptions& options_;
-  int threads_;
-  MotionPlan plan_;
-};
-
 /// A study under way.
 class Maker {
  public:
-  Maker(const Scene& scene, const StudyOptions& options) : scene_(scene), options_(options), start_(now()) {}
+  Maker(const Scene& scene, const StudyOptions& options)
+      : scene_(scene), options_(options), start_(wall_clock()) {}
 
   Study make() {
     run_plain();
@@ -136,12 +72,12 @@ class Maker {
     search();
     repeat();
     judge();
-    study_.spent = now() - start_;
+    study_.spent = wall_clock() - start_;
     return std::move(study_);
   }
 
  private:
-  double left(double share = 1) const { return share * options_.budget - (now() - start_); }
+  double left(double share = 1) const { return share * options_.budget - (wall_clock() - start_); }
   void say(const std::string& what) const {
     if (options_.progress) options_.progress(what);
   }
@@ -166,7 +102,7 @@ class Maker {
     runner_.emplace(options_, study_.all_frames, study_.frame_time);
     runner_->plan().measures = std::move(measures);
     study_.threads = runner_->threads();
-    const double begin = now();
+    const double begin = wall_clock();
     Motion motion = runner_->run(scene_, begin + k_first_share * options_.budget, options_.surface);
     if (!motion.failure.empty()) throw program::RunFailure(motion.failure);
     study_.frames = static_cast<int>(motion.frame_seconds.size());
@@ -176,9 +112,10 @@ class Maker {
                                 " s; give more by --budget");
     if (study_.frames < study_.all_frames) {
       runner_->plan().frames = study_.frames;
-      motion = runner_->run(scene_, now() + options_.budget, options_.surface);  // with moments at its end
+      motion =
+          runner_->run(scene_, wall_clock() + options_.budget, options_.surface);  // with moments at its end
     }
-    plain_cost_ = now() - begin;
+    plain_cost_ = wall_clock() - begin;
     if (study_.frames < study_.all_frames) plain_cost_ *= 0.5;
     add_row({.name = "as it is", .scene = scene_}, std::move(motion));
   }
@@ -194,19 +131,19 @@ class Maker {
   void find_reference() {
     Reference& reference = study_.reference;
     const bool is_finest = print_scene(finest(scene_, 1)) == print_scene(scene_);
-    const double begin = now();
+    const double begin = wall_clock();
     double factor = 1, cost = plain_cost_;
     Motion before = is_finest ? study_.rows.front().motion : run_finest(1);
-    if (!is_finest) cost = now() - begin;
+    if (!is_finest) cost = wall_clock() - begin;
     reference.factors.push_back(1);
     reference.motion = before;
     while (static_cast<float>(factor) * scene_.solver.time_step_factor > 2 * k_shortest_factor &&
            2 * cost < left(k_reference_share)) {
       factor /= 2;
-      const double started = now();
+      const double started = wall_clock();
       say("reference, steps of 1/" + std::to_string(static_cast<int>(1 / factor)));
       Motion motion = run_finest(factor);
-      cost = now() - started;
+      cost = wall_clock() - started;
       if (!motion.failure.empty() || motion.moments.size() != before.moments.size()) break;
       reference.factors.push_back(factor);
       reference.differences.push_back(motion_error(before, motion).rms);
