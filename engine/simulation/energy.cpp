@@ -1,5 +1,9 @@
 // Energies of model 2, section 4, in double and one thread: for those who judge a motion, not for its steps.
+// Differences of moments lose the digits that a square of size over strain has; a double has them to spare.
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/polar_rotation.h"
@@ -12,56 +16,143 @@ namespace {
 
 using Vec = Eigen::Vector3d;
 
+/// Sums over lists of rows, each of `count` numbers that lie behind each other.
+template <int count>
+using Numbers = Eigen::Array<double, count, 1>;
+
+/// What the rows of every list have in sum, by a table of runs as in the steps.
+template <int count>
+std::vector<Numbers<count>> sum_lists(const TableLists& lists, std::vector<Numbers<count>> table) {
+  const std::size_t rows = lists.rows;
+  table.reserve(rows * lists.lengths.count);
+  for (std::uint32_t l = 1; l < lists.lengths.count; ++l)
+    for (std::size_t i = 0; i < rows; ++i) {
+      Numbers<count> sum = table[(l - 1) * rows + i];
+      const std::size_t end = std::min(rows, i + lists.lengths.length[l]);
+      for (std::size_t k = i + lists.lengths.length[l - 1]; k < end; ++k) sum += table[k];
+      table.push_back(sum);
+    }
+  std::vector<Numbers<count>> sums(lists.count.size(), Numbers<count>::Zero());
+  for (std::size_t list = 0; list < sums.size(); ++list)
+    for (std::uint32_t k = 0; k < lists.count[list]; ++k)
+      sums[list] += table[lists.entries[lists.begin[list] + k]];
+  return sums;
+}
+
+constexpr int k_newton = 5;             ///< iterations; from a step's rotation two or three do
+constexpr double k_least_pivot = 1e-2;  ///< as a share of A at rest: far from where two rotations are as good
+constexpr double k_exact_turn = 1e-7;   ///< [rad]; the iteration after it is exact, as its square counts
+
+/// polar_rotation() by Newton's method from the last rotation; where that does not get there, the slow way.
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& a, const Eigen::Quaterniond& last, double scale) {
+  Eigen::Quaterniond q = last.normalized();
+  for (int iteration = 0; iteration < k_newton; ++iteration) {
+    const Eigen::Matrix3d b = q.toRotationMatrix().transpose() * a;
+    const Eigen::Matrix3d curvature = b.trace() * Eigen::Matrix3d::Identity() - 0.5 * (b + b.transpose());
+    const Eigen::LLT<Eigen::Matrix3d> factors(curvature);  // positive definite at no other than the best one
+    const double pivot = factors.matrixLLT().diagonal().cwiseAbs().minCoeff();
+    if (factors.info() != Eigen::Success || !(pivot * pivot > k_least_pivot * scale)) break;
+    const Vec turn = factors.solve(Vec(b(2, 1) - b(1, 2), b(0, 2) - b(2, 0), b(1, 0) - b(0, 1)));
+    q = (q * Eigen::Quaterniond(1, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z())).normalized();
+    if (turn.squaredNorm() < k_exact_turn * k_exact_turn) return q.toRotationMatrix();
+  }
+  return polar_rotation(a, last, scale).toRotationMatrix();
+}
+
+/// Weighted moments of a particle, or in sum of a region: of x and of r, each from that of the first
+/// particle.
+struct Moments {
+  static constexpr int k_count = 24;  ///< a multiple of what a vector register holds
+  Numbers<k_count> all = Numbers<k_count>::Zero();
+
+  double& weight() { return all[0]; }
+  auto x() { return Eigen::Map<Vec>(&all[1]); }
+  auto r() { return Eigen::Map<Vec>(&all[4]); }
+  auto xr() { return Eigen::Map<Eigen::Matrix3d>(&all[7]); }
+  double& xx() { return all[16]; }
+  auto rr() { return Eigen::Map<Eigen::Matrix<double, 6, 1>>(&all[17]); }  ///< xx, yy, zz, yz, xz, xy
+};
+
+/// Positions and rest positions of a body's particles, from those of the first [m].
+struct Places {
+  std::vector<Vec> x, rest;
+};
+Places places(const Simulation::State& state, const BodyState& body) {
+  Places all;
+  const auto x = [&](std::size_t i) { return Vec(state.store.position.get(body.begin + i).cast<double>()); };
+  const auto rest = [&](std::size_t i) { return Vec(body.shape.reference.get(i).cast<double>()); };
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    all.x.push_back(x(i) - x(0));
+    all.rest.push_back(rest(i) - rest(0));
+  }
+  return all;
+}
+
+/// By region.
+std::vector<Numbers<Moments::k_count>> region_moments(const ShapeMatching& shape, const Places& at) {
+  std::vector<Numbers<Moments::k_count>> rows(at.x.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double w = static_cast<double>(shape.weight[i]);
+    const Vec &x = at.x[i], &r = at.rest[i];
+    Moments own;
+    own.weight() = w;
+    own.x() = w * x;
+    own.r() = w * r;
+    own.xr() = w * x * r.transpose();
+    own.xx() = w * x.squaredNorm();
+    own.rr() << r.x() * r.x(), r.y() * r.y(), r.z() * r.z(), r.y() * r.z(), r.x() * r.z(), r.x() * r.y();
+    own.rr() *= w;
+    rows[i] = own.all;
+  }
+  return sum_lists<Moments::k_count>(shape.regions, std::move(rows));
+}
+
 /// Σ_j ½ Σ_i w_i |x_i − goal_ij|² of a body of unit masses [m²], and g − x of its particles [m].
 double match(const Simulation::State& state, const BodyState& body, std::vector<Vec>& pull) {
   const ShapeMatching& shape = body.shape;
-  const auto x = [&](std::uint32_t i) {
-    return Vec(state.store.position.get(body.begin + i).cast<double>());
-  };
-  const auto rest = [&](std::uint32_t i) { return Vec(shape.reference.get(i).cast<double>()); };
-  std::vector<double> regions(body.size(), 0);
-  pull.assign(body.size(), Vec::Zero());
+  const Places at = places(state, body);
+  const std::size_t regions = shape.region_weight.size();
+  std::vector<Numbers<Moments::k_count>> sums = region_moments(shape, at);
+  std::vector<Numbers<14>> goals(regions);  // x -> turn x + shift, by share; share; one region
   double sum = 0;
-  for (std::size_t j = 0; j < shape.region_weight.size(); ++j) {
-    const std::vector<std::uint32_t> members = decode(shape.regions, j);
-    double weight = 0;
-    Vec center = Vec::Zero(), rest_center = Vec::Zero();
-    for (const std::uint32_t i : members) {
-      const double w = static_cast<double>(shape.weight[i]);
-      weight += w;
-      center += w * x(i);
-      rest_center += w * rest(i);
-    }
-    center /= weight;
-    rest_center /= weight;
-    Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
-    double scale = 0;
-    for (const std::uint32_t i : members) {
-      const double w = static_cast<double>(shape.weight[i]);
-      a += w * (x(i) - center) * (rest(i) - rest_center).transpose();
-      scale += w * (rest(i) - rest_center).squaredNorm();
-    }
+  for (std::size_t j = 0; j < regions; ++j) {
+    Moments m{sums[j]};
+    const Vec center = m.x() / m.weight(), rest_center = m.r() / m.weight();
+    const Eigen::Matrix3d a = m.xr() - m.weight() * center * rest_center.transpose();
+    const auto b = m.rr();
+    Eigen::Matrix3d rest_moment;
+    rest_moment << b[0], b[5], b[4], b[5], b[1], b[3], b[4], b[3], b[2];
+    rest_moment -= m.weight() * rest_center * rest_center.transpose();
     const auto q = [&](std::size_t k) { return static_cast<double>(shape.rotation[k][j]); };
     const Eigen::Quaterniond last(q(3), q(0), q(1), q(2));
     Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
+    double scale = rest_moment.trace();
     if (shape.flows) {
       stretch = carried_stretch(shape.plastic, j).stretch.cast<double>();
       scale = stretched_moment(shape, j).trace();
     }
-    const Eigen::Matrix3d rotation =
-        polar_rotation(a * stretch.transpose(), last, scale).toRotationMatrix() * stretch;
+    const Eigen::Matrix3d turn = nearest_rotation(a * stretch.transpose(), last, scale) * stretch;
     const std::size_t owner = body.begin + shape.owner(j);
     const double share =
         body.is_painted() ? static_cast<double>((1 - state.store.alpha[owner]) * state.store.stiffness[owner])
                           : 1.0;
-    for (const std::uint32_t i : members) {
-      const Vec away = rotation * (rest(i) - rest_center) + center - x(i);
-      sum += 0.5 * share * static_cast<double>(shape.weight[i]) * away.squaredNorm();
-      pull[i] += share * away;
-      regions[i] += 1;
-    }
+    // Σ w |turn (r − r_c) − (x − x_c)|², multiplied out.
+    const double away = m.xx() - m.weight() * center.squaredNorm() +
+                        (turn * rest_moment * turn.transpose()).trace() - 2 * turn.cwiseProduct(a).sum();
+    sum += 0.5 * share * std::max(0.0, away);
+    goals[j].segment<9>(0) = share * turn.reshaped().array();
+    goals[j].segment<3>(9) = share * (center - turn * rest_center).array();
+    goals[j][12] = share;
+    goals[j][13] = 1;
   }
-  for (std::size_t i = 0; i < pull.size(); ++i) pull[i] /= regions[i];
+  const std::vector<Numbers<14>> of_particles = sum_lists<14>(shape.by_particle(), std::move(goals));
+  pull.resize(body.size());
+  for (std::size_t i = 0; i < pull.size(); ++i) {
+    const Numbers<14>& goal = of_particles[i];
+    const Eigen::Map<const Eigen::Matrix3d> turn(goal.data());
+    const Eigen::Map<const Vec> shift(goal.data() + 9);
+    pull[i] = (turn * at.rest[i] + shift - goal[12] * at.x[i]) / goal[13];
+  }
   return sum;
 }
 

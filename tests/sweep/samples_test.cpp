@@ -97,6 +97,26 @@ TEST_F(sweep_spec, logarithmic_ranges_between_whole_numbers_are_logarithmic) {
   EXPECT_NEAR(below, 20, 1);
 }
 
+TEST_F(sweep_spec, values_are_as_short_as_they_come_also_inside_of_lists) {
+  const auto all = points(
+      "scene = \"s.toml\"\n[[vary]]\nkey = \"a\"\nvalues = [0.3, 2.0, [0.1, [1e-9, 3]], {size = 0.7}]\n");
+  const std::vector<std::vector<std::string>> known{
+      {"0.3"}, {"2.0"}, {"[0.1, [1e-09, 3]]"}, {"{size = 0.7}"}};
+  EXPECT_EQ(all, known);
+}
+
+TEST_F(sweep_spec, ranges_that_fall_or_have_one_value_are_refused) {
+  const auto range = [&](const std::string& from, const std::string& to) {
+    return refusal("scene = \"s.toml\"\n[[vary]]\nkey = \"a\"\nfrom = " + from + "\nto = " + to +
+                   "\ncount = 2\n");
+  };
+  EXPECT_EQ(range("1", "2"), "none");
+  EXPECT_NE(range("0.5", "0.5").find(":5:"), std::string::npos) << range("0.5", "0.5");
+  EXPECT_NE(range("2", "-1.5").find("vary[0].to: -1.5 is not allowed: above from, which is 2"),
+            std::string::npos)
+      << range("2", "-1.5");
+}
+
 TEST_F(sweep_spec, all_that_is_wrong_is_told_by_line_and_with_what_is_allowed) {
   const std::string said = refusal(
       "scene = \"s.toml\"\nmethod = \"sobl\"\nframes = 0\nmeasure = []\n[[vary]]\nkey = \"a\"\nfrom = "

@@ -82,6 +82,27 @@ TEST_F(sweep_runs, that_are_done_are_not_run_again_and_what_changed_is) {
   EXPECT_NE(time(0), before);
 }
 
+TEST_F(sweep_runs, of_a_shorter_spec_leave_out_points_of_before_and_name_them) {
+  sweep("out");
+  write_spec("[1]", 8);
+  const Outcome outcome = run_mallow({"sweep", spec_, "--out", at("out")});
+  EXPECT_NE(outcome.err.find("still has points 4 to 11 of an earlier"), std::string::npos) << outcome.err;
+  EXPECT_EQ(lines(read_text(at("out/table.csv"))).size(), 5u);
+  EXPECT_EQ(sweep("fresh"), read_text(at("out/table.csv")));
+}
+
+TEST_F(sweep_runs, take_one_picture_of_each_point_and_show_it_under_its_name) {
+  write_spec("[1]", 2);
+  write("images.toml", "images = true\n" + read_text(spec_));
+  spec_ = at("images.toml");
+  sweep("out");
+  const std::string sheet = read_text(at("out/sheet.html"));
+  for (const char* part : {"points/00002/run/images/frame_000002.png", "<b>2</b><br>material[0].alpha = 0.6"})
+    EXPECT_NE(sheet.find(part), std::string::npos) << sheet;
+  const fs::directory_iterator pictures(at("out/points/00002/run/images"));
+  EXPECT_EQ(std::distance(begin(pictures), end(pictures)), 1);
+}
+
 TEST_F(sweep_runs, are_refused_where_the_scene_no_longer_takes_their_values) {
   sweep("out");
   std::string scene = read_text(scene_);
@@ -156,7 +177,10 @@ TEST_F(sweep_runs, refuse_what_they_cannot_mean) {
   refused({"sweep", spec_}, "--out");
   refused({"sweep", spec_, "--out", at("out"), "--point", "12"}, "points below 12");
   write("bad.toml", read_text(spec_).replace(read_text(spec_).find("\"height\""), 8, "\"hight\""));
-  refused({"sweep", at("bad.toml"), "--out", at("bad")}, "'hight' is no column");
+  refused({"sweep", at("bad.toml"), "--out", at("bad")}, "bad.toml:3:13: measures: 'hight' is no column");
+  write("plot.toml", read_text(spec_) + "[[plot]]\nx = \"point\"\ny = \"hight\"\n");
+  refused({"sweep", at("plot.toml"), "--out", at("plot")}, ":14:5: plot[0].y: 'hight' is no column");
+  EXPECT_FALSE(fs::exists(at("plot"))) << "before anything is run";
   write("key.toml", read_text(spec_).replace(read_text(spec_).find("].alpha"), 7, "].alhpa"));
   refused({"sweep", at("key.toml"), "--out", at("key")}, "did you mean 'alpha'?");
 }

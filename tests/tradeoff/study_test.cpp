@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
+#include <sstream>
 
 #include "mallow/errors.h"
 #include "program/failure.h"
@@ -76,6 +78,35 @@ TEST(tradeoff_study, chaotic_motion_is_told_and_judged_by_its_shape) {
                              << study.rows.front().error.rms << " h";
   EXPECT_EQ(study.error(study.rows.front()), study.rows.front().late.shape());
   EXPECT_NE(tradeoff::to_text(study).find("the motion is chaotic"), std::string::npos);
+}
+
+TEST(tradeoff_study, a_limit_leads_on_to_knobs_together_that_no_list_has) {
+  tradeoff::StudyOptions options{.budget = 3, .threads = 1, .repeats = 1, .surface = false};
+  const auto run_twice = [](const tradeoff::Study& study) {
+    std::set<std::string> scenes;
+    for (const tradeoff::Row& row : study.rows) scenes.insert(print_scene(row.setting.scene));
+    return study.rows.size() - scenes.size();
+  };
+  const std::size_t before = run_twice(tradeoff::study(scene(k_smooth), options));
+  options.limit = tradeoff::Limit{.most = 1e3};
+  const tradeoff::Study study = tradeoff::study(scene(k_smooth), options);
+  EXPECT_TRUE(std::ranges::any_of(study.rows, [](const tradeoff::Row& row) {
+    return row.setting.name.find(", time_step_factor x 0.8") != std::string::npos;
+  })) << tradeoff::to_text(study);
+  EXPECT_EQ(run_twice(study), before) << "the search runs no setting that was run";
+}
+
+TEST(tradeoff_study, every_column_is_explained) {
+  const tradeoff::Study study =
+      tradeoff::study(scene(k_smooth), {.budget = 1, .threads = 1, .repeats = 1, .surface = false});
+  std::string help;
+  for (const std::string& line : tradeoff::column_help()) help += line + '\n';
+  const std::string csv = tradeoff::to_csv(study);
+  std::istringstream header(csv.substr(0, csv.find('\n')));
+  for (std::string name; std::getline(header, name, ',');)
+    if (name != "setting") {
+      EXPECT_NE(help.find(name), std::string::npos) << name;
+    }
 }
 
 TEST(tradeoff_study, budget_is_kept_and_what_it_left_out_is_said) {

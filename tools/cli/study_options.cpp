@@ -43,6 +43,12 @@ double spacings_of(const std::string& text, const std::string& option) {
   throw ConfigError(option, "'" + text + "' is not allowed: a number > 0 of spacings, like 0.1h");
 }
 
+std::string study_columns() {
+  std::string text = "Columns of the table, in brackets those of tradeoff.csv:";
+  for (const std::string& line : tradeoff::column_help()) text += "\n  " + line;
+  return text;
+}
+
 void add_study_options(CLI::App& command, StudyArguments& arguments) {
   add_scene_options(command, arguments.scene);
   command

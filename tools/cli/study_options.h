@@ -21,6 +21,8 @@ struct StudyArguments {
   int threads = 0;
   bool no_surface = false;
 };
+/// What the columns mean, for the end of a command's help.
+std::string study_columns();
 void add_study_options(CLI::App& command, StudyArguments& arguments);
 /// Throws ConfigError where --budget and the like are wrong.
 tradeoff::StudyOptions study_options(const StudyArguments& arguments, const Scene& scene);

@@ -12,10 +12,13 @@
 
 #include "mallow/errors.h"
 #include "mallow/files.h"
+#include "program/html.h"
 #include "program/progress.h"
 
 namespace mallow::cli {
 namespace {
+
+using program::html_text;
 
 using json = nlohmann::ordered_json;
 
@@ -34,29 +37,6 @@ constexpr const char* k_head = R"(<!doctype html>
   rect { fill: #3b7a9e; } code { background: #f3f3f3; padding: 0 .2rem; }
 </style>
 )";
-
-std::string escaped(std::string_view text) {
-  std::string html;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        html += "&amp;";
-        break;
-      case '<':
-        html += "&lt;";
-        break;
-      case '>':
-        html += "&gt;";
-        break;
-      case '"':
-        html += "&quot;";
-        break;
-      default:
-        html += c;
-    }
-  }
-  return html;
-}
 
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
   char text[256];
@@ -89,7 +69,7 @@ std::string bars(const std::vector<Bar>& rows, const char* per) {
       "class=n>share</th><th></th></tr>\n",
       per);
   for (const Bar& row : rows) {
-    html += "<tr><td>" + escaped(row.name) + "</td>";
+    html += "<tr><td>" + html_text(row.name) + "</td>";
     html += format("<td class=n>%.3f</td><td class=n>%.3f</td><td class=n>%.1f%%</td>", row.seconds, row.per,
                    100 * row.seconds / std::max(total, 1e-12));
     html += format(
@@ -103,9 +83,9 @@ std::string bars(const std::vector<Bar>& rows, const char* per) {
 std::string facts(const json& report) {
   const auto& step = report.at("time_step");
   std::string html = "<table>\n";
-  html += fact("scene", "<code>" + escaped(report.at("scene").get<std::string>()) + "</code>");
+  html += fact("scene", "<code>" + html_text(report.at("scene").get<std::string>()) + "</code>");
   for (const auto& setting : report.at("overrides")) {
-    html += fact("changed", "<code>" + escaped(setting.get<std::string>()) + "</code>");
+    html += fact("changed", "<code>" + html_text(setting.get<std::string>()) + "</code>");
   }
   html += fact("particles", std::to_string(report.at("particles").get<long long>()));
   html += fact("frames", format("%lld, %.4g s from one to the next", report.at("frames").get<long long>(),
@@ -123,11 +103,11 @@ std::string facts(const json& report) {
                                   events->at("merged").get<long long>()));
   html += fact("memory", format("%.1f MiB", report.at("bytes").get<double>() / (1024.0 * 1024.0)));
   html +=
-      fact("machine", escaped(report.at("machine").at("processor").get<std::string>()) +
+      fact("machine", html_text(report.at("machine").at("processor").get<std::string>()) +
                           format(", %d cores, %d threads used", report.at("machine").at("cores").get<int>(),
                                  report.at("threads").get<int>()));
-  html += fact("state hash", "<code>" + escaped(report.at("state_hash").get<std::string>()) + "</code>");
-  html += fact("mallow", escaped(report.at("version").get<std::string>()));
+  html += fact("state hash", "<code>" + html_text(report.at("state_hash").get<std::string>()) + "</code>");
+  html += fact("mallow", html_text(report.at("version").get<std::string>()));
   return html + "</table>\n";
 }
 
@@ -136,8 +116,8 @@ std::string groups(const json& report) {
       "<h2>Groups</h2>\n<table>\n<tr><th>group</th><th>material</th><th class=n>particles</th>"
       "<th class=n>spacing</th><th class=n>average neighbours</th></tr>\n";
   for (const auto& group : report.at("groups")) {
-    html += "<tr><td>" + escaped(group.at("name").get<std::string>()) + "</td><td>" +
-            escaped(group.at("material").get<std::string>()) + "</td>";
+    html += "<tr><td>" + html_text(group.at("name").get<std::string>()) + "</td><td>" +
+            html_text(group.at("material").get<std::string>()) + "</td>";
     html += format("<td class=n>%lld</td><td class=n>%.4g</td><td class=n>%.2f</td></tr>\n",
                    group.at("particles").get<long long>(), group.at("spacing").get<double>(),
                    group.at("average_neighbors").get<double>());
@@ -182,7 +162,7 @@ std::string credits(const Scene& scene) {
     if (!mesh) continue;
     const std::string file = mesh->file.filename().string();
     if (file.starts_with("bunny") || file.starts_with("armadillo")) {
-      return "<p>The model in <code>" + escaped(file) +
+      return "<p>The model in <code>" + html_text(file) +
              "</code> is from the <a href=\"http://graphics.stanford.edu/data/3Dscanrep/\">Stanford 3D "
              "Scanning "
              "Repository</a>, Stanford Computer Graphics Laboratory.</p>\n";
@@ -196,11 +176,11 @@ std::string credits(const Scene& scene) {
 void write_summary(const program::Cache& cache, const Scene& scene, const json& report) {
   std::string html = k_head;
   try {
-    html += "<h1>" + escaped(std::filesystem::path(report.at("scene").get<std::string>()).stem().string()) +
+    html += "<h1>" + html_text(std::filesystem::path(report.at("scene").get<std::string>()).stem().string()) +
             "</h1>\n";
     if (!report.at("complete").get<bool>()) {
       html +=
-          "<p class=bad>This run did not end: " + escaped(report.at("error").get<std::string>()) + "</p>\n";
+          "<p class=bad>This run did not end: " + html_text(report.at("error").get<std::string>()) + "</p>\n";
     }
     if (std::filesystem::exists(cache.film_file()))
       html += "<video controls loop muted src=\"film.mp4\"></video>\n";

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/messages.h"
 #include "mallow/errors.h"
 #include "mallow/scene.h"
 #include "program/failure.h"
@@ -82,7 +83,7 @@ void print_estimate(const SweepFolder& sweep, const Slots& slots) {
                each = std::max(0.0, *start - frame * few) + frame * frames;
   std::printf("points %zu\nestimate %.3g s a point, %.3g s in all, %d at a time\n", sweep.points().size(),
               each, each * static_cast<double>(sweep.points().size()) / slots.jobs, slots.jobs);
-  if (sweep.spec().images) std::printf("pictures of every frame come on top\n");
+  if (sweep.spec().images) std::printf("a picture of each comes on top\n");
 }
 
 sweep::Elsewhere elsewhere(const SweepOptions& options) {
@@ -102,6 +103,23 @@ sweep::Elsewhere elsewhere(const SweepOptions& options) {
           .slurm_options = options.slurm_options};
 }
 
+/// Folders that a longer sweep left are no part of this one.
+void warn_of_left_over(const SweepFolder& sweep) {
+  const std::vector<std::size_t> numbers = sweep.left_over();
+  if (numbers.empty()) return;
+  std::string names;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    std::size_t last = i;
+    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+    names += (names.empty() ? "" : ", ") + std::to_string(numbers[i]);
+    if (last > i) names += " to " + std::to_string(numbers[last]);
+    i = last;
+  }
+  print_warning((sweep.folder() / "points").string() + " still has points " + names +
+                " of an earlier, longer sweep, which the spec no longer names; the table, plots and sheet "
+                "are without them");
+}
+
 void say(std::size_t point, const Outcome& outcome) {
   std::fprintf(stderr, "point %zu %s, %.3g s%s%s\n", point, name(outcome.status), outcome.seconds,
                outcome.message.empty() ? "" : ": ", outcome.message.c_str());
@@ -110,6 +128,7 @@ void say(std::size_t point, const Outcome& outcome) {
 /// All outcomes, the table and its pictures; what is still open is a failure. ran: of those that could not
 /// even keep what became of them.
 void finish(const SweepFolder& sweep, const std::map<std::size_t, Outcome>& ran) {
+  warn_of_left_over(sweep);
   std::vector<Outcome> outcomes;
   std::array<std::size_t, 4> counts{};
   for (std::size_t point = 0; point < sweep.points().size(); ++point) {
@@ -136,6 +155,7 @@ void finish(const SweepFolder& sweep, const std::map<std::size_t, Outcome>& ran)
 
 void run_sweep(const SweepOptions& options) {
   SweepFolder sweep(sweep::read_spec(options.spec), options.out, own_program());
+  check_plots(sweep);
   if (options.dry_run) {
     print_points(sweep);
     return print_estimate(sweep, slots(options, sweep.points().size()));
@@ -207,13 +227,14 @@ void add_sweep_command(CLI::App& app) {
       "A spec: scene = \"drop.toml\"; method = \"grid\", \"random\", \"latin_hypercube\" or \"sobol\", with "
       "points = 100 and seed = 1\n"
       "for all but a grid; [[vary]] tables with key = \"material[0].alpha\" and values = [0, 0.3], or from, "
-      "to, scale = \"linear\" or\n"
+      "to above it, scale = \"linear\" or\n"
       "\"log\", and count in a grid; or points_file = \"points.csv\", whose header has keys; frames; images; "
       "measures, columns of\n"
       "`mallow run --series` with .last, .min, .max or .mean; [[plot]] tables with x, y and color, columns "
       "of the table.\n"
-      "key may be a list of keys that get the same value. images = true takes the pictures of every run, and "
-      "a sheet of the last ones.\n"
+      "key may be a list of keys that get the same value. images = true takes a picture of each point's last "
+      "frame; DIR/sheet.html\n"
+      "shows them beside each other, under their numbers and values.\n"
       "DIR/table.csv and table.sqlite have a row for each point, points/00007 its scene, series, report and "
       "what it said.");
   command->callback([options] { run_sweep(*options); });

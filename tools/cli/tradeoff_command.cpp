@@ -45,7 +45,8 @@ void add_tradeoff_command(CLI::App& app) {
       "particles\n"
       "of the same id, in spacings h. Where the motion is chaotic, which one more run tells that differs by "
       "the\n"
-      "last bit, height, spread and centre over the last quarter are compared instead.");
+      "last bit, height, spread and centre over the last quarter are compared instead.\n" +
+      study_columns());
   command->callback([options] { run(*options); });
 }
 

@@ -24,12 +24,6 @@ struct TuneOptions {
   std::string write, out;
 };
 
-/// The limit that a setting has to keep.
-struct Limit {
-  bool is_time = false;
-  double most = 0;  ///< [s] or [h]
-};
-
 /// Share of the budget that the study gets; the run that confirms gets the rest.
 constexpr double k_study_share = 0.9;
 
@@ -39,7 +33,7 @@ std::string described(const tradeoff::Study& study, const tradeoff::Row& row) {
 }
 
 void tune(const TuneOptions& options, const Scene& scene, const tradeoff::StudyOptions& study_with,
-          const Limit& limit) {
+          const tradeoff::Limit& limit) {
   const tradeoff::Study study = tradeoff::study(scene, study_with);
   std::fputs(tradeoff::to_text(study).c_str(), stdout);
   std::vector<Trade> trades = study.trades();
@@ -48,7 +42,7 @@ void tune(const TuneOptions& options, const Scene& scene, const tradeoff::StudyO
   bool confirmed = false;
   // What does not hold on a second run is no pick.
   for (std::size_t tries = 0; tries < trades.size() && !confirmed; ++tries) {
-    const auto next = limit.is_time ? pick_by_cost(trades, limit.most) : pick_by_error(trades, limit.most);
+    const auto next = limit.pick(trades);
     if (pick && (!next || !next->holds)) break;
     pick = next;
     if (!pick) break;
@@ -91,11 +85,13 @@ void tune(const TuneOptions& options, const Scene& scene, const tradeoff::StudyO
 void run(const TuneOptions& options) {
   if (options.frame.empty() == options.error.empty())
     throw ConfigError("", "one of --frame and --error is needed");
-  const Limit limit = options.frame.empty() ? Limit{false, spacings_of(options.error, "--error")}
-                                            : Limit{true, seconds_of(options.frame, "--frame")};
+  const tradeoff::Limit limit = options.frame.empty()
+                                    ? tradeoff::Limit{false, spacings_of(options.error, "--error")}
+                                    : tradeoff::Limit{true, seconds_of(options.frame, "--frame")};
   const Scene scene = read_scene(options.study.scene);
   tradeoff::StudyOptions study_with = study_options(options.study, scene);
   study_with.budget *= k_study_share;
+  study_with.limit = limit;
   if (!options.write.empty()) {
     program::InputFiles(scene).refuse(options.write, "--write");
     program::check_writable(options.write);
@@ -125,10 +121,12 @@ void add_tune_command(CLI::App& app) {
                       "Write the scene at the pick to this file, with every value in it");
   command->add_option("--out", options->out, "Folder for the files that 'mallow tradeoff' writes");
   command->footer(
-      "Measures as 'mallow tradeoff' does, picks, and runs the pick once more. How well a surface follows "
-      "its\n"
-      "particles is not measured: a quality with a coarser one is the cheaper for it, but with "
-      "--no-surface.\n"
+      "Measures as 'mallow tradeoff' does, turns knobs on from the best setting as long as that gets better, "
+      "picks,\n"
+      "and runs the pick once more. How well a surface follows its particles is not measured: a quality with "
+      "a coarser\n"
+      "one is the cheaper for it, but with --no-surface.\n"
+      "'mallow tradeoff --help' explains the columns.\n"
       "Exit codes: 0 the pick holds, 1 none does, 2 the input is wrong.");
   command->callback([options] { run(*options); });
 }

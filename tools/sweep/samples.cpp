@@ -20,8 +20,8 @@ std::string value_at(const Vary& vary, double share) {
     return vary.values[std::min(at, vary.values.size() - 1)];
   }
   if (vary.whole && !vary.logarithmic) {
-    const double count = std::abs(vary.to - vary.from) + 1, sign = vary.to < vary.from ? -1 : 1;
-    return number_text(vary.from + sign * std::min(std::floor(share * count), count - 1));
+    const double count = vary.to - vary.from + 1;
+    return number_text(vary.from + std::min(std::floor(share * count), count - 1));
   }
   if (vary.logarithmic) {
     const double value = vary.from * std::pow(vary.to / vary.from, share);

@@ -102,20 +102,23 @@ std::map<std::string, double> measure_series(const SweepSpec& spec, const fs::pa
       if (const auto value = number_of(cells[c])) columns[c].push_back(*value);
   }
   std::map<std::string, double> measured;
+  std::vector<Problem> problems;
   for (const Measure& measure : spec.measures) {
     const auto found = std::ranges::find(names, measure.column);
     if (found == names.end()) {
       std::string all;
       for (const std::string& column : names) all += (all.empty() ? "" : ", ") + column;
-      throw ConfigError({{spec.file.string(), 0, 0, "measures",
+      problems.push_back({spec.file.string(), measure.place.line, measure.place.column, "measures",
                           "'" + measure.name +
                               "' is no column of a series, nor one with .last, .min, .max or "
                               ".mean behind it; there are " +
-                              all}});
+                              all});
+      continue;
     }
     if (const auto value = value_of(columns[static_cast<std::size_t>(found - names.begin())], measure.of))
       measured[measure.name] = *value;
   }
+  if (!problems.empty()) throw ConfigError(std::move(problems));
   return measured;
 }
 
@@ -142,6 +145,26 @@ fs::path SweepFolder::point_folder(std::size_t point) const {
   return folder_ / "points" / number;
 }
 
+fs::path SweepFolder::picture(std::size_t point) const {
+  fs::path last;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(point_folder(point) / "run" / "images", none))
+    last = std::max(last, entry.path());
+  return last;
+}
+
+std::vector<std::size_t> SweepFolder::left_over() const {
+  std::vector<std::size_t> numbers;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder_ / "points", none)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() > 9 || name.find_first_not_of("0123456789") != std::string::npos) continue;
+    if (const std::size_t number = std::stoul(name); number >= points_.size()) numbers.push_back(number);
+  }
+  std::ranges::sort(numbers);
+  return numbers;
+}
+
 std::vector<std::string> SweepFolder::arguments(std::size_t point, int threads) const {
   const fs::path folder = fs::absolute(point_folder(point));  // the command is good anywhere
   std::vector<std::string> all{program_.string(),
@@ -152,14 +175,33 @@ std::vector<std::string> SweepFolder::arguments(std::size_t point, int threads) 
                                "--series",
                                (folder / "series.csv").string(),
                                "--report",
-                               (folder / "report.json").string()};
+                               (folder / "report.json").string(),
+                               "--no-images",
+                               "--no-surface"};
   if (spec_.frames) all.insert(all.end(), {"--frames", std::to_string(*spec_.frames)});
-  if (spec_.images)
-    all.insert(all.end(), {"--out", (folder / "run").string(), "--overwrite", "--no-film"});
-  else
-    all.insert(all.end(), {"--no-images", "--no-surface"});
+  if (spec_.images) all.insert(all.end(), {"--out", (folder / "run").string(), "--overwrite"});
   for (const std::string& set : overrides(spec_, points_[point])) all.insert(all.end(), {"--set", set});
   return all;
+}
+
+/// Runs the point, and takes the picture of its last frame where there is one to be. Gives the exit code of
+/// what failed, or 0. log: where that says why.
+int SweepFolder::execute(std::size_t point, int threads, fs::path& log) const {
+  const fs::path folder = fs::absolute(point_folder(point));
+  log = folder / "log.txt";
+  int code = program::run_logged(arguments(point, threads), log);
+  if (!spec_.images) return code;
+  const std::vector<std::string> last{(folder / "run").string(), "--frames=-1:", "--threads",
+                                      std::to_string(threads)};
+  for (std::vector<std::string> command :
+       {std::vector<std::string>{"surface"}, std::vector<std::string>{"render", "--no-film"}}) {
+    if (code != program::k_exit_done || program::interrupted()) break;
+    log = folder / (command.front() + ".txt");
+    command.insert(command.begin(), program_.string());
+    command.insert(command.end(), last.begin(), last.end());
+    code = program::run_logged(command, log);
+  }
+  return code;
 }
 
 std::string SweepFolder::command(std::size_t point) const {
@@ -226,14 +268,15 @@ Outcome SweepFolder::run(std::size_t point, int threads) const {
     own_hash = hash(point, own);
     write_whole(folder / "scene.toml", program::Cache::scene_text(folder, own));
     fs::remove(folder / "point.json");
-    const int code = program::run_logged(arguments(point, threads), folder / "log.txt");
+    fs::path log;
+    const int code = execute(point, threads, log);
     if (const int signal = program::interrupted())
       throw program::Interrupted("ended by a signal; the same command goes on with what is left", signal);
     outcome.status = code == program::k_exit_done        ? Status::done
                      : code == program::k_exit_bad_input ? Status::refused
                                                          : Status::failed;
     if (code != program::k_exit_done) {
-      outcome.message = last_word(folder / "log.txt");
+      outcome.message = last_word(log);
       if (outcome.message.empty()) outcome.message = "ended with exit code " + std::to_string(code);
     }
   } catch (const ConfigError& error) {

@@ -31,6 +31,11 @@ class SweepFolder {
   const std::filesystem::path& folder() const { return folder_; }
   const std::vector<std::vector<std::string>>& points() const { return points_; }
   std::filesystem::path point_folder(std::size_t point) const;
+  /// The picture of a point's last frame; empty where there is none.
+  std::filesystem::path picture(std::size_t point) const;
+  /// Numbers of points whose folders are there, and which the spec does not name: of an earlier, longer
+  /// sweep.
+  std::vector<std::size_t> left_over() const;
   /// Nothing but `open` where the point was not run, or was with another scene, input or program.
   Outcome outcome(std::size_t point) const;
   /// The command that runs one point by itself, without this folder.
@@ -48,6 +53,7 @@ class SweepFolder {
   std::vector<std::string> arguments(std::size_t point, int threads) const;
   Scene scene(std::size_t point) const;
   std::string hash(std::size_t point, Scene scene) const;
+  int execute(std::size_t point, int threads, std::filesystem::path& log) const;
   bool is_of_now(std::size_t point, const std::string& hash_then) const;
 
   SweepSpec spec_;

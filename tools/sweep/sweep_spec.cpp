@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "mallow/errors.h"
+#include "sweep/text.h"
 
 namespace mallow::sweep {
 namespace {
@@ -16,14 +17,42 @@ namespace {
 /// More would be a slip: their folders alone fill a disk.
 constexpr std::int64_t k_most_points = 1'000'000;
 
+Place place_of(const toml::node& node) {
+  return {static_cast<int>(node.source().begin.line), static_cast<int>(node.source().begin.column)};
+}
+
+/// A value as TOML writes it; numbers as short as they come, also inside of lists.
+std::string text_of(const toml::node& node) {
+  const auto joined = [](const auto& all, const auto& text_of_one) {
+    std::string text;
+    for (const auto& one : all) text += (text.empty() ? "" : ", ") + text_of_one(one);
+    return text;
+  };
+  if (const toml::array* list = node.as_array())
+    return "[" + joined(*list, [](const toml::node& one) { return text_of(one); }) + "]";
+  if (const toml::table* table = node.as_table())
+    return "{" +
+           joined(
+               *table,
+               [](const auto& one) { return std::string(one.first.str()) + " = " + text_of(one.second); }) +
+           "}";
+  if (const auto number = node.value_exact<double>(); number && std::isfinite(*number)) {
+    const std::string text = number_text(*number);
+    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+  }
+  std::ostringstream text;
+  text << toml::node_view<const toml::node>(node);
+  return text.str();
+}
+
 /// Reads a table and keeps what is wrong with it.
 class Reader {
  public:
   explicit Reader(std::string file) : file_(std::move(file)) {}
 
   void problem(const toml::node& at, const std::string& field, const std::string& message) {
-    problems_.push_back({file_, static_cast<int>(at.source().begin.line),
-                         static_cast<int>(at.source().begin.column), field, message});
+    const Place place = place_of(at);
+    problems_.push_back({file_, place.line, place.column, field, message});
   }
 
   /// All keys that a table may have; others are told.
@@ -50,10 +79,8 @@ class Reader {
     if (!node) return std::nullopt;
     const auto value = node->value_exact<std::int64_t>();
     if (value && *value >= least && *value <= most) return value;
-    std::ostringstream text;
-    text << toml::node_view<const toml::node>(*node);
     problem(*node, path + std::string(key),
-            text.str() + " is not allowed: a whole number in [" + std::to_string(least) + ", " +
+            text_of(*node) + " is not allowed: a whole number in [" + std::to_string(least) + ", " +
                 std::to_string(most) + "]");
     return std::nullopt;
   }
@@ -97,6 +124,10 @@ void read_range(Reader& reader, const toml::table& table, const std::string& pat
   if (!low || !high || !std::isfinite(*low) || !std::isfinite(*high))
     return reader.problem(*from, path + "from", "from and to are two finite numbers");
   vary.from = *low, vary.to = *high;
+  if (!(vary.from < vary.to))
+    reader.problem(*to, path + "to",
+                   text_of(*to) + " is not allowed: above from, which is " + text_of(*from) +
+                       "; one value alone, or an order of your own, is given by values = [...]");
   vary.whole = from->is_integer() && to->is_integer();
   if (const auto count = reader.whole(table, path, "count", 1, k_most_points)) vary.count = int(*count);
   const std::string scale = reader.text(table, path, "scale");
@@ -134,9 +165,7 @@ Vary read_vary(Reader& reader, const toml::table& table, const std::string& path
     return vary;
   }
   for (const toml::node& value : *list) {
-    std::ostringstream text;
-    text << toml::node_view<const toml::node>(value);
-    vary.values.push_back(text.str());
+    vary.values.push_back(text_of(value));
   }
   for (const char* other : {"from", "to", "count", "scale"})
     if (table.contains(other))
@@ -149,8 +178,8 @@ void read_measures(Reader& reader, const toml::table& table, SweepSpec& spec) {
                                                                                {".min", Measure::Of::least},
                                                                                {".max", Measure::Of::most},
                                                                                {".mean", Measure::Of::mean}}};
-  const auto add = [&](std::string text) {
-    Measure measure{.column = text, .of = Measure::Of::last, .name = text};
+  const auto add = [&](std::string text, Place place) {
+    Measure measure{.column = text, .of = Measure::Of::last, .name = text, .place = place};
     for (const auto& [ending, of] : k_kinds)
       if (text.ends_with(ending)) {
         measure.column = text.substr(0, text.size() - std::string_view(ending).size());
@@ -161,14 +190,14 @@ void read_measures(Reader& reader, const toml::table& table, SweepSpec& spec) {
   const toml::node* node = table.get("measures");
   if (!node) {
     for (const char* name : {"height", "volume", "kinetic_energy", "parts", "largest_compression.max"})
-      add(name);
+      add(name, {});
     return;
   }
   const toml::array* list = node->as_array();
   if (!list) return reader.problem(*node, "measures", "a list of columns of the series is needed");
   for (const toml::node& name : *list) {
     if (const auto text = name.value_exact<std::string>())
-      add(*text);
+      add(*text, place_of(name));
     else
       reader.problem(name, "measures", "names of columns are strings: \"height\", \"energy.max\"");
   }
@@ -253,9 +282,12 @@ SweepSpec read_spec(const std::filesystem::path& file) {
   for (const toml::table* one : reader.tables(table, "plot")) {
     const std::string path = "plot[" + std::to_string(number++) + "].";
     reader.allow(*one, path, {"x", "y", "color"});
-    spec.plots.push_back(
-        {reader.text(*one, path, "x"), reader.text(*one, path, "y"), reader.text(*one, path, "color")});
-    if (spec.plots.back().x.empty() || spec.plots.back().y.empty())
+    const auto column = [&](const char* key) {
+      const toml::node* node = one->get(key);
+      return Plot::Column{reader.text(*one, path, key), node ? place_of(*node) : Place{}};
+    };
+    spec.plots.push_back({.x = column("x"), .y = column("y"), .color = column("color")});
+    if (spec.plots.back().x.name.empty() || spec.plots.back().y.name.empty())
       reader.problem(*one, path + "x", "x and y are columns of the table");
   }
   check_vary(reader, table, spec);

@@ -3,15 +3,15 @@
 #include <sqlite3.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <memory>
-#include <set>
+#include <utility>
 
 #include "mallow/errors.h"
 #include "mallow/files.h"
 #include "program/csv.h"
 #include "program/external_program.h"
+#include "program/html.h"
 #include "sweep/text.h"
 
 namespace mallow::sweep {
@@ -115,21 +115,35 @@ void write_table(const SweepFolder& sweep, const std::vector<Outcome>& outcomes)
   });
 }
 
-int draw_plots(const SweepFolder& sweep, const std::vector<Outcome>& outcomes) {
+void check_plots(const SweepFolder& sweep) {
   const std::vector<std::string> columns = table_columns(sweep);
-  const auto place = [&](const std::string& column) {
-    const auto found = std::ranges::find(columns, column);
-    if (found != columns.end()) return static_cast<std::size_t>(found - columns.begin());
-    std::string all;
-    for (const std::string& known : columns) all += (all.empty() ? "" : ", ") + known;
-    throw ConfigError({{sweep.spec().file.string(), 0, 0, "plot",
-                        "'" + column + "' is no column of the table; there are " + all}});
+  std::string all;
+  for (const std::string& known : columns) all += (all.empty() ? "" : ", ") + known;
+  std::vector<Problem> problems;
+  int number = 0;
+  for (const Plot& plot : sweep.spec().plots) {
+    for (const auto& [key, column] :
+         {std::pair{".x", &plot.x}, std::pair{".y", &plot.y}, std::pair{".color", &plot.color}})
+      if (!column->name.empty() && !std::ranges::count(columns, column->name))
+        problems.push_back({sweep.spec().file.string(), column->place.line, column->place.column,
+                            "plot[" + std::to_string(number) + "]" + key,
+                            "'" + column->name + "' is no column of the table; there are " + all});
+    ++number;
+  }
+  if (!problems.empty()) throw ConfigError(std::move(problems));
+}
+
+int draw_plots(const SweepFolder& sweep, const std::vector<Outcome>& outcomes) {
+  check_plots(sweep);
+  const std::vector<std::string> columns = table_columns(sweep);
+  const auto place = [&](const Plot::Column& column) {
+    return static_cast<std::size_t>(std::ranges::find(columns, column.name) - columns.begin());
   };
   const auto rows = rows_of(sweep, outcomes);
   int drawn = 0;
   for (const Plot& plot : sweep.spec().plots) {
     const std::size_t x = place(plot.x), y = place(plot.y);
-    const bool has_color = !plot.color.empty();
+    const bool has_color = !plot.color.name.empty();
     const std::size_t color = has_color ? place(plot.color) : y;
     if (!program::is_installed("gnuplot")) continue;
     const std::string stem = "plot_" + std::to_string(drawn++);
@@ -140,8 +154,9 @@ int draw_plots(const SweepFolder& sweep, const std::vector<Outcome>& outcomes) {
     write_whole(sweep.folder() / (stem + ".dat"), data);
     // noenhanced: brackets and underscores of keys are themselves.
     std::string script = "set terminal svg size 720,480 noenhanced\nset output '" + stem +
-                         ".svg'\nset xlabel '" + plot.x + "'\nset ylabel '" + plot.y + "'\nunset key\n";
-    if (has_color) script += "set cblabel '" + plot.color + "'\n";
+                         ".svg'\nset xlabel '" + plot.x.name + "'\nset ylabel '" + plot.y.name +
+                         "'\nunset key\n";
+    if (has_color) script += "set cblabel '" + plot.color.name + "'\n";
     script += "plot '" + stem + ".dat' using 1:2" +
               (has_color ? ":3 with points pt 7 ps 0.6 palette\n" : " with points pt 7 ps 0.6\n");
     write_whole(sweep.folder() / (stem + ".gp"), script);
@@ -151,27 +166,29 @@ int draw_plots(const SweepFolder& sweep, const std::vector<Outcome>& outcomes) {
 }
 
 bool make_sheet(const SweepFolder& sweep, const std::vector<Outcome>& outcomes) {
-  if (!sweep.spec().images || !program::is_installed("ffmpeg")) return false;
-  std::string list;
-  int count = 0;
+  if (!sweep.spec().images) return false;
+  const auto text = [](const std::string& plain) { return program::html_text(plain); };
+  std::string tiles;
   for (std::size_t point = 0; point < outcomes.size(); ++point) {
-    std::set<fs::path> pictures;
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(sweep.point_folder(point) / "run" / "images", none))
-      pictures.insert(entry.path());
-    if (pictures.empty()) continue;
-    list += "file '" + fs::proximate(*pictures.rbegin(), sweep.folder()).string() + "'\n";
-    ++count;
+    const fs::path picture = sweep.picture(point);
+    if (outcomes[point].status != Outcome::Status::done || picture.empty()) continue;
+    tiles += "<figure><img loading=\"lazy\" src=\"" +
+             text(picture.lexically_relative(sweep.folder()).string()) + "\" alt=\"\"><figcaption><b>" +
+             std::to_string(point) + "</b>";
+    for (std::size_t k = 0; k < sweep.points()[point].size(); ++k)
+      tiles += "<br>" + text(sweep.spec().vary[k].key + " = " + sweep.points()[point][k]);
+    tiles += "</figcaption></figure>\n";
   }
-  if (count == 0) return false;
-  write_whole(sweep.folder() / "sheet.txt", list);
-  const int across = std::max(1, static_cast<int>(std::ceil(std::sqrt(count * 0.75))));
-  const int down = (count + across - 1) / across;
-  return program::run_program(
-             {"ffmpeg", "-y", "-loglevel", "error", "-f", "concat", "-i", "sheet.txt", "-vf",
-              "scale=240:-2,tile=" + std::to_string(across) + "x" + std::to_string(down) + ":padding=2",
-              "-frames:v", "1", "sheet.png"},
-             sweep.folder()) == 0;
+  if (tiles.empty()) return false;
+  const std::string name = text(sweep.spec().file.filename().string());
+  write_whole(
+      sweep.folder() / "sheet.html",
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + name +
+          ": last frames</title>\n<style>\nbody { font: 13px sans-serif; margin: 1em; display: grid; "
+          "grid-template-columns: repeat(auto-fill, minmax(240px, 1fr)); gap: 8px; }\nfigure { margin: "
+          "0; } img { width: 100%; display: block; }\n</style></head><body>\n" +
+          tiles + "</body></html>\n");
+  return true;
 }
 
 }  // namespace mallow::sweep

@@ -113,6 +113,23 @@ std::vector<Setting> settings_around(const Scene& scene, const SceneTraits& trai
   return settings;
 }
 
+std::vector<Setting> settings_from(const Setting& from, const SceneTraits& traits) {
+  std::vector<Setting> settings;
+  const auto add = [&](const std::string& turn, const Scene& changed, double cost) {
+    settings.push_back({.name = from.name + ", " + turn, .scene = changed, .cost = from.cost * cost});
+  };
+  const Scene& scene = from.scene;
+  add("time_step_factor x 1.5", at_time_step(scene, 1.5f), 0.67);
+  add("time_step_factor x 1.25", at_time_step(scene, 1.25f), 0.8);
+  if (traits.regions) add("region_stride x 2", at_stride(scene, 2), 0.7);
+  if (const int n = iterations(scene); n > 0)
+    add("volume_iterations " + std::to_string(n - 1), at_iterations(scene, n - 1), 0.9);
+  if (traits.sums && scene.solver.arithmetic != Arithmetic::native)
+    add("arithmetic native", native(scene), 0.9);
+  add("time_step_factor x 0.8", at_time_step(scene, 0.8f), 1.25);
+  return settings;
+}
+
 Scene finest(const Scene& scene, float factor) {
   Scene result = scene;
   result.solver.time_step_factor = scene.solver.time_step_factor * factor;

@@ -38,6 +38,10 @@ std::vector<Setting> settings_around(const Scene& scene, const SceneTraits& trai
 std::vector<Setting> turned(const Scene& scene, const Knob& knob, const std::vector<std::string>& overrides,
                             bool allow_outside_paths);
 
+/// Settings a turn of one knob away from another, named after both, cheaper ones first: where a search goes
+/// on.
+std::vector<Setting> settings_from(const Setting& from, const SceneTraits& traits);
+
 /// In steps of `factor` times the scene's, and with a region for every particle: what others are judged by.
 Scene finest(const Scene& scene, float factor);
 

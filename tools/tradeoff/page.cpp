@@ -4,29 +4,15 @@
 #include <cmath>
 #include <filesystem>
 
+#include "program/html.h"
 #include "tradeoff/tables.h"
 
 namespace mallow::tradeoff {
 namespace {
 
-constexpr double k_width = 860, k_height = 420, k_margin = 60;  ///< [pixels]
+using program::html_text;
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else if (c == '&')
-      result += "&amp;";
-    else if (c == '"')
-      result += "&quot;";
-    else
-      result += c;
-  }
-  return result;
-}
+constexpr double k_width = 860, k_height = 420, k_margin = 60;  ///< [pixels]
 
 /// A logarithmic axis over some values, from one side of the plot to the other.
 class Axis {
@@ -64,7 +50,7 @@ class Axis {
 
 std::string text_at(double x, double y, const std::string& anchor, const std::string& text) {
   return "<text x=\"" + number(x, 5) + "\" y=\"" + number(y, 5) + "\" text-anchor=\"" + anchor + "\">" +
-         escaped(text) + "</text>\n";
+         html_text(text) + "</text>\n";
 }
 
 std::string line(double x0, double y0, double x1, double y1, const char* kind) {
@@ -100,7 +86,7 @@ std::string plot(const Study& study) {
     const double px = x.place(costs[i]), py = y.place(errors[i]);
     svg += "<circle class=\"" + std::string(study.rows[i].on_front ? "front" : "other") + "\" cx=\"" +
            number(px, 5) + "\" cy=\"" + number(py, 5) + "\" r=\"5\"><title>" +
-           escaped(study.rows[i].setting.name) + "</title></circle>\n";
+           html_text(study.rows[i].setting.name) + "</title></circle>\n";
     const bool at_right = px > 0.7 * k_width;
     svg +=
         text_at(at_right ? px - 8 : px + 8, py - 6, at_right ? "end" : "start", study.rows[i].setting.name);
@@ -109,14 +95,14 @@ std::string plot(const Study& study) {
 }
 
 std::string cell(const std::string& text) {
-  return "<td>" + escaped(text) + "</td>";
+  return "<td>" + html_text(text) + "</td>";
 }
 
 std::string table(const Study& study, std::optional<std::size_t> picked) {
   std::string html =
       "<table><tr><th>setting</th><th>steps [ms]</th><th>surface [ms]</th><th>error [h]</th><th>median "
       "[h]</th><th>worst [h]</th><th>worst [px]</th><th>height [h]</th><th>volume</th><th>energy</th>";
-  for (const std::string& measure : study.measures) html += "<th>" + escaped(measure) + "</th>";
+  for (const std::string& measure : study.measures) html += "<th>" + html_text(measure) + "</th>";
   html += "<th>to paste</th></tr>\n";
   for (const std::size_t i : by_cost(study)) {
     const Row& row = study.rows[i];
@@ -133,7 +119,7 @@ std::string table(const Study& study, std::optional<std::size_t> picked) {
             cell(row.error.worst_pixels ? number(*row.error.worst_pixels) : "") +
             cell(number(row.error.height)) + cell(number(row.error.volume)) + cell(number(row.error.energy));
     for (const double measure : row.error.measures) html += cell(number(measure));
-    html += "<td><pre>" + escaped(lines_to_paste(study.rows.front().setting.scene, row.setting.scene)) +
+    html += "<td><pre>" + html_text(lines_to_paste(study.rows.front().setting.scene, row.setting.scene)) +
             "</pre></td></tr>\n";
   }
   return html + "</table>\n";
@@ -144,7 +130,7 @@ std::string table(const Study& study, std::optional<std::size_t> picked) {
 std::string to_page(const Study& study, std::optional<std::size_t> picked) {
   const std::string name = std::filesystem::path(study.scene).filename().string();
   std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + escaped(name) +
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + html_text(name) +
       ": speed against accuracy</title>\n<style>\n"
       "body { font: 15px sans-serif; margin: 2em auto; max-width: 1200px; color: #222; }\n"
       "svg { width: 100%; font-size: 11px; } .grid { stroke: #ddd; }\n"
@@ -154,12 +140,14 @@ std::string to_page(const Study& study, std::optional<std::size_t> picked) {
       "text-align: left; border-bottom: 1px solid #ddd; vertical-align: top; }\n"
       "tr.front { background: #fdf0ee; } tr.picked { background: #e6f4e6; } pre { margin: 0; }\n"
       "</style></head><body>\n<h1>" +
-      escaped(name) + ": speed against accuracy</h1>\n";
+      html_text(name) + ": speed against accuracy</h1>\n";
   html += plot(study) + "<ul>\n";
-  for (const std::string& remark : remarks(study)) html += "<li>" + escaped(remark) + "</li>\n";
-  return html + "</ul>\n" + table(study, picked) +
-         "<p>Errors are root mean squares over moments against the reference, distances in spacings h of the "
-         "particles, pixels of the scene's camera. Rows in red are on the front.</p>\n</body></html>\n";
+  for (const std::string& remark : remarks(study)) html += "<li>" + html_text(remark) + "</li>\n";
+  html += "</ul>\n" + table(study, picked) + "<h2>What the columns mean</h2>\n<ul>\n";
+  for (const std::string& line : column_help()) html += "<li>" + html_text(line) + "</li>\n";
+  return html +
+         "</ul>\n<p>In brackets: names in tradeoff.csv. Rows in red are on the front, the green one is the "
+         "pick.</p>\n</body></html>\n";
 }
 
 }  // namespace mallow::tradeoff

@@ -1,24 +1,24 @@
 #include "tradeoff/study.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <memory>
+#include <set>
 
 #include "program/failure.h"
 #include "program/film_bounds.h"
-#include "program/frame_surface.h"
 #include "program/machine.h"
 #include "render/viewport.h"
+#include "tradeoff/runner.h"
 
 namespace mallow::tradeoff {
 namespace {
 
 constexpr double k_reference_share = 0.5;  ///< of the budget
 constexpr double k_first_share = 0.06;     ///< that the scene as it is may take
-constexpr double k_settings_share = 0.85;  ///< by which first runs of settings have begun
-constexpr int k_moments = 24;
+constexpr double k_settings_share = 0.7;   ///< by which first runs of settings have begun
+constexpr double k_search_share = 0.8;     ///< by which those that lead on from the best have begun
+constexpr int k_most_rounds = 8;           ///< of turning knobs on
 /// The reference is converged where its last halving moved particles by less than this share of what the
 /// scene as it is is off.
 constexpr double k_little = 0.1;
@@ -26,12 +26,9 @@ constexpr double k_little = 0.1;
 constexpr double k_chaos = 0.5;
 /// Below this order of convergence, halving the step leads nowhere.
 constexpr double k_no_order = 0.5;
+constexpr double k_grown = 1.25;  ///< see parts_again()
 constexpr double k_late = 0.75;
 constexpr float k_shortest_factor = 0.01f;
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -40,20 +37,10 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-/// One particle of each body gets so little speed that the first step moves it by its last bits.
-void move_by_last_bit(Simulation& simulation) {
-  simulation.prepare();
-  const float step = simulation.info().longest_step;
-  for (const BodyId body : simulation.bodies()) {
-    const auto [begin, end] = simulation.rows(body);
-    if (begin == end) continue;
-    const std::size_t row = begin + (end - begin) / 2;
-    const ParticleId id = simulation.ids()[row];
-    Vec3 velocity = simulation.velocities()[row];
-    const float x = std::max(std::abs(simulation.positions()[row].x()), simulation.spacing(body));
-    velocity.x() += 2 * (std::nextafter(x, std::numeric_limits<float>::infinity()) - x) / step;
-    simulation.set_velocity(std::vector<ParticleId>{id}, velocity);
-  }
+/// Whether the last halving moved particles farther than the one before, by more than chance.
+bool parts_again(const std::vector<double>& differences) {
+  const std::size_t n = differences.size();
+  return n > 1 && differences[n - 1] > k_grown * differences[n - 2];
 }
 
 /// The pixels of the scene's camera.
@@ -71,66 +58,26 @@ PixelOf camera_of(const Scene& scene, const Motion& motion) {
   };
 }
 
-/// Runs settings of one scene, all in the same way.
-class Runner {
- public:
-  Runner(const StudyOptions& options, int frames, double frame_time)
-      : options_(options), threads_(program::resolve_threads(options.threads)) {
-    plan_.frames = frames;
-    plan_.frame_time = frame_time;
-    plan_.moments = k_moments;
-  }
-
-  /// deadline: when it ends as it is, by now(); drawn: its surface is drawn, and timed, at each moment.
-  Motion run(const Scene& scene, double deadline, bool drawn, bool last_bit = false) {
-    MotionPlan plan = plan_;
-    plan.stop = [&] {
-      if (options_.stop && options_.stop()) throw Stopped{};
-      return now() > deadline;
-    };
-    std::vector<Skin> skins;
-    std::optional<program::FrameSurface> surface;
-    if (drawn) plan.draw = [&](const Simulation& simulation) { surface->draw(simulation); };
-    return record_motion(
-        [&] {
-          Simulation simulation = build(scene, threads_);
-          if (drawn) {
-            skins = mallow::skins(scene, simulation, threads_);
-            surface.emplace(scene.surface, skins, threads_);
-          }
-          if (last_bit) move_by_last_bit(simulation);
-          return simulation;
-        },
-        plan);
-  }
-
-  MotionPlan& plan() { return plan_; }
-  int threads() const { return threads_; }
-
- private:
-  const StudyOptions& options_;
-  int threads_;
-  MotionPlan plan_;
-};
-
 /// A study under way.
 class Maker {
  public:
-  Maker(const Scene& scene, const StudyOptions& options) : scene_(scene), options_(options), start_(now()) {}
+  Maker(const Scene& scene, const StudyOptions& options)
+      : scene_(scene), options_(options), start_(wall_clock()) {}
 
   Study make() {
     run_plain();
     find_reference();
     run_settings();
     run_last_bit();
+    search();
     repeat();
     judge();
-    study_.spent = now() - start_;
+    study_.spent = wall_clock() - start_;
     return std::move(study_);
   }
 
  private:
-  double left(double share = 1) const { return share * options_.budget - (now() - start_); }
+  double left(double share = 1) const { return share * options_.budget - (wall_clock() - start_); }
   void say(const std::string& what) const {
     if (options_.progress) options_.progress(what);
   }
@@ -155,7 +102,7 @@ class Maker {
     runner_.emplace(options_, study_.all_frames, study_.frame_time);
     runner_->plan().measures = std::move(measures);
     study_.threads = runner_->threads();
-    const double begin = now();
+    const double begin = wall_clock();
     Motion motion = runner_->run(scene_, begin + k_first_share * options_.budget, options_.surface);
     if (!motion.failure.empty()) throw program::RunFailure(motion.failure);
     study_.frames = static_cast<int>(motion.frame_seconds.size());
@@ -165,9 +112,10 @@ class Maker {
                                 " s; give more by --budget");
     if (study_.frames < study_.all_frames) {
       runner_->plan().frames = study_.frames;
-      motion = runner_->run(scene_, now() + options_.budget, options_.surface);  // with moments at its end
+      motion =
+          runner_->run(scene_, wall_clock() + options_.budget, options_.surface);  // with moments at its end
     }
-    plain_cost_ = now() - begin;
+    plain_cost_ = wall_clock() - begin;
     if (study_.frames < study_.all_frames) plain_cost_ *= 0.5;
     add_row({.name = "as it is", .scene = scene_}, std::move(motion));
   }
@@ -183,22 +131,25 @@ class Maker {
   void find_reference() {
     Reference& reference = study_.reference;
     const bool is_finest = print_scene(finest(scene_, 1)) == print_scene(scene_);
-    const double begin = now();
+    const double begin = wall_clock();
     double factor = 1, cost = plain_cost_;
     Motion before = is_finest ? study_.rows.front().motion : run_finest(1);
-    if (!is_finest) cost = now() - begin;
+    if (!is_finest) cost = wall_clock() - begin;
     reference.factors.push_back(1);
     reference.motion = before;
     while (static_cast<float>(factor) * scene_.solver.time_step_factor > 2 * k_shortest_factor &&
            2 * cost < left(k_reference_share)) {
       factor /= 2;
-      const double started = now();
+      const double started = wall_clock();
       say("reference, steps of 1/" + std::to_string(static_cast<int>(1 / factor)));
       Motion motion = run_finest(factor);
-      cost = now() - started;
+      cost = wall_clock() - started;
       if (!motion.failure.empty() || motion.moments.size() != before.moments.size()) break;
       reference.factors.push_back(factor);
       reference.differences.push_back(motion_error(before, motion).rms);
+      // The one before stays the reference: in still shorter steps rounding counts more than the step.
+      reference.parts_again = parts_again(reference.differences);
+      if (reference.parts_again) break;
       reference.factor = factor;
       reference.motion = motion;
       before = std::move(motion);
@@ -207,7 +158,9 @@ class Maker {
       if (reference.converged) break;
     }
     reference.order = convergence_order(reference.differences);
-    if (!reference.differences.empty()) {
+    if (reference.parts_again) {
+      reference.error = reference.differences.back();
+    } else if (!reference.differences.empty()) {
       // What is left of a geometric series; with no order known, as much as the last difference.
       const double ratio = reference.order && *reference.order > 0.2 ? std::exp2(*reference.order) : 2;
       reference.error = reference.differences.back() / (ratio - 1);
@@ -223,18 +176,41 @@ class Maker {
     for (Setting& setting : settings_around(scene_, traits_)) settings.push_back(std::move(setting));
     for (const Setting& setting : settings) {
       // The last bit is still to come, which is one more run.
-      if (setting.cost * plain_cost_ + plain_cost_ > left(k_settings_share)) {
-        study_.left_out.push_back(setting.name);
-        continue;
-      }
-      say(setting.name);
-      Motion motion = runner_->run(setting.scene, start_ + options_.budget, options_.surface);
-      if (motion.failure.empty() && static_cast<int>(motion.frame_seconds.size()) == study_.frames)
-        add_row(setting, std::move(motion));
-      else if (motion.failure.empty())
+      if (setting.cost * plain_cost_ + plain_cost_ > left(k_settings_share))
         study_.left_out.push_back(setting.name);
       else
-        study_.failed.push_back(setting.name + ": " + motion.failure);
+        run_setting(setting);
+    }
+    listed_ = study_.rows.size();
+  }
+
+  void run_setting(const Setting& setting) {
+    say(setting.name);
+    Motion motion = runner_->run(setting.scene, start_ + options_.budget, options_.surface);
+    if (motion.failure.empty() && static_cast<int>(motion.frame_seconds.size()) == study_.frames)
+      add_row(setting, std::move(motion));
+    else if (motion.failure.empty())
+      study_.left_out.push_back(setting.name);
+    else
+      study_.failed.push_back(setting.name + ": " + motion.failure);
+  }
+
+  /// Turns knobs of the setting that is best by the limit, as long as that leads to a better one: so knobs
+  /// come together that no list has.
+  void search() {
+    if (!options_.limit) return;
+    std::set<std::string> known;
+    for (const Row& row : study_.rows) known.insert(print_scene(row.setting.scene));
+    std::set<std::size_t> turned;
+    for (int round = 0; round < k_most_rounds; ++round) {
+      judge();
+      const auto best = options_.limit->pick(study_.trades());
+      if (!best || !turned.insert(best->index).second) return;
+      const Setting from = study_.rows[best->index].setting;
+      for (const Setting& setting : settings_from(from, traits_))
+        if (setting.cost * plain_cost_ < left(k_search_share) &&
+            known.insert(print_scene(setting.scene)).second)
+          run_setting(setting);
     }
   }
 
@@ -248,11 +224,14 @@ class Maker {
     study_.last_bit_late = motion_error(moved, plain, k_late);
   }
 
-  /// Timed runs, of all settings in turn, until the budget or their number is reached.
+  /// Timed runs, of all settings in turn that may be picked, until the budget or their number is reached.
   void repeat() {
+    judge();
+    const std::optional<Limit>& limit = options_.limit;
     for (int repeat = 1; repeat < options_.repeats; ++repeat) {
       say("run " + std::to_string(repeat + 1) + " of every setting");
       for (Row& row : study_.rows) {
+        if (limit && !limit->is_time && study_.error(row) > limit->most) continue;
         const double cost = row.motion.other_seconds + row.seconds.front() * study_.frames +
                             row.drawing.front() * static_cast<double>(row.motion.draw_seconds.size());
         if (1.2 * cost > left()) continue;
@@ -267,11 +246,12 @@ class Maker {
   void judge() {
     const Motion& reference = study_.reference.motion;
     const PixelOf pixel = camera_of(scene_, study_.rows.front().motion);
-    std::vector<double> errors;
+    std::vector<double> errors;  // of the settings that any study has, wherever a search led
     for (Row& row : study_.rows) {
       row.error = motion_error(row.motion, reference, 0, pixel);
       row.late = motion_error(row.motion, reference, k_late, pixel);
-      errors.push_back(row.error.rms);
+      row.on_front = false;
+      if (errors.size() < listed_) errors.push_back(row.error.rms);
     }
     const double typical = k_chaos * median(errors);
     const Reference& found = study_.reference;
@@ -287,7 +267,8 @@ class Maker {
   double start_;
   std::optional<Runner> runner_;
   SceneTraits traits_;
-  double plain_cost_ = 0;  ///< wall time of a run as it is [s]
+  std::size_t listed_ = 0;  ///< rows before any search
+  double plain_cost_ = 0;   ///< wall time of a run as it is [s]
   Study study_;
 };
 
@@ -300,9 +281,13 @@ double Row::median_drawing() const {
   return median(drawing);
 }
 
+double Row::least_frame_seconds() const {
+  return std::ranges::min(seconds) + std::ranges::min(drawing);
+}
+
 std::vector<Trade> Study::trades() const {
   std::vector<Trade> trades;
-  for (const Row& row : rows) trades.push_back({row.frame_seconds(), error(row)});
+  for (const Row& row : rows) trades.push_back({row.least_frame_seconds(), error(row)});
   return trades;
 }
 

@@ -11,6 +11,17 @@
 
 namespace mallow::tradeoff {
 
+/// What a setting has to hold.
+struct Limit {
+  bool is_time = false;
+  double most = 0;  ///< of a frame [s], or of the error [h]
+
+  /// The cheapest that is accurate enough, or the most accurate that is cheap enough.
+  std::optional<Pick> pick(std::span<const Trade> trades) const {
+    return is_time ? pick_by_cost(trades, most) : pick_by_error(trades, most);
+  }
+};
+
 /// What is to be found out.
 struct StudyOptions {
   double budget = 60;  ///< wall time of all runs [s], > 0
@@ -19,6 +30,7 @@ struct StudyOptions {
   bool surface = true;
   std::vector<Setting> extra = {};         ///< of the user's knobs; they come first
   std::vector<std::string> measures = {};  ///< for parse_measure()
+  std::optional<Limit> limit = {};         ///< knobs are turned on from what picks best by it
   std::function<void(const std::string& what)> progress = {};
   std::function<bool()> stop = {};  ///< asked before every step: true ends all, with Stopped
 };
@@ -38,6 +50,7 @@ struct Row {
   double median_seconds() const;  ///< steps [s]
   double median_drawing() const;  ///< [s]
   double frame_seconds() const { return median_seconds() + median_drawing(); }
+  double least_frame_seconds() const;
 };
 
 /// The reference and how it was found.
@@ -46,8 +59,9 @@ struct Reference {
   std::vector<double> factors;      ///< that were tried
   std::vector<double> differences;  ///< RMS between successive ones [h]
   std::optional<double> order;
-  double error = 0;        ///< what it may be off itself, by its order [h]
-  bool converged = false;  ///< false: the budget's half ended it
+  double error = 0;          ///< what it may be off itself, by its order [h]
+  bool converged = false;    ///< false: the budget's half ended it, or
+  bool parts_again = false;  ///< the last halving moved particles farther than the one before
   Motion motion;
 };
 
@@ -71,7 +85,7 @@ struct Study {
   /// What settings are judged by [h]: the RMS of positions or, where the motion is chaotic, that of shape in
   /// the last quarter.
   double error(const Row& row) const { return chaotic ? row.late.shape() : row.error.rms; }
-  /// Cost: of a frame [s].
+  /// Cost: of a frame, the least of its runs [s]. What other programs take away is no part of a setting.
   std::vector<Trade> trades() const;
 };
 

@@ -54,7 +54,9 @@ std::string reference_remark(const Reference& reference) {
   text += joined(differences, ", ");
   if (reference.order) text += "; order of convergence " + number(*reference.order, 2);
   return text + "; itself off by about " + number(reference.error) + " h" +
-         (reference.converged ? "" : ", as half the budget ended it");
+         (reference.converged     ? ""
+          : reference.parts_again ? ", as still shorter steps part from it again"
+                                  : ", as half the budget ended it");
 }
 
 std::string chaos_remark(const Study& study) {
@@ -123,6 +125,31 @@ std::string to_text(const Study& study) {
   text += "* on the front: nothing that costs no more is as near to the reference\n";
   for (const std::string& line : remarks(study)) text += line + '\n';
   return text;
+}
+
+std::vector<std::string> column_help() {
+  return {
+      "steps [ms], range (steps_ms, steps_ms_least, steps_ms_most): wall time of a frame's steps, median and "
+      "range of the "
+      "timed runs (runs)",
+      "surface [ms] (surface_ms): of drawing a frame's surface; frame_ms: steps and surface",
+      "error [h] (error_h): what settings are judged by, rms_h, or late_shape_h where the motion is chaotic",
+      "median, rms, worst [h] (median_h, rms_h, worst_h): distance of a particle from where the reference "
+      "has "
+      "it, over all particles and moments; h is the spacing of its body",
+      "median, worst [px] (median_px, worst_px): the same as the scene's camera sees it; empty, or 0, where "
+      "it "
+      "is out of view",
+      "height (height_h), spread_h, center_h: of the height of the box around all particles, of their root "
+      "mean square distance from the vertical through the centre, and of the centre of mass; root mean "
+      "square "
+      "over moments [h]",
+      "late_shape_h: the worst of height, spread and centre over the last quarter [h]",
+      "volume: of the particles' volume, as a share of the reference's",
+      "energy: of kinetic energy and that of gravity and elasticity in sum, as a share of the reference's "
+      "largest kinetic energy",
+      "on_front, *: nothing that costs no more is as near to the reference",
+      "those of --measure: root mean square error over moments, in m, m/s or J"};
 }
 
 std::string to_csv(const Study& study) {

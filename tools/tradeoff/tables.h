@@ -11,6 +11,8 @@ namespace mallow::tradeoff {
 std::string to_text(const Study& study);
 /// What there is to know about the reference, chaos, and what was left out: a sentence each.
 std::vector<std::string> remarks(const Study& study);
+/// What the columns of to_text(), to_csv() and the page mean, a line each.
+std::vector<std::string> column_help();
 /// A row for each setting.
 std::string to_csv(const Study& study);
 /// What `mallow tune` settled on.
