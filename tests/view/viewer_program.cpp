@@ -23,19 +23,26 @@ fs::path scratch() {
 Played play(const std::vector<std::string>& arguments, const std::string& script) {
   const fs::path file = scratch() / "script.txt";
   std::ofstream(file) << script;
-  std::string line = "cd " + program::shell_word(scratch().string()) +
-                     " && XDG_CACHE_HOME=" + program::shell_word((scratch() / "cache").string()) +
-                     " xvfb-run -a -s '-screen 0 1280x1024x24' timeout 280 " + MALLOW_VIEW + " --script " +
-                     program::shell_word(file.string());
-  for (const std::string& argument : arguments) line += " '" + argument + "'";
-  line += " 2>&1";
+  // What xvfb-run ends with is not always what the viewer did: it may fail to clean up behind one that ended
+  // at once.
+  const fs::path run = scratch() / "run.sh", code = scratch() / "exit_code";
+  fs::remove(code);
+  std::string command =
+      std::string("timeout 280 ") + MALLOW_VIEW + " --script " + program::shell_word(file.string());
+  for (const std::string& argument : arguments) command += " '" + argument + "'";
+  std::ofstream(run) << command << "\necho $? > " << program::shell_word(code.string()) << "\n";
+  const std::string line = "cd " + program::shell_word(scratch().string()) +
+                           " && XDG_CACHE_HOME=" + program::shell_word((scratch() / "cache").string()) +
+                           " xvfb-run -a -s '-screen 0 1280x1024x24' sh " +
+                           program::shell_word(run.string()) + " 2>&1";
   Played played;
   const auto started = std::chrono::steady_clock::now();
   FILE* const pipe = ::popen(line.c_str(), "r");
   char part[4096];
   while (std::fgets(part, sizeof part, pipe)) played.out += part;
   const int status = ::pclose(pipe);
-  played.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (!(std::ifstream(code) >> played.exit_code))
+    played.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   played.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   return played;
 }

@@ -53,6 +53,16 @@ TEST_F(view_window, draws_the_stored_picture) {
   EXPECT_LT(far_off(drawn, stored, 16), 0.01) << "drawn: " << scratch() / "drawn.png";
 }
 
+/// Where no graphics card draws, light is found at corners alone, and edges have one sample.
+TEST_F(view_window, draws_nearly_the_same_with_one_sample_a_pixel) {
+  const Played played = play({k_cube, "--paused", "--width", "320", "--height", "240", "--samples", "1"},
+                             "ready\npictures 3\nscene plain.png\nclose\n");
+  ASSERT_EQ(played.exit_code, 0) << played.out;
+  const Picture drawn = read_png(scratch() / "plain.png");
+  const Picture stored = read_png(std::filesystem::path(MALLOW_VIEW_PICTURES) / "cube.png");
+  EXPECT_LT(far_off(drawn, stored, 16), 0.004) << "drawn: " << scratch() / "plain.png";
+}
+
 TEST_F(view_window, a_grab_moves_what_it_should) {
   const std::string fall = "ready\nframes 60\nkey space\npictures 4\nkey space\n";
   const std::string wait = "frames 40\nkey space\npictures 4\ncenter\nclose\n";
