@@ -153,7 +153,7 @@ TEST_F(view_window, marks_show_pins_the_region_of_a_particle_and_contacts) {
 
 TEST_F(view_window, a_film_holds_every_frame_of_the_scene_once) {
   const Played played = play({k_cube, "--width", "320", "--height", "240"},
-                             "ready\nkey f\nframes 8\npictures 2\nkey f\npictures 2\nclose\n");
+                             "ready\nkey space\npictures 4\nkey f\nframes 8\npictures 2\nkey f\npictures 2\nclose\n");
   ASSERT_EQ(played.exit_code, 0) << played.out;
   if (!program::is_installed("ffmpeg") || !program::is_installed("ffprobe")) {
     EXPECT_TRUE(std::filesystem::exists(scratch() / "view.mp4.frames" / "images")) << "as no ffmpeg is here";
