@@ -300,7 +300,8 @@ class Warnings {
         std::max(1.0, std::round(k_best_stride * each)), " leaves fewest");
   }
 
-  /// Particles that start within another body, which drives them out.
+  /// Particles that start within another body: contact pushes those apart that are near, by lines between
+  /// them, and bodies that stand deep in each other may stay so.
   void look_at_overlaps() {
     float reach = std::numeric_limits<float>::infinity();
     for (const BodyState& body : state_.bodies) reach = std::min(reach, body.spacing);
@@ -322,7 +323,7 @@ class Warnings {
     for (std::size_t g = 0; g < overlapping.size(); ++g)
       if (overlapping[g] > 0)
         add(state_.bodies[g], overlapping[g], " of ", state_.bodies[g].size(),
-            " particles start within another body, which drives them out; move one of the two");
+            " particles start within another body, and may stay there; move one of the two");
   }
 
   /// Particles that start within a collider, which drives them out; pinned ones feel none.

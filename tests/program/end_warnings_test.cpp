@@ -21,5 +21,38 @@ TEST(crushed_share, counts_who_has_a_neighbour_within_three_tenths_of_a_spacing)
   EXPECT_EQ(crushed_share({}, 1), 0);
 }
 
+TEST(end_warnings, name_one_elastic_body_of_a_material_that_yielded_to_what_nobody_asked_it_to_bear) {
+  Scene scene;
+  scene.materials.resize(2);
+  scene.materials[0].name = "jelly";
+  scene.materials[1].name = "paper";
+  scene.materials[1].material.update_threshold = 0.3f;
+  scene.bodies.resize(3);
+  for (std::size_t body = 0; body < 3; ++body) scene.bodies[body].material = body < 2 ? "jelly" : "paper";
+  SimulationInfo info;
+  info.bodies.resize(3);
+  ParticleFrame last;
+  for (std::uint32_t body = 0; body < 3; ++body) {
+    info.bodies[body].name = std::to_string(body);
+    info.bodies[body].spacing = 1;
+    info.bodies[body].shape_matching = true;
+    for (int i = 0; i < 20; ++i) {  // two of the last eighteen lie on another, or four of the second body
+      const bool near = i < (body == 1 ? 4 : 2);
+      last.positions.push_back({near ? 0.1f * static_cast<float>(i) : static_cast<float>(i), 0, 0});
+      last.bodies.push_back(body);
+    }
+  }
+  const std::vector<std::string> all = end_warnings(scene, info, last);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(
+      all[0].find("body '1': 20.0% of its particles ended nearer than 0.3 spacings to another, and so did "
+                  "some of 1 more of its material: it was crushed, as what pressed it was more than "
+                  "material.update_threshold bears"),
+      0u)
+      << all[0];
+  for (BodyInfo& body : info.bodies) body.alpha = 0.8f;
+  EXPECT_TRUE(end_warnings(scene, info, last).empty()) << "what splashes comes near";
+}
+
 }  // namespace end_warnings_test
 }  // namespace mallow::program

@@ -56,6 +56,19 @@ TEST_F(scene_warnings, name_a_frame_time_in_milliseconds) {
       warns(warnings_of(read(falling("0.003", "0.0063", "-9.81", "frame_time = 0.5\n"))), "frame_time"));
 }
 
+TEST_F(scene_warnings, name_keyframes_that_are_half_a_turn_or_more_apart) {
+  const auto turned_by = [&](const std::string& degrees) {
+    return warnings_of(read(
+        falling("0.1", "0.21", "-9.81", "") +
+        "[[collider]]\nbox = { min = [-1, -1, -3], max = [1, 1, -2] }\nkeyframes = [{ time = 0 }, { time = "
+        "1, rotate = [0, 0, " +
+        degrees + "] }]\n"));
+  };
+  EXPECT_TRUE(warns(turned_by("360"), "collider[0]: keyframes[1].rotate is 360 degrees from the one before"));
+  EXPECT_TRUE(warns(turned_by("-180"), "shorter way round"));
+  EXPECT_FALSE(warns(turned_by("179"), "shorter way round"));
+}
+
 TEST_F(scene_warnings, name_gravity_that_is_left_out_beside_pascals) {
   const std::string body = "[[body]]\nmaterial = \"honey\"\nbox = { count = [4, 4, 4], spacing = 0.01 }\n";
   const auto has = [&](const std::string& text) {

@@ -42,11 +42,11 @@ void print_bodies(const SimulationInfo& info) {
 
 /// How stiff bodies with a shape are, and how stiff they could be.
 void print_stiffness(const SimulationInfo& info) {
-  std::printf("\n%-16s %12s %15s %12s %16s %14s\n", "body", "E [Pa]", "at alpha 0 [Pa]", "at most [Pa]",
+  std::printf("\n%-16s %12s %16s %12s %16s %14s\n", "body", "E [Pa]", "E, alpha 0 [Pa]", "E most [Pa]",
               "elastic step [s]", "region radius");
   for (const BodyInfo& body : info.bodies)
     if (body.shape_matching)
-      std::printf("%-16s %12.4g %15.4g %12.4g %16.4g %12.3g h\n", body.name.c_str(),
+      std::printf("%-16s %12.4g %16.4g %12.4g %16.4g %12.3g h\n", body.name.c_str(),
                   static_cast<double>((1 - body.alpha) * body.youngs_modulus),
                   static_cast<double>(body.youngs_modulus), static_cast<double>(body.most_youngs_modulus),
                   static_cast<double>(body.elastic_time_step),

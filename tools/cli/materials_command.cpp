@@ -17,7 +17,7 @@ void print_modulus(const Material& material, float alpha) {
 }
 
 void list_materials() {
-  std::printf("%-14s %6s %10s %16s  %s\n", "material", "alpha", "E [Pa]", "density [kg/m3]", "what it is");
+  std::printf("%-14s %6s %10s %16s  %s\n", "material", "alpha", "E [Pa] *", "density [kg/m3]", "what it is");
   for (const MaterialPreset& preset : material_presets()) {
     const Material& material = preset.material;
     const float alpha = material.alpha.at(0);
@@ -26,6 +26,8 @@ void list_materials() {
     std::printf(" %16.4g  %s\n", static_cast<double>(material.rest_density.value_or(0)), preset.about);
   }
   std::printf(
+      "\n* as it acts: (1 - alpha) youngs_modulus. Write youngs_modulus = E/(1 - alpha) for a material of "
+      "your own."
       "\nIn a scene: material = \"honey\" of a body or an emitter, in metres and under 9.81 m/s2.\n"
       "A picture of cubes of them all, dropped, squeezed and on a slope: data/pictures/materials.jpg\n");
 }

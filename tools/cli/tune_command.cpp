@@ -65,18 +65,19 @@ void tune(const TuneOptions& options, const Scene& scene, const tradeoff::StudyO
         "judged by the first " + std::to_string(study.frames) + " of " + std::to_string(study.all_frames) +
         " frames alone, as the budget ended: give more by --budget, or less run.frames; "
         "nothing is written");
-  if (!limit.is_time && !study.chaotic && study.reference.error > limit.most)
+  std::fflush(stdout);  // before what is told on the other stream
+  if (!limit.is_time && study.reference_error() > limit.most)
     throw program::RunFailure(
         "--error " + options.error + " cannot be judged, as the reference itself is off by about " +
-        tradeoff::number(study.reference.error) + " h: give more by --budget; nothing is written");
+        tradeoff::number(study.reference_error()) + " h: give more by --budget; nothing is written");
   if (!confirmed)
     throw program::RunFailure("no setting holds " +
                               (limit.is_time ? "--frame " + options.frame : "--error " + options.error) +
                               "; the nearest is " + row.setting.name + ", " + described(study, row));
-  if (!limit.is_time && !study.chaotic && study.reference.error > 0.5 * limit.most)
+  if (!limit.is_time && study.reference_error() > 0.5 * limit.most)
     std::fprintf(stderr,
                  "mallow: warning: the reference itself is off by about %s h: more --budget tells more\n",
-                 tradeoff::number(study.reference.error).c_str());
+                 tradeoff::number(study.reference_error()).c_str());
   if (!options.write.empty())
     write_whole(options.write,
                 program::Cache::scene_text(fs::absolute(options.write).parent_path(), row.setting.scene));

@@ -127,9 +127,13 @@ CheckpointedRun load_newest_checkpoint(const Cache& cache, int threads) {
   }
   const std::string folder = cache.folder().string();
   if (refused.empty() && is_complete(cache))
-    throw IoError({folder, 0, 0, "--resume", "holds a run that is complete, and no checkpoint of it"});
-  const std::string why =
-      refused.empty() ? "holds no checkpoint: the run ended before the first one was due" : refused;
+    throw IoError({folder, 0, 0, "--resume",
+                   "holds a run that is complete, and no checkpoint of it to go on from: `mallow run "
+                   "--checkpoint-every` leaves one"});
+  const std::string why = refused.empty() ? "holds no checkpoint: the run ended before the first one was "
+                                            "due, or while it drew (`mallow render` "
+                                            "draws what is missing)"
+                                          : refused;
   throw IoError({folder, 0, 0, "--resume",
                  why + "; start again with: mallow run SCENE --out " + shell_word(folder) + " --overwrite"});
 }

@@ -17,6 +17,27 @@ constexpr float k_crushed = 0.3f;
 /// plastic_creep of 20 1/s with 0, 0 and 0.005. Densities do not tell: the largest compression was 0.13.
 constexpr double k_most_crushed = 0.01;
 
+/// All strain beyond the yield is gone within a step.
+bool flows_at_once(const Material& material) {
+  return (material.plastic_yield || material.plastic_yield_by_temperature) && !material.plastic_creep;
+}
+
+/// Above this alpha particles come near each other in splashes, which is no damage.
+constexpr float k_mostly_elastic = 0.5f;
+
+/// Elastic, and yields to what presses it though nobody asked for that.
+bool yields_by_default(const Material& material, const BodyInfo& body) {
+  const bool flows = material.plastic_yield || material.plastic_yield_by_temperature;
+  return !flows && !material.update_threshold && body.shape_matching && body.alpha <= k_mostly_elastic;
+}
+
+/// Bodies of one material that were crushed, and the one that was most.
+struct Crushed {
+  std::size_t bodies = 0;
+  double share = 0;
+  std::string name;
+};
+
 using Cell = std::array<std::int64_t, 3>;
 
 Cell cell_of(const Vec3& x, double side) {
@@ -54,23 +75,40 @@ double crushed_share(std::span<const Vec3> positions, float spacing) {
 
 std::vector<std::string> end_warnings(const Scene& scene, const SimulationInfo& info,
                                       const ParticleFrame& last) {
-  std::vector<std::string> all;
   const std::vector<std::size_t> materials = body_materials(scene);
-  for (std::uint32_t body = 0; body < std::min(materials.size(), info.bodies.size()); ++body) {
+  const std::size_t bodies = std::min(materials.size(), info.bodies.size());
+  std::vector<std::vector<Vec3>> positions(bodies);
+  for (std::size_t i = 0; i < last.positions.size(); ++i)
+    if (last.bodies[i] < bodies) positions[last.bodies[i]].push_back(last.positions[i]);
+  std::vector<Crushed> crushed(scene.materials.size());
+  for (std::size_t body = 0; body < bodies; ++body) {
     const Material& material = scene.materials[materials[body]].material;
-    const bool flows = material.plastic_yield || material.plastic_yield_by_temperature;
-    if (!flows || material.plastic_creep) continue;
-    std::vector<Vec3> positions;
-    for (std::size_t i = 0; i < last.positions.size(); ++i)
-      if (last.bodies[i] == body) positions.push_back(last.positions[i]);
-    const double share = crushed_share(positions, info.bodies[body].spacing);
+    if (!flows_at_once(material) && !yields_by_default(material, info.bodies[body])) continue;
+    const double share = crushed_share(positions[body], info.bodies[body].spacing);
     if (share < k_most_crushed) continue;
+    Crushed& all = crushed[materials[body]];
+    ++all.bodies;
+    if (share <= all.share) continue;
+    all.share = share;
+    all.name = info.bodies[body].name;
+  }
+  std::vector<std::string> all;
+  for (std::size_t m = 0; m < crushed.size(); ++m) {
+    if (crushed[m].bodies == 0) continue;
     std::array<char, 32> percent{};
-    std::snprintf(percent.data(), percent.size(), "%.1f%%", 100 * share);
+    std::snprintf(percent.data(), percent.size(), "%.1f%%", 100 * crushed[m].share);
     all.push_back(
-        "body '" + info.bodies[body].name + "': " + percent.data() +
-        " of its particles ended nearer than 0.3 spacings to another: it was crushed, as all strain "
-        "beyond plastic_yield flows at once; give material.plastic_creep, 20 1/s for a paste");
+        "body '" + crushed[m].name + "': " + percent.data() +
+        " of its particles ended nearer than 0.3 spacings to another" +
+        (crushed[m].bodies > 1
+             ? ", and so did some of " + std::to_string(crushed[m].bodies - 1) + " more of its material"
+             : "") +
+        (flows_at_once(scene.materials[m].material)
+             ? ": it was crushed, as all strain beyond plastic_yield flows at once; give "
+               "material.plastic_creep, 20 1/s for a paste"
+             : ": it was crushed, as what pressed it was more than material.update_threshold bears, and "
+               "does not come back; raise that for what shall stay elastic, or give youngs_modulus or "
+               "solver.volume_iterations for more resistance"));
   }
   return all;
 }

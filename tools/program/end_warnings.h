@@ -13,7 +13,8 @@ namespace mallow::program {
 /// one apart, a lattice that is displaced at random 0.7 at least.
 double crushed_share(std::span<const Vec3> positions, float spacing);
 
-/// What only the end of a run shows, a sentence each: bodies that flow at once and were crushed. info: of the
+/// What only the end of a run shows, a sentence each: bodies that were crushed, as they flow at once or
+/// yield to more than the default bears, one sentence a material. info: of the
 /// run's simulation. last: its particles at the end.
 std::vector<std::string> end_warnings(const Scene& scene, const SimulationInfo& info,
                                       const ParticleFrame& last);

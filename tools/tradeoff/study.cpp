@@ -147,6 +147,7 @@ class Maker {
       if (!motion.failure.empty() || motion.moments.size() != before.moments.size()) break;
       reference.factors.push_back(factor);
       reference.differences.push_back(motion_error(before, motion).rms);
+      reference.late_shape = motion_error(before, motion, k_late).shape();
       // The one before stays the reference: in still shorter steps rounding counts more than the step.
       reference.parts_again = parts_again(reference.differences);
       if (reference.parts_again) break;
@@ -257,8 +258,8 @@ class Maker {
     const Reference& found = study_.reference;
     const bool converges =
         found.differences.size() < 2 || found.order.value_or(1) > k_no_order || found.error < typical;
-    const bool parts = study_.last_bit && study_.last_bit->rms >= typical;
-    study_.chaotic = typical > 0 && (parts || !converges);
+    study_.parts = study_.last_bit && study_.last_bit->rms >= typical;
+    study_.chaotic = typical > 0 && (study_.parts || !converges);
     for (const std::size_t i : pareto_front(study_.trades())) study_.rows[i].on_front = true;
   }
 

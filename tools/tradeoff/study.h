@@ -60,6 +60,7 @@ struct Reference {
   std::vector<double> differences;  ///< RMS between successive ones [h]
   std::optional<double> order;
   double error = 0;          ///< what it may be off itself, by its order [h]
+  double late_shape = 0;     ///< by how much the last halving moved shapes in the last quarter [h]
   bool converged = false;    ///< false: the budget's half ended it, or
   bool parts_again = false;  ///< the last halving moved particles farther than the one before
   Motion motion;
@@ -76,6 +77,7 @@ struct Study {
   /// One position moved by its last bit moves particles by as much as settings do, or halving the step
   /// brings them to no place.
   bool chaotic = false;
+  bool parts = false;                        ///< the former of the two
   std::optional<MotionError> last_bit;       ///< what moving one position by its last bit does
   std::optional<MotionError> last_bit_late;  ///< the same in the last quarter
   std::vector<std::string> left_out;         ///< settings that the budget did not reach
@@ -85,6 +87,8 @@ struct Study {
   /// What settings are judged by [h]: the RMS of positions or, where the motion is chaotic, that of shape in
   /// the last quarter.
   double error(const Row& row) const { return chaotic ? row.late.shape() : row.error.rms; }
+  /// What the reference is off itself, by the same measure [h].
+  double reference_error() const { return chaotic ? reference.late_shape : reference.error; }
   /// Cost: of a frame, the least of its runs [s]. What other programs take away is no part of a setting.
   std::vector<Trade> trades() const;
 };

@@ -65,7 +65,9 @@ std::string chaos_remark(const Study& study) {
                                            : "the budget was too small to move one position by its last bit";
   if (!study.chaotic)
     return (study.last_bit ? "not chaotic: " : "whether it is chaotic is not known: ") + moved;
-  std::string text = "the motion is chaotic: " + moved;
+  // What the last bit does not move may still go elsewhere with each step length, as where contacts differ.
+  std::string text =
+      (study.parts ? "the motion is chaotic: " : "shorter steps lead to no one motion: ") + moved;
   if (!study.reference.differences.empty())
     text += ", the last halving of steps by " + number(study.reference.differences.back()) + " h";
   text += ". So settings are judged by height, spread and centre over the last quarter";

@@ -97,7 +97,7 @@ void draw_top_bar(const Frame& frame, ViewState& state, double drawn_per_second)
     ImGui::SameLine();
     plot("moving", "J", frame.samples, [](const Sample& sample) { return sample.kinetic; });
     ImGui::SameLine();
-    plot("height", "J", frame.samples, [&](const Sample& sample) { return sample.potential - lowest; });
+    plot("gravity", "J", frame.samples, [&](const Sample& sample) { return sample.potential - lowest; });
     if (size.x > 1320) {
       ImGui::SameLine();
       plot("momentum", "N s", frame.samples, [](const Sample& sample) { return sample.momentum; });

@@ -256,7 +256,8 @@ class MALLOW_EXPORT Simulation {
   /// Of particles that are not pinned [m/s]. Throws ConfigError, and changes nothing, where an id is not one.
   void set_velocity(std::span<const ParticleId> ids, const Vec3& velocity);
   /// Moves a body, pinned particles too, so that its centre of mass is there [m]. Where it then overlaps
-  /// another body, contact drives them apart.
+  /// another body, contact pushes apart those particles that are near each other; two that stand deep in each
+  /// other may stay so.
   void set_position(BodyId body, const Vec3& center_of_mass);
   /// Adds momentum [N s] to the particles of a body that are not pinned, the same to each.
   void add_impulse(BodyId body, const Vec3& impulse);
