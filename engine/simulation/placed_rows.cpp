@@ -90,7 +90,7 @@ std::vector<std::uint32_t> PlacedRows::near(const VectorColumn& positions, std::
             if (is_near(positions.get(row), {x, x}, reach)) rows.push_back(row);
   }
   std::ranges::sort(rows);
-  rows.erase(std::ranges::unique(rows).begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   return rows;
 }
 
