@@ -208,7 +208,7 @@ void judge_motion(Simulation::State& state) {
     body.mean_speed = sums.speed / static_cast<double>(body.size());
     body.step_external = sums.unpinned > 0 ? sums.external / static_cast<double>(sums.unpinned) : 0.0;
   }
-  constexpr std::size_t k_bodies = 16;  // the axes of one take half a microsecond
+  constexpr std::size_t k_bodies = 16;  // one takes a fraction of a microsecond, most of all a flat one
   parallel_for(
       state.execution.threads, state.awake.size(),
       [&](std::size_t begin, std::size_t end) {
