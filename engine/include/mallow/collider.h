@@ -127,6 +127,7 @@ struct PoseKeyframe {
 /// An obstacle: a shape in a frame of its own, how the frame stands and how it moves. Contact is model 2,
 /// section 4 A: no penetration, restitution, Coulomb friction.
 struct Collider {
+  /// What may stand in a frame.
   using Shape = std::variant<Plane, Sphere, Box, Capsule, Cylinder, Cone, ConvexHull, DistanceField, Union>;
   Shape shape = Plane{};
   Pose pose = {};

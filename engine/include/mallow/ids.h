@@ -8,11 +8,17 @@
 /// removed ids are 0, 1, 2, ...
 namespace mallow {
 
+/// Of Simulation::ids().
 using ParticleId = std::uint64_t;
+/// Of Simulation::add_body().
 enum class BodyId : std::uint64_t {};
+/// Of Simulation::add_collider().
 enum class ColliderId : std::uint64_t {};
+/// Of Simulation::pin().
 enum class PinId : std::uint64_t {};
+/// Of Simulation::add_emitter().
 enum class EmitterId : std::uint64_t {};
+/// Of Simulation::add_sink().
 enum class SinkId : std::uint64_t {};
 /// Materials are counted from 0 and stay.
 enum class MaterialId : std::uint32_t {};

@@ -56,6 +56,7 @@ struct StepReport {
 
 /// What happened to a body: see Simulation::events().
 struct BodyEvent {
+  /// What it was.
   enum class Kind {
     slept,    ///< it is at rest and costs nothing from now on
     woke,     ///< it moves again
