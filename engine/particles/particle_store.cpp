@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "core/parallel.h"
+#include "particles/particle_columns.h"
 
 namespace mallow {
 namespace {
@@ -23,7 +24,7 @@ void gather(const Threads& threads, std::size_t begin, std::span<const std::uint
 /// The columns of a store that are there, one after the other.
 template <class Visit>
 void for_each_present(ParticleStore& store, const Visit& visit) {
-  ParticleStore::for_each_column(store, [&](auto& column) {
+  for_each_column(store, [&](const SavedColumn&, auto& column) {
     if (column.size() > 0) visit(column);
   });
 }
@@ -32,7 +33,7 @@ void for_each_present(ParticleStore& store, const Visit& visit) {
 
 std::size_t ParticleStore::bytes() const {
   std::size_t sum = slots.bytes() + next_position.bytes() + next_velocity.bytes() + words.bytes();
-  for_each_column(*this, [&](const auto& column) { sum += column.bytes(); });
+  for_each_column(*this, [&](const SavedColumn&, const auto& column) { sum += column.bytes(); });
   return sum;
 }
 

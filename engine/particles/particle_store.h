@@ -10,7 +10,7 @@
 namespace mallow {
 
 /// Positions, velocities and names of all particles, a row each. Bodies are ranges of rows. A sort moves
-/// rows; ids stay.
+/// rows; ids stay. Its columns are listed in particles/particle_columns.h.
 struct ParticleStore {
   VectorColumn position;  ///< [m]
   VectorColumn velocity;  ///< [m/s]
@@ -29,21 +29,6 @@ struct ParticleStore {
   VectorColumn next_position;
   VectorColumn next_velocity;
   Column<std::uint64_t> words;  ///< scratch of sorts
-
-  /// Calls visit(column) with all that a particle takes along when its row changes. A column that is empty is
-  /// the same for all particles. What is added here is inserted, erased, sorted and counted.
-  template <class Store, class Visit>
-  static void for_each_column(Store& store, const Visit& visit) {
-    visit(store.position);
-    visit(store.velocity);
-    visit(store.id);
-    visit(store.pin);
-    visit(store.alpha);
-    visit(store.stiffness);
-    visit(store.plastic_yield);
-    visit(store.temperature);
-    visit(store.temperature_rest);
-  }
 
   std::size_t size() const { return id.size(); }
   std::size_t bytes() const;

@@ -118,10 +118,45 @@ std::size_t weigh_particles(bool every, const Threads& threads, RegionScratch& s
       [](std::size_t a, std::size_t b) { return a + b; });
 }
 
-/// W_j, c̄_j and B_j of the regions [begin, end).
+/// Marks the regions to measure: those with other runs than before, and those of what is in more or fewer
+/// regions than before and weighs otherwise. Marks none where most lists are others.
+void find_changed(RegionScratch& scratch) {
+  const RunLists& near = scratch.near;
+  const std::size_t n = near.kept.size();
+  scratch.changed.resize(0);
+  if (2 * static_cast<std::size_t>(std::ranges::count(near.kept, Kept::none)) >= n) return;
+  scratch.changed.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (near.kept[i] != Kept::runs) scratch.changed[i] = 1;
+    if (near.kept[i] != Kept::none) continue;
+    for (const Run& run : near.of(i)) std::fill_n(scratch.changed.data() + run.first, run.count, 1);
+  }
+}
+
+/// W_j, c̄_j and B_j of the regions that are still there, to the rows that they have now.
+void carry_measures(std::span<const Run> now, std::size_t regions, RegionScratch& scratch,
+                    ShapeMatching& shape) {
+  const auto carry = [&](const float* from, float* to) {
+    for (std::size_t r = 0; r < now.size(); r += std::max(now[r].count, 1u))
+      std::copy_n(from + r, now[r].count, to + (now[r].count > 0 ? now[r].first : 0));
+  };
+  const auto carry_column = [&](Column<float>& column) {
+    scratch.carried.resize_unset(regions);
+    carry(column.data(), scratch.carried.data());
+    column.swap(scratch.carried);
+  };
+  carry_column(shape.region_weight);
+  for (Column<float>& column : shape.moment) carry_column(column);
+  scratch.carried_center.resize_unset(regions);
+  for (std::size_t a = 0; a < 3; ++a) carry(shape.center.axis(a), scratch.carried_center.axis(a));
+  shape.center.swap(scratch.carried_center);
+}
+
+/// W_j, c̄_j and B_j of the regions [begin, end), but for those that did not change.
 void measure_regions(std::size_t begin, std::size_t end, const MomentLanes& lanes, const double* moment_rows,
                      const RegionScratch& scratch, ShapeMatching& shape) {
   for (std::size_t j = begin; j < end; ++j) {
+    if (!scratch.changed.empty() && scratch.changed[j] == 0) continue;
     double s[k_moment_row];
     const std::span<const Run> runs = scratch.near.of(scratch.owners.empty() ? j : scratch.owners[j]);
     lanes.sum_runs(moment_rows, runs.data(), runs.size(), s);
@@ -226,18 +261,17 @@ void list_regions(const Execution& execution, RegionScratch& scratch, ShapeMatch
   find_runs(scratch.pillars, shape.region_radius, execution, scratch.near, every ? former : nullptr);
   scratch.owners.resize(0);
   if (!every) choose_owners(static_cast<std::uint32_t>(shape.region_stride), execution.threads, scratch);
-  const std::size_t regions = every ? n : scratch.owners.size();
   shape.owners.resize_unset(scratch.owners.size());
   std::copy(scratch.owners.begin(), scratch.owners.end(), shape.owners.begin());
   encode(scratch.near, scratch.owners.span(), n, execution.threads, shape.regions);
   shape.weight.resize_unset(n);
   shape.average_neighbors =
       static_cast<double>(weigh_particles(every, execution.threads, scratch, shape)) / static_cast<double>(n);
-  shape.region_weight.resize_unset(regions);
 }
 
-void measure_regions(const Execution& execution, const RegionScratch& scratch, ShapeMatching& shape) {
-  const std::size_t n = shape.reference.size(), regions = shape.region_weight.size();
+void measure_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape,
+                     const FormerLists* former) {
+  const std::size_t n = shape.reference.size(), regions = shape.regions.count.size();
   const MomentLanes& lanes = MALLOW_SELECT(execution.level, moment_lanes);
   // The table is not in use yet, and lends its memory.
   shape.table.resize_unset(std::max(shape.table.size(), n * k_moment_row * sizeof(double) / sizeof(float)));
@@ -245,8 +279,14 @@ void measure_regions(const Execution& execution, const RegionScratch& scratch, S
   parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {
     lanes.write_rows(raw(std::as_const(shape.reference)), shape.weight.data(), begin, end, moment_rows);
   });
-  shape.center.resize_unset(regions);
-  for (Column<float>& column : shape.moment) column.resize_unset(regions);
+  find_changed(scratch);
+  if (!scratch.changed.empty()) {
+    carry_measures(former->now, regions, scratch, shape);
+  } else {
+    shape.region_weight.resize_unset(regions);
+    shape.center.resize_unset(regions);
+    for (Column<float>& column : shape.moment) column.resize_unset(regions);
+  }
   parallel_for(execution.threads, regions, [&](std::size_t begin, std::size_t end) {
     measure_regions(begin, end, lanes, moment_rows, scratch, shape);
   });
@@ -255,7 +295,7 @@ void measure_regions(const Execution& execution, const RegionScratch& scratch, S
 void build_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape,
                    const FormerLists* former) {
   list_regions(execution, scratch, shape, former);
-  measure_regions(execution, scratch, shape);
+  measure_regions(execution, scratch, shape, former);
   const std::size_t regions = shape.region_weight.size();
   if (shape.region_stride > 1) {
     turn_around(execution.threads, scratch);

@@ -23,13 +23,17 @@ struct RegionScratch {
   RunLists near;                       ///< per particle: those within the region radius
   Column<std::uint32_t> owners;        ///< particles that own a region, ascending; with a stride above 1
   Column<std::uint32_t> first_region;  ///< per particle: regions of the particles before it
+  Column<std::uint8_t> changed;        ///< per region: measured anew; empty where all are
+  Column<float> carried;               ///< what regions keep, on its way to other rows
+  VectorColumn carried_center;         ///< likewise
   std::vector<std::uint32_t> block_begin;
   std::vector<std::array<double, 3>> partial_sums;
   std::vector<std::size_t> partial_count;
   FlowScratch flow;
 
   std::size_t bytes() const {
-    return pillars.bytes() + near.bytes() + owners.bytes() + first_region.bytes() + flow.bytes();
+    return pillars.bytes() + near.bytes() + owners.bytes() + first_region.bytes() + changed.bytes() +
+           carried.bytes() + carried_center.bytes() + flow.bytes();
   }
 };
 
@@ -45,8 +49,10 @@ void sort_reference(const Execution& execution, PillarOrder& pillars, ShapeMatch
 /// lists are those before some particles came or went; only with a stride of 1 do they save anything.
 void list_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape,
                   const FormerLists* former = nullptr);
-/// What follows from x̄, of the regions that were listed last: W_j, c̄_j, B_j.
-void measure_regions(const Execution& execution, const RegionScratch& scratch, ShapeMatching& shape);
+/// What follows from x̄, of the regions that were listed last: W_j, c̄_j, B_j. former: as they were listed
+/// with; regions keep what they have where that would be the same bits.
+void measure_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape,
+                     const FormerLists* former = nullptr);
 /// Both, with rotations that start from none and room for the sums.
 void build_regions(const Execution& execution, RegionScratch& scratch, ShapeMatching& shape,
                    const FormerLists* former = nullptr);

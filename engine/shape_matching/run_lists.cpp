@@ -148,22 +148,31 @@ struct Search {
   }
 
   /// Appends the former list of a row: those of it that are still there, by their rows. Returns how many.
-  std::uint32_t take_former(std::uint32_t row, Scratch& scratch) const {
+  std::uint32_t take_former(std::uint32_t row, Scratch& scratch, Kept& kept) const {
     const TableLists& lists = former->lists;
     const std::uint32_t list = former->former[row], rows = static_cast<std::uint32_t>(lists.rows);
     const RunLengths& lengths = lists.lengths;
     const std::uint32_t* const entries = lists.entries.data() + lists.begin[list];
     Run* const runs = scratch.room(lists.count[list] * lengths.length[lengths.count - 1]);
     std::uint32_t count = 0, members = 0;
-    bool ascending = true;
+    const auto behind = [&] { return count > 0 ? runs[count - 1].first + runs[count - 1].count : 0; };
+    bool ascending = true, whole = true, same = true;
     for (std::uint32_t k = 0; k < lists.count[list];) {
       std::uint32_t r = entries[k] % rows, end = r;
       for (; k < lists.count[list] && entries[k] % rows == end; ++k) end += lengths.length[entries[k] / rows];
+      const Run& moved = former->now[r];
+      if (moved.count >= end - r && (count == 0 || behind() < moved.first)) {
+        runs[count++] = {moved.first, end - r};
+        members += end - r;
+        continue;
+      }
+      same = false;
       while (r < end) {
         const Run now{former->now[r].first, std::min(former->now[r].count, end - r)};
         r += std::max(now.count, 1u);
         members += now.count;
-        if (count > 0 && runs[count - 1].first + runs[count - 1].count == now.first) {
+        whole = whole && now.count > 0;
+        if (count > 0 && behind() == now.first) {
           runs[count - 1].count += now.count;
         } else if (now.count > 0) {
           ascending = ascending && (count == 0 || runs[count - 1].first < now.first);
@@ -172,6 +181,7 @@ struct Search {
       }
     }
     scratch.runs += ascending ? count : put_in_order({runs, count});
+    kept = same ? Kept::runs : whole ? Kept::points : Kept::none;
     return members;
   }
 
@@ -188,8 +198,9 @@ struct Search {
         const std::size_t from = scratch.runs;
         const std::uint32_t row = pillars.order[s];
         if (former && !is_near(pillars.sorted.get(s), former->news, news_reach)) {
-          lists.members[row] = take_former(row, scratch);
+          lists.members[row] = take_former(row, scratch, lists.kept[row]);
         } else {
+          if (former) lists.kept[row] = Kept::none;
           // Of a pillar every other point at the most begins a run.
           if (most_runs == 0) most_runs = (find_near(pillar, s, scratch.near) + scratch.near.size()) / 2 + 1;
           scratch.runs += lanes.runs_in_reach(input, s, scratch.near.data(), scratch.near.size(),
@@ -230,6 +241,7 @@ void find_runs(const PillarOrder& pillars, float radius, const Execution& execut
   lists.begin.resize_unset(n);
   lists.count.resize_unset(n);
   lists.members.resize_unset(n);
+  lists.kept.resize_unset(former ? n : 0);
   const Search search(pillars, radius, execution, former);
   if (lists.runs.size() < n) lists.runs.resize_unset(estimate_runs(search, execution.threads, lists));
   for (;;) {

@@ -16,15 +16,21 @@ namespace mallow {
 
 struct TableLists;
 
+/// What a list has of its former one: not the same points, or those, or those in the same runs.
+enum class Kept : std::uint8_t { none, points, runs };
+
 /// Per row a list of rows as runs, ascending and apart from each other.
 struct RunLists {
   Column<std::uint32_t> begin;    ///< per row: where its list starts in `runs`
   Column<std::uint32_t> count;    ///< per row: runs
   Column<std::uint32_t> members;  ///< per row: rows in its runs
   Column<Run> runs;               ///< the lists, with unused space between blocks
+  Column<Kept> kept;              ///< per row: of its former list; empty where none was known
 
   std::span<const Run> of(std::size_t row) const { return {runs.data() + begin[row], count[row]}; }
-  std::size_t bytes() const { return begin.bytes() + count.bytes() + members.bytes() + runs.bytes(); }
+  std::size_t bytes() const {
+    return begin.bytes() + count.bytes() + members.bytes() + runs.bytes() + kept.bytes();
+  }
 };
 
 /// Lists of points before some came, went or moved to other rows.

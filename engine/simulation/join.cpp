@@ -44,12 +44,20 @@ void list_parts(const Simulation::State& s, std::span<const std::uint32_t> bodie
     }
     if (!which.empty()) pressed.parts.push_back(part);
   }
+  pressed.boxes.clear();
+  for (const Pressed::Part& part : pressed.parts) pressed.boxes.push_back(part.box);
+  pressed.tree.build(pressed.boxes);
 }
 
 bool is_near_another(const Pressed& pressed, const Pressed::Part& part, float reach) {
-  return std::ranges::any_of(pressed.parts, [&](const Pressed::Part& other) {
-    return other.body != part.body && are_near(part.box, other.box, reach);
+  // Twice as far, so that no rounding leaves one out.
+  const Vec3 around = Vec3::Constant(2 * reach);
+  bool found = false;
+  pressed.tree.for_overlapping({part.box.min - around, part.box.max + around}, [&](std::uint32_t k) {
+    const Pressed::Part& other = pressed.parts[k];
+    found = found || (other.body != part.body && are_near(part.box, other.box, reach));
   });
+  return found;
 }
 
 /// In spacings: contact holds two sides a spacing apart, but for what its iterations leave.

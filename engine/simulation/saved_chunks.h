@@ -26,7 +26,7 @@ Chunk packed_column(const char* name, const Column<T>& column) {
   return packed(name, [&](PackingArchive& archive) { archive.array(column.data(), column.size()); });
 }
 
-inline Chunk packed_columns(const char* name, const VectorColumn& columns) {
+inline Chunk packed_column(const char* name, const VectorColumn& columns) {
   return packed(name, [&](PackingArchive& archive) { archive.columns(columns); });
 }
 

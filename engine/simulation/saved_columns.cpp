@@ -2,7 +2,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "config/field_tables.h"
+#include "particles/particle_columns.h"
 #include "simulation/phases.h"
 #include "simulation/saved_chunks.h"
 
@@ -18,47 +18,41 @@ void require_permutation(const UnpackingArchive& archive, std::span<const std::u
   }
 }
 
-/// A number in a range for each particle, or none.
-void unpack_painted(const SavedState& saved, const char* name, std::size_t n, const Range& range,
-                    Column<float>& column) {
-  unpack(saved, name, [&](UnpackingArchive& archive) {
-    unpack_column(archive, column);
-    if (!column.empty() && column.size() != n) archive.fail("there must be one for each particle, or none");
-    for (const float value : column)
-      if (!range.holds(value) || !std::isfinite(value)) archive.fail("a number must be" + range_text(range));
-  });
+void unpack_values(UnpackingArchive& archive, std::size_t n, const SavedColumn&, VectorColumn& column) {
+  archive.columns(column, n);
+}
+template <class T>
+void unpack_values(UnpackingArchive& archive, std::size_t n, const SavedColumn& saved, Column<T>& column) {
+  unpack_column(archive, column);
+  if (column.size() != n && !(saved.may_be_absent && column.empty()))
+    archive.fail(std::string("there must be one for each particle") +
+                 (saved.may_be_absent ? ", or none" : ""));
+  for (const T value : column)
+    if (!saved.range.holds(value) || !std::isfinite(value))
+      archive.fail("a number must be" + range_text(saved.range));
 }
 
 void unpack_particles(const SavedState& saved, Simulation::State& state) {
   ParticleStore& store = state.store;
   const std::size_t n = state.bodies.empty() ? 0 : state.bodies.back().end;
-  unpack(saved, "ids", [&](UnpackingArchive& archive) {
-    unpack_column(archive, store.id);
-    if (store.size() != n) archive.fail("there must be one for each particle of the bodies");
+  for_each_column(store, [&](const SavedColumn& of, auto& column) {
+    unpack(saved, of.chunk, [&](UnpackingArchive& archive) { unpack_values(archive, n, of, column); });
   });
   unpack_slots(saved, "particle_slots", store.id.span(), store.slots);
-  unpack(saved, "positions", [&](UnpackingArchive& archive) { archive.columns(store.position, n); });
-  unpack(saved, "velocities", [&](UnpackingArchive& archive) { archive.columns(store.velocity, n); });
-  unpack(saved, "pinned", [&](UnpackingArchive& archive) {
-    unpack_column(archive, store.pin);
-    if (!store.pin.empty() && store.pin.size() != n)
-      archive.fail("there must be one for each particle, or none");
-    for (const std::uint16_t pin : store.pin)
-      if (pin > state.pins.size()) archive.fail("there is no pin " + std::to_string(pin - 1));
-  });
-  unpack_painted(saved, "alphas", n, range_of(&Material::alpha), store.alpha);
-  unpack_painted(saved, "stiffnesses", n, k_stiffness_factor, store.stiffness);
-  unpack_painted(saved, "plastic_yields", n, range_of(&Material::plastic_yield), store.plastic_yield);
-  if (std::ranges::any_of(state.bodies, &BodyState::paints_yield) && store.plastic_yield.empty())
-    throw ConfigError("saved state, chunk 'plastic_yields'", "there must be some");
-  unpack_painted(saved, "temperatures", n, range_of(&Material::temperature), store.temperature);
-  unpack_painted(saved, "temperature_rests", n, k_finite, store.temperature_rest);
-  const bool heated = std::ranges::any_of(state.bodies, &BodyState::is_heated);
-  if (store.temperature.size() != store.temperature_rest.size() || (heated && store.temperature.empty()))
-    throw ConfigError("saved state, chunk 'temperatures'", "there must be as many as rests, and some");
-  const bool painted = std::ranges::any_of(state.bodies, &BodyState::is_painted);
-  if (store.alpha.size() != store.stiffness.size() || (painted && store.alpha.empty()))
-    throw ConfigError("saved state, chunk 'alphas'", "there must be as many as stiffnesses, and some");
+  for (const std::uint16_t pin : store.pin)
+    if (pin > state.pins.size())
+      throw ConfigError("saved state, chunk 'pinned'", "there is no pin " + std::to_string(pin - 1));
+  const auto check = [&](const std::string& chunk, const auto& has, const Column<float>& column,
+                         const Column<float>& other, const char* text) {
+    if (column.size() != other.size() || (column.empty() && std::ranges::any_of(state.bodies, has)))
+      throw ConfigError("saved state, chunk '" + chunk + "'", text);
+  };
+  check("plastic_yields", &BodyState::paints_yield, store.plastic_yield, store.plastic_yield,
+        "there must be some");
+  check("temperatures", &BodyState::is_heated, store.temperature, store.temperature_rest,
+        "there must be as many as rests, and some");
+  check("alphas", &BodyState::is_painted, store.alpha, store.stiffness,
+        "there must be as many as stiffnesses, and some");
   store.next_position.resize(n);
   store.next_velocity.resize(n);
 }
@@ -110,16 +104,11 @@ void unpack_stretches(const SavedState& saved, Simulation::State& state) {
 void pack_columns(const Simulation::State& s, SavedState& saved) {
   const CellGrid& grid = s.sph.grid;
   const auto add = [&](Chunk chunk) { saved.chunks.push_back(std::move(chunk)); };
-  add(packed_column("ids", s.store.id));
-  pack_slots("particle_slots", s.store.slots, saved);
-  add(packed_columns("positions", s.store.position));
-  add(packed_columns("velocities", s.store.velocity));
-  add(packed_column("pinned", s.store.pin));
-  add(packed_column("alphas", s.store.alpha));
-  add(packed_column("stiffnesses", s.store.stiffness));
-  add(packed_column("plastic_yields", s.store.plastic_yield));
-  add(packed_column("temperatures", s.store.temperature));
-  add(packed_column("temperature_rests", s.store.temperature_rest));
+  for_each_column(s.store, [&](const SavedColumn& of, const auto& column) {
+    add(packed_column(of.chunk, column));
+    if constexpr (std::is_same_v<decltype(column), const Column<ParticleId>&>)
+      pack_slots("particle_slots", s.store.slots, saved);
+  });
   add(packed("references", [&](PackingArchive& archive) {
     for (const BodyState& body : s.bodies) archive.columns(body.shape.reference);
   }));

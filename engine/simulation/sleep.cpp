@@ -2,6 +2,7 @@
 // together.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/bounds.h"
 #include "mallow/defaults.h"
@@ -119,6 +120,17 @@ void fall_asleep(Simulation::State& state, std::uint32_t island, BodyState& body
   body.rigid.deformation_speed = 0;
 }
 
+/// bodies -> the bodies of each island.
+void list_islands(Simulation::State& state) {
+  Islands& islands = state.islands;
+  islands.first_of.assign(state.body_slots.size() + 2, 0);
+  for (const BodyState& body : state.bodies) ++islands.first_of[body.island];
+  std::partial_sum(islands.first_of.begin(), islands.first_of.end(), islands.first_of.begin());
+  islands.by_island.resize(state.bodies.size());
+  for (std::size_t b = state.bodies.size(); b-- > 0;)
+    islands.by_island[--islands.first_of[state.bodies[b].island]] = static_cast<std::uint32_t>(b);
+}
+
 }  // namespace
 
 bool are_due(const Simulation::State& state, std::span<const PoseKeyframe> keyframes) {
@@ -130,7 +142,10 @@ void wake_island(Simulation::State& state, BodyState& body) {
   body.slow_time = 0;
   if (body.island == 0) return;
   const std::uint32_t island = body.island;
-  for (BodyState& other : state.bodies) {
+  Islands& islands = state.islands;
+  if (islands.by_island.empty()) list_islands(state);
+  for (std::uint32_t k = islands.first_of[island]; k < islands.first_of[island + 1]; ++k) {
+    BodyState& other = state.bodies[islands.by_island[k]];
     if (other.island != island) continue;
     other.island = 0;
     other.slow_time = 0;
@@ -222,6 +237,7 @@ void rest_bodies(Simulation::State& state, float time_step) {
     any = true;
   }
   if (!any) return;
+  islands.by_island.clear();
   hold_sleepers(state);
   state.sph.kept.forget();
 }

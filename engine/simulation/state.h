@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contact/body_contact.h"
+#include "core/box_tree.h"
 #include "core/disjoint_sets.h"
 #include "core/execution.h"
 #include "core/slots.h"
@@ -178,6 +179,9 @@ struct Islands {
   // Scratch, by body and by number of the islands that sleep.
   std::vector<std::uint32_t> first_of_group, first_of_sleepers;
   std::vector<bool> rests;
+  // Bodies by the number of their island, from first_of[island] on, ascending; empty where bodies have fallen
+  // asleep or gone since. What has come or woken since is still where it was.
+  std::vector<std::uint32_t> by_island, first_of;
 };
 
 /// Bodies that are pressed into each other. Scratch of join_bodies().
@@ -189,6 +193,8 @@ struct Pressed {
   };
   std::vector<std::uint32_t> bodies;  ///< that may become one with others, by their index
   std::vector<Part> parts;
+  std::vector<Aabb> boxes;  ///< of the parts
+  BoxTree tree;             ///< of these
   std::vector<std::uint32_t> rows;
   std::vector<std::uint32_t> owner;  ///< per point of the search: the index of its body
   DisjointSets sets;                 ///< of bodies by their index

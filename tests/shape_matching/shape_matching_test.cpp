@@ -239,6 +239,27 @@ void expect_same(const Column<T>& a, const Column<T>& b) {
   EXPECT_TRUE(std::ranges::equal(a, b));
 }
 
+/// Lists and measures of a world have the bits of those that nothing was known of.
+void expect_built_anew(const World& world) {
+  ShapeMatching whole;
+  whole.region_radius = world.shape.region_radius;
+  whole.region_stride = world.shape.region_stride;
+  whole.reference.resize(world.x.size());
+  for (std::size_t i = 0; i < world.x.size(); ++i) whole.reference.set(i, world.shape.reference.get(i));
+  RegionScratch scratch;
+  build_regions({2, best_instruction_level()}, scratch, whole);
+  for (const auto lists : {&ShapeMatching::regions, &ShapeMatching::memberships}) {
+    expect_same((whole.*lists).begin, (world.shape.*lists).begin);
+    expect_same((whole.*lists).count, (world.shape.*lists).count);
+    expect_same((whole.*lists).entries, (world.shape.*lists).entries);
+  }
+  expect_same(whole.weight, world.shape.weight);
+  expect_same(whole.region_weight, world.shape.region_weight);
+  for (std::size_t k = 0; k < 6; ++k) expect_same(whole.moment[k], world.shape.moment[k]);
+  for (std::size_t j = 0; j < whole.region_weight.size(); ++j)
+    ASSERT_EQ(whole.center.get(j), world.shape.center.get(j));
+}
+
 TEST(regions, of_what_came_and_went_are_those_of_a_build_of_the_whole) {
   for (const int stride : {1, 3}) {
     SCOPED_TRACE(stride);
@@ -266,25 +287,40 @@ TEST(regions, of_what_came_and_went_are_those_of_a_build_of_the_whole) {
         append(world, some_points({2.0f * static_cast<float>(round), 3, 1}, round < 7 ? 20 : 3000), carried);
       EXPECT_EQ(carried.news.max.x() == HUGE_VALF, round == 7) << "lists that are known are taken";
       sort_rows(world, carried);
-      ShapeMatching whole;
-      whole.region_radius = world.shape.region_radius;
-      whole.region_stride = stride;
-      whole.reference.resize(world.x.size());
-      for (std::size_t i = 0; i < world.x.size(); ++i) whole.reference.set(i, world.shape.reference.get(i));
-      RegionScratch scratch;
-      build_regions({2, best_instruction_level()}, scratch, whole);
-      for (const auto lists : {&ShapeMatching::regions, &ShapeMatching::memberships}) {
-        expect_same((whole.*lists).begin, (world.shape.*lists).begin);
-        expect_same((whole.*lists).count, (world.shape.*lists).count);
-        expect_same((whole.*lists).entries, (world.shape.*lists).entries);
-      }
-      expect_same(whole.weight, world.shape.weight);
-      expect_same(whole.region_weight, world.shape.region_weight);
-      for (std::size_t k = 0; k < 6; ++k) expect_same(whole.moment[k], world.shape.moment[k]);
-      for (std::size_t j = 0; j < whole.region_weight.size(); ++j)
-        ASSERT_EQ(whole.center.get(j), world.shape.center.get(j));
+      expect_built_anew(world);
       world.match();
     }
+  }
+}
+
+TEST(regions, of_a_body_that_loses_some_are_measured_anew_beside_those_and_keep_the_bits) {
+  World world(4000, 16, 2.0f);
+  world.shape.spacing = 1;  // of pillars, which then stay as wide
+  CarriedRegions unsorted = carry_regions(world.shape);
+  sort_rows(world, unsorted);
+  std::mt19937 random(7);
+  for (int round = 0; round < 6; ++round) {
+    SCOPED_TRACE(round);
+    CarriedRegions carried = carry_regions(world.shape);
+    const auto place = static_cast<std::uint32_t>(random() % world.x.size());
+    const Vec3 lost = world.shape.reference.get(place);
+    erase_from_reference({&place, 1}, carried, world.shape);
+    world.x.erase({&place, 1});
+    // One comes elsewhere, and takes the rows behind it up.
+    if (round % 2 == 1) append(world, {world.x.get(place / 2) + Vec3(0.1f, 0.1f, 0)}, carried);
+    sort_rows(world, carried);
+    expect_built_anew(world);
+    const auto& changed = world.scratch.changed;
+    ASSERT_EQ(changed.size(), world.x.size());
+    std::ptrdiff_t anew = 0, near = 0;
+    for (std::size_t i = 0; i < world.x.size(); ++i) {
+      const bool is_near_lost = (world.shape.reference.get(i) - lost).norm() <= 4.0f;
+      anew += changed[i];
+      near += changed[i] != 0 && is_near_lost;
+    }
+    EXPECT_GT(near, 0);
+    EXPECT_LT(anew, round % 2 == 0 ? near + 1 : std::ssize(changed) / 2);
+    world.match();
   }
 }
 

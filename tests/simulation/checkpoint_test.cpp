@@ -3,12 +3,16 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <functional>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "mallow/mallow.h"
+#include "refusal.h"
 
 namespace mallow {
 namespace checkpoint_test {
@@ -278,6 +282,69 @@ TEST(checkpoint, says_which_chunk_is_missing) {
           << error.what();
     }
   }
+}
+
+/// A painted, heated, pinned body: it has every column that may be absent.
+SavedState with_all_columns() {
+  Simulation s(config());
+  Body body = cube(4, {0, 0, 0.6f});
+  const std::size_t n = body.positions.size();
+  body.alpha.assign(n, 0.5f);
+  body.stiffness.assign(n, 2.0f);
+  body.plastic_yield.assign(n, 0.1f);
+  body.temperature.assign(n, 300.0f);
+  s.add_body(body, Material{.plastic_yield = 0.2f, .temperature = 290.0f});
+  s.pin(Aabb{{-1, -1, -1}, {9, 9, 1.5f}});
+  return s.save();
+}
+
+/// Chunks of columns, and bytes a particle.
+struct SavedColumnFormat {
+  const char* chunk;
+  std::size_t bytes;
+  bool may_be_absent;
+};
+constexpr SavedColumnFormat k_columns[] = {
+    {"ids", 8, false},           {"positions", 12, false},  {"velocities", 12, false},
+    {"pinned", 2, true},         {"alphas", 4, true},       {"stiffnesses", 4, true},
+    {"plastic_yields", 4, true}, {"temperatures", 4, true}, {"temperature_rests", 4, true},
+};
+
+TEST(checkpoint, has_the_columns_of_particles_in_the_order_of_the_format) {
+  const SavedState saved = with_all_columns();
+  auto at = std::ranges::find(saved.chunks, "ids", &Chunk::name);
+  for (const SavedColumnFormat& column : k_columns) {
+    ASSERT_NE(at, saved.chunks.end());
+    EXPECT_EQ(at->name, column.chunk);
+    EXPECT_EQ(at->bytes.size(), 64 * column.bytes) << column.chunk;
+    at += column.chunk == std::string("ids") ? 2 : 1;  // the slots of the ids follow them
+  }
+}
+
+TEST(checkpoint, with_a_column_of_another_length_is_refused_by_its_name) {
+  const SavedState good = with_all_columns();
+  for (const SavedColumnFormat& column : k_columns) {
+    SavedState bad = good;
+    std::ranges::find(bad.chunks, column.chunk, &Chunk::name)->bytes.resize(63 * column.bytes);
+    EXPECT_NE(test::refusal([&] { Simulation::restore(bad, 1); }).find(std::string("'") + column.chunk + "'"),
+              std::string::npos)
+        << column.chunk;
+  }
+}
+
+TEST(checkpoint, with_a_value_out_of_the_range_of_its_column_is_refused) {
+  const SavedState good = with_all_columns();
+  const auto with = [&](const char* chunk, float value) {
+    SavedState bad = good;
+    std::memcpy(std::ranges::find(bad.chunks, chunk, &Chunk::name)->bytes.data(), &value, sizeof value);
+    return test::refusal([&] { Simulation::restore(bad, 1); });
+  };
+  EXPECT_NE(with("alphas", 1.5f).find("'alphas'"), std::string::npos);
+  EXPECT_NE(with("stiffnesses", -1.0f).find("'stiffnesses'"), std::string::npos);
+  EXPECT_NE(with("plastic_yields", -1.0f).find("'plastic_yields'"), std::string::npos);
+  EXPECT_NE(with("temperatures", std::numeric_limits<float>::infinity()).find("'temperatures'"),
+            std::string::npos);
+  EXPECT_NE(with("temperature_rests", std::nanf("")).find("'temperature_rests'"), std::string::npos);
 }
 
 TEST(checkpoint, of_another_version_is_refused) {

@@ -95,6 +95,53 @@ INSTANTIATE_TEST_SUITE_P(of_a_crowd, many_bodies,
                          testing::Values(Crowd{1, 1, 1, false}, Crowd{1, 1, 1, true}, Crowd{1, 1, 6, false},
                                          Crowd{2, 0, 2, false}, Crowd{2, 0, 6, false}));
 
+/// Processor time, for each of a crowd, of a call for it after they all fell asleep, each on its own [s].
+double cost_of_waking(std::size_t across) {
+  Simulation s(SolverConfig{.time_step = 0.15f,
+                            .support_radius = 2.1f,
+                            .gravity = {0, 0, 0},
+                            .sleep_speed = 1.0f,
+                            .sleep_time = 0.1f});
+  const MaterialId material = s.add_material(Material{});
+  std::vector<BodyId> bodies;
+  for (std::size_t b = 0; b < across * across * across; ++b)
+    bodies.push_back(s.add_body(cube(1, place(b, across, 6)), material));
+  while (std::ranges::any_of(bodies, [&](BodyId body) { return s.is_awake(body); })) s.step();
+  return seconds([&] {
+           for (const BodyId body : bodies) s.wake(body);
+         }) /
+         static_cast<double>(bodies.size());
+}
+
+TEST(many_bodies_that, sleep_wake_for_what_few_cost_each) {
+  const double few = cost_of_waking(11), many = cost_of_waking(22);
+  EXPECT_LE(many, k_most * std::max(few, k_least));
+}
+
+/// Processor time of a step, for each of a crowd of bodies that have flowed and may become one [s].
+double cost_of_looking_for_pressed(std::size_t across) {
+  Simulation s(
+      SolverConfig{.time_step = 0.15f, .support_radius = 2.1f, .gravity = {0, 0, 0}, .update_interval = 2});
+  const MaterialId material = s.add_material(Material{.plastic_yield = 0.0f, .merge_flow = 0});
+  const std::size_t bodies = across * across * across;
+  for (std::size_t b = 0; b < bodies; ++b) {
+    Body body = cube(2, place(b, across, 6));
+    for (const Vec3& x : body.positions)
+      body.velocities.push_back({0.1f * (x.z() - body.positions[0].z()), 0, 0});
+    body.merges = true;
+    s.add_body(body, material);
+  }
+  for (int k = 0; k < 4; ++k) s.step();
+  double least = 1;
+  for (int k = 0; k < 3; ++k) least = std::min(least, seconds([&] { s.step(), s.step(); }));
+  return least / static_cast<double>(bodies);
+}
+
+TEST(many_bodies_that, have_flowed_look_for_each_other_for_what_few_cost_each) {
+  const double few = cost_of_looking_for_pressed(11), many = cost_of_looking_for_pressed(27);
+  EXPECT_LE(many, k_most * std::max(few, k_least));
+}
+
 TEST(overlap, is_found_among_many_bodies_wherever_they_have_come) {
   Simulation s(SolverConfig{.time_step = 0.15f, .support_radius = 2.1f, .gravity = {0, 0, 0}});
   const MaterialId material = s.add_material(Material{});
