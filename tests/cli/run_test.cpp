@@ -139,7 +139,8 @@ TEST_F(cli_run, warns_at_its_end_of_a_paste_that_was_crushed) {
   const auto scene = [&](const std::string& material) {
     return write(
                "paste.toml",
-               "[solver]\ngravity = [0, 0, -9.81]\nvolume_iterations = 0\n[[material]]\nname = \"paste\"\nalpha = 0.2\n"
+               "[solver]\ngravity = [0, 0, -9.81]\nvolume_iterations = 0\n[[material]]\nname = "
+               "\"paste\"\nalpha = 0.2\n"
                "plastic_yield = 0.02\nrest_density = 1000\nyoungs_modulus = 5000\n" +
                    material +
                    "[[body]]\nmaterial = \"paste\"\nbox = { count = [10, 10, 6], spacing = 0.005, corner = "
@@ -222,7 +223,8 @@ TEST_F(cli_run, what_was_done_to_a_mesh_is_a_warning_of_sample_info_and_run) {
                                 {"run", scene, "--report", at("report.json")}}) {
     const Outcome outcome = run_mallow(arguments);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("warning: "), std::string::npos) << arguments[0];
+    EXPECT_NE(outcome.err.find("mallow: warning: "), std::string::npos) << arguments[0];
+    EXPECT_EQ(('\n' + outcome.err).find("\nwarning: "), std::string::npos) << "in one style";
     EXPECT_NE(outcome.err.find("cube.off: the mesh is inside out: its triangles were turned\n"),
               std::string::npos)
         << outcome.err;
