@@ -99,6 +99,9 @@ class Warnings {
     list_.add(body, words...);
   }
 
+  /// What stands behind a number, in units of SI; nothing where a scene has its own.
+  const char* unit(const char* name) const { return has_free_units(state_.config.gravity) ? "" : name; }
+
   void look_at_threshold(const BodyState& body) {
     if (!body.material->settings.update_threshold) return;
     const float gravity = state_.config.gravity.norm();
@@ -108,8 +111,8 @@ class Warnings {
     const float threshold = body.material->update_threshold * (1 - alpha);
     if (alpha < 0 || threshold >= k_resting * gravity) return;
     add(body, "update_threshold ", body.material->update_threshold, " times 1 - alpha (", alpha, ") is ",
-        threshold, " m/s2, below twice gravity (", k_resting * gravity,
-        " m/s2): at rest its own weight updates the reference shape, so that it sinks like clay; 40 times "
+        threshold, unit(" m/s2"), ", below twice gravity (", k_resting * gravity, unit(" m/s2"),
+        "): at rest its own weight updates the reference shape, so that it sinks like clay; 40 times "
         "gravity is ",
         40 * gravity);
   }
@@ -255,8 +258,9 @@ class Warnings {
                  modulus, " Pa: under a gravity of ", state_.config.gravity.norm(),
                  " m/s2 lengths are in metres; give a hundredth of them if these are centimetres");
     if (body.most_alpha() > 0.2f) return;
-    add(body, "its own weight presses with ", weight, " Pa, where it is as stiff as ", modulus,
-        " Pa: it ends as a layer; raise material.youngs_modulus, or lower solver.time_step where that is "
+    add(body, "its own weight presses with ", weight, unit(" Pa"), ", where it is as stiff as ", modulus,
+        unit(" Pa"),
+        ": it ends as a layer; raise material.youngs_modulus, or lower solver.time_step where that is "
         "left out");
   }
 
@@ -370,6 +374,10 @@ bool is_in_metres(const Vec3& gravity) {
   constexpr float k_moon = 1.5f, k_jupiter = 30;  // [m/s²]
   const float size = gravity.norm();
   return size >= k_moon && size <= k_jupiter;
+}
+
+bool has_free_units(const Vec3& gravity) {
+  return gravity != Vec3::Zero() && !is_in_metres(gravity);
 }
 
 std::vector<std::string> warnings(const Simulation::State& state) {

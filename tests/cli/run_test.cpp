@@ -181,6 +181,27 @@ TEST_F(cli_run, info_names_what_would_run) {
   EXPECT_NE(outcome.out.find("viscosity        off"), std::string::npos);
 }
 
+TEST_F(cli_run, info_says_what_was_left_out_and_what_bodies_are_at_the_temperatures_that_they_have) {
+  const std::string scene = R"([solver]
+gravity = [0, 0, -9.81]
+[[body]]
+material = "chocolate"
+box = { count = [4, 4, 4], spacing = 0.005 }
+paint = [{ box = { min = [-1, -1, 0.01], max = [1, 1, 1] }, temperature = 290 }]
+)";
+  const Outcome outcome = run_mallow({"info", write("warm.toml", scene).string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* text :
+       {"392.4*", "* is left out: threshold, 40 times gravity", "           0 to 1.4e+04            2e+04",
+        "      290 to 313       0.3 to 1           300 to 305", "gravity          0 0 -9.81 m/s2\n",
+        "s, 60 time steps\n"})
+    EXPECT_NE(outcome.out.find(text), std::string::npos) << text << '\n' << outcome.out;
+  EXPECT_EQ(outcome.out.find("units "), std::string::npos);
+  const Outcome free = run_mallow({"info", scene_, "--set", "solver.gravity=[0,0,-0.3]"});
+  EXPECT_NE(free.out.find("gravity          0 0 -0.3\nunits            the scene's own"), std::string::npos)
+      << free.out;
+}
+
 TEST_F(cli_run, info_print_is_a_scene_that_gives_the_same_state) {
   const Outcome printed = run_mallow({"info", scene_, "--print"});
   ASSERT_EQ(printed.exit_code, 0) << printed.err;

@@ -39,6 +39,15 @@ TEST_F(scene_warnings, name_a_frame_time_in_milliseconds) {
       warns(warnings_of(read(falling("0.003", "0.0063", "-9.81", "frame_time = 0.5\n"))), "frame_time"));
 }
 
+TEST_F(scene_warnings, name_no_units_of_si_where_a_scene_has_its_own) {
+  const auto with = [&](const std::string& gravity) {
+    std::string text = falling("1.0", "2.1", gravity, "");
+    return warnings_of(read(text.insert(text.find("alpha"), "update_threshold = 0.1\n")));
+  };
+  EXPECT_TRUE(warns(with("-0.3"), "(0.3) is 0.07, below twice gravity (0.6): at rest"));
+  EXPECT_TRUE(warns(with("-9.81"), "(0.3) is 0.07 m/s2, below twice gravity (19.62 m/s2): at rest"));
+}
+
 TEST_F(scene_warnings, name_keyframes_that_are_half_a_turn_or_more_apart) {
   const auto turned_by = [&](const std::string& degrees) {
     return warnings_of(read(
