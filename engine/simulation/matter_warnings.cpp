@@ -18,6 +18,9 @@ constexpr float k_boundless_yield = 1;
 /// nothing.
 constexpr int k_many_iterations = 20;
 
+/// Mean compression that nobody means to leave.
+constexpr float k_loose_tolerance = 0.05f;
+
 class MatterWarnings {
  public:
   explicit MatterWarnings(const Simulation::State& state) : state_(state) {}
@@ -25,9 +28,11 @@ class MatterWarnings {
   std::vector<std::string> list() && {
     for (const BodyState& body : state_.bodies) {
       look_at_yield(body);
+      look_at_standing_still(body);
       look_at_flow(body);
       look_at_viscosity(body);
     }
+    look_at_tolerance();
     look_at_iterations();
     return list_.take();
   }
@@ -44,6 +49,25 @@ class MatterWarnings {
               follows ? " and more" : "", " is a strain of ", 100 * yield,
               "%: it springs back from all that does not squash it to a quarter; pastes and doughs yield at "
               "0.02 to 0.2");
+  }
+
+  /// What can flow nowhere, or is damped so long that it breaks.
+  void look_at_standing_still(const BodyState& body) {
+    if (!body.shape.flows) return;
+    if (!body.keeps_reference())
+      return list_.add(body, "plastic_yield has no effect where alpha is 1: a fluid flows by itself");
+    const Material& material = body.material->settings;
+    if (material.damping_time > state_.longest_step() && !material.plastic_creep)
+      list_.add(body, "damping_time ", material.damping_time, " s is longer than a step, ",
+                state_.longest_step(),
+                " s, and what the damper bears flows at once too: a blow may break it into shards; give "
+                "material.plastic_creep, or lower it");
+    if (!body.shape.built) return;
+    for (std::size_t j = 0; j < body.shape.region_weight.size(); ++j)
+      if (!is_thin(stretched_moment(body.shape, j))) return;
+    list_.add(body,
+              "plastic_yield has no effect, as its particles are one layer, or a line: they have no strain "
+              "across; two layers do");
   }
 
   void look_at_flow(const BodyState& body) {
@@ -76,6 +100,18 @@ class MatterWarnings {
     list_.add(body, "viscosity ", *material.viscosity,
               " has no effect where alpha is 0: it acts by the share alpha of a fluid; give alpha, or "
               "material.damping_time, which slows what is elastic");
+  }
+
+  void look_at_tolerance() {
+    const float tolerance = state_.config.volume_tolerance;
+    if (tolerance > 0 && state_.volume_iterations() == 0)
+      list_.add(
+          "solver.volume_tolerance ends volume iterations, of which there are none: give volume_iterations");
+    else if (tolerance > k_loose_tolerance)
+      list_.add("solver.volume_tolerance ", tolerance,
+                " ends volume iterations where matter is compressed by ", 100 * tolerance,
+                "% in the mean, as it hardly ever is: none are taken; 0.001 to 0.05 are usual, and 0 "
+                "takes all");
   }
 
   void look_at_iterations() {

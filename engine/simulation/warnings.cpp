@@ -46,9 +46,6 @@ constexpr float k_least_share = 0.3f;
 constexpr std::ptrdiff_t k_inside = 3;
 /// Of the particles of a region, the stride that leaves fewest regions.
 constexpr double k_best_stride = 0.2;
-/// Mean compression that nobody means to leave.
-constexpr float k_loose_tolerance = 0.05f;
-
 std::string number_text(float value) {
   std::ostringstream text;
   text << value;
@@ -72,7 +69,6 @@ class Warnings {
   std::vector<std::string> list() && {
     for (const BodyState& body : state_.bodies) {
       look_at_threshold(body);
-      look_at_flow(body);
       look_at_merging(body);
       look_at_density(body);
       look_at_limits(body);
@@ -83,7 +79,6 @@ class Warnings {
       look_at_volume(body);
       look_at_limp(body);
     }
-    look_at_tolerance();
     if (state_.step == 0 && state_.bodies.size() > 1) look_at_overlaps();
     if (state_.step == 0)
       for (const BodyState& body : state_.bodies) look_at_colliders(body);
@@ -125,25 +120,6 @@ class Warnings {
     add(body, "slides along bodies that it merges with, as friction is between bodies that do not",
         body.shape.flows ? ": where they are not pressed together at once, leave merges out"
                          : ", and never becomes one with them, as it has no plastic_yield: leave merges out");
-  }
-
-  /// What can flow nowhere.
-  void look_at_flow(const BodyState& body) {
-    if (!body.shape.flows) return;
-    if (!body.keeps_reference())
-      return add(body, "plastic_yield has no effect where alpha is 1: a fluid flows by itself");
-    const Material& material = body.material->settings;
-    if (material.damping_time > state_.longest_step() && !material.plastic_creep)
-      add(body, "damping_time ", material.damping_time, " s is longer than a step, ", state_.longest_step(),
-          " s, and what the damper bears flows at once too: a blow may break it into shards; give "
-          "material.plastic_creep, or lower it");
-    if (!body.shape.built) return;
-    for (std::size_t j = 0; j < body.shape.region_weight.size(); ++j)
-      if (!is_thin(stretched_moment(body.shape, j))) return;
-    add(body,
-        "plastic_yield has no effect, as its particles are one layer, or a line: they have no strain across; "
-        "two layers "
-        "do");
   }
 
   void look_at_density(const BodyState& body) {
@@ -262,18 +238,6 @@ class Warnings {
         unit(" Pa"),
         ": it ends as a layer; raise material.youngs_modulus, or lower solver.time_step where that is "
         "left out");
-  }
-
-  void look_at_tolerance() {
-    const float tolerance = state_.config.volume_tolerance;
-    if (tolerance > 0 && volume_iterations_ == 0)
-      list_.add(
-          "solver.volume_tolerance ends volume iterations, of which there are none: give volume_iterations");
-    else if (tolerance > k_loose_tolerance)
-      list_.add("solver.volume_tolerance " + number_text(tolerance) +
-                " ends volume iterations where matter is compressed by " + number_text(100 * tolerance) +
-                "% in the mean, as it hardly ever is: none are taken; 0.001 to 0.05 are usual, and 0 "
-                "takes all");
   }
 
   void look_at_damping(const BodyState& body) {
