@@ -208,7 +208,9 @@ void check(const Emitter& emitter, Checks& checks) {
           : 0;
   constexpr double k_most_points = 1e6;
   if (area > k_most_points * static_cast<double>(emitter.spacing) * static_cast<double>(emitter.spacing))
-    checks.problem("emitter.spacing", "makes layers of over a million particles");
+    checks.problem(
+        "emitter.spacing",
+        "makes layers of over a million particles; raise it, or lower radius, or width and height");
   if (emitter.start && emitter.stop && *emitter.stop <= *emitter.start) {
     std::ostringstream text;
     text << *emitter.stop << " is not allowed: after start, " << *emitter.start << " s, or it never flows";

@@ -87,6 +87,10 @@ Node* find(Node& node, std::string_view key) {
   return const_cast<Node*>(find(static_cast<const Node&>(node), key));
 }
 
+const Place& place_of_clash(const Place& first, const Place& second) {
+  return first.given_by.empty() && !second.given_by.empty() ? second : first;
+}
+
 Node parse_document(const std::string& text, const std::string& file) {
   if (auto fault = find_fault(text)) throw_at(fault->place, file, std::move(fault->message));
   try {

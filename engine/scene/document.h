@@ -52,6 +52,10 @@ struct Entry {
 const Node* find(const Node& node, std::string_view key);
 Node* find(Node& node, std::string_view key);
 
+/// Where two values clash: at `first`, unless `second` alone was given on the command line, by who sees it
+/// now.
+const Place& place_of_clash(const Place& first, const Place& second);
+
 /// The table at the root of a document. Throws ConfigError with line and column of what is no TOML.
 Node parse_document(const std::string& text, const std::string& file);
 

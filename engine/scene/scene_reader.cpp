@@ -26,6 +26,18 @@ struct DeclaredParticles {
   double operator()(const auto& source) const { return source.sampling.count.value_or(1); }
 };
 
+/// Where a field clashes with others that the message names: at the option that gave one of them, else at the
+/// table.
+const Place& place_of_clash(const Node& table, const std::string& field, const std::string& message) {
+  const Table* entries = table.get_if<Table>();
+  if (!entries) return table.place;
+  for (const Entry& entry : *entries) {
+    const bool is_named = field == '.' + entry.key || message.find(entry.key) != std::string::npos;
+    if (is_named && !entry.node.place.given_by.empty()) return entry.node.place;
+  }
+  return table.place;
+}
+
 /// Turns a document into a scene and collects what is wrong with it.
 class SceneReader {
  public:
@@ -66,8 +78,9 @@ class SceneReader {
   void check_update_times() {
     if (!scene_.solver.update_period || !scene_.solver.update_interval) return;
     const Node* solver = find(root_, "solver");
-    problems_.add(find(*solver, "update_interval")->place, "solver.update_interval",
-                  "is not allowed beside update_period: give one of the two");
+    problems_.add(
+        place_of_clash(find(*solver, "update_interval")->place, find(*solver, "update_period")->place),
+        "solver.update_interval", "is not allowed beside update_period: give one of the two");
   }
 
   void read_list(const char* key, std::size_t at_least,
@@ -95,8 +108,9 @@ class SceneReader {
     SceneMaterial& read = scene_.materials.emplace_back();
     read_fields(node, path, fields(read), {}, problems_);
     if (read.material.youngs_modulus && read.material.elastic_time_step)
-      problems_.add(find(node, "youngs_modulus")->place, path + ".youngs_modulus",
-                    "is not allowed beside elastic_time_step: give one of the two");
+      problems_.add(
+          place_of_clash(find(node, "youngs_modulus")->place, find(node, "elastic_time_step")->place),
+          path + ".youngs_modulus", "is not allowed beside elastic_time_step: give one of the two");
   }
 
   void read_body(const Node& node, const std::string& path) {
@@ -162,9 +176,10 @@ class SceneReader {
     try {
       checks.finish();
     } catch (const ConfigError& error) {
-      for (const Problem& problem : error.problems())
-        problems_.add(node.place, path + problem.field.substr(std::string("emitter").size()),
-                      problem.message);
+      for (const Problem& problem : error.problems()) {
+        const std::string field = problem.field.substr(std::string("emitter").size());
+        problems_.add(place_of_clash(node, field, problem.message), path + field, problem.message);
+      }
     }
   }
 

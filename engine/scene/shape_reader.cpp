@@ -109,7 +109,7 @@ class ShapeCheck {
 
   void operator()(const HullSource& hull) const {
     if (!hull.file.empty() && !hull.points.empty())
-      problems_.add(place_of("points"), join_path(path_, "points"),
+      problems_.add(place_of_clash(place_of("points"), place_of("file")), join_path(path_, "points"),
                     "is not allowed beside file: exactly one of the two");
     else if (!hull.file.empty())
       check_file(hull.file);
@@ -149,7 +149,7 @@ class ShapeCheck {
 
   void operator()(const Sampling& sampling) const {
     if (sampling.spacing && sampling.count)
-      problems_.add(place_of("count"), join_path(path_, "count"),
+      problems_.add(place_of_clash(place_of("count"), place_of("spacing")), join_path(path_, "count"),
                     "is not allowed beside spacing: exactly one of the two");
     if (!sampling.spacing && !sampling.count)
       problems_.add(table_.place, path_, "has neither spacing nor count: exactly one of the two is needed");
@@ -332,7 +332,8 @@ std::vector<SceneKeyframe> read_keyframes(const Node& table, const std::string& 
   }
   for (const char* other : {"translate", "rotate", "velocity", "angular_velocity"})
     if (const Node* beside = find(table, other))
-      problems.add(beside->place, join_path(table_path, other), "is not allowed beside keyframes");
+      problems.add(place_of_clash(beside->place, node->place), join_path(table_path, other),
+                   "is not allowed beside keyframes");
   for (std::size_t i = 0; i < list->size(); ++i) {
     SceneKeyframe& key = keys.emplace_back();
     const std::string key_path = element_path(path, i);
@@ -353,7 +354,7 @@ bool read_whole(const Node& table, const std::string& path, const BoundFields& f
 
 void check_box(const Aabb& box, const Node& table, const std::string& path, Problems& problems) {
   if ((box.min.array() <= box.max.array()).all()) return;
-  problems.add(find(table, "max")->place, join_path(path, "max"),
+  problems.add(place_of_clash(find(table, "max")->place, find(table, "min")->place), join_path(path, "max"),
                not_allowed(text_of(box.max), "at least min, " + text_of(box.min) + ", along every axis"));
 }
 

@@ -1,11 +1,10 @@
-// Settings that nobody means: of what comes and goes, of heat, and of what acts on nothing.
+// Settings that nobody means: of what comes and goes, and of what acts on nothing.
 #include <algorithm>
-#include <limits>
-#include <sstream>
 
 #include "colliders/pose.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
+#include "simulation/warning_list.h"
 
 namespace mallow {
 namespace {
@@ -23,25 +22,16 @@ class SourceWarnings {
       for (const EmitterState& emitter : state_.emitters) look_at_mouth(emitter);
       for (std::size_t k = 0; k < state_.sinks.size(); ++k) look_at_sink(k);
     }
-    find_temperatures();
     for (const BodyState& body : state_.bodies) {
-      look_at_heat(body);
       look_at_modulus(body);
       look_at_parts(body);
     }
     look_at_formulation();
     look_at_arithmetic();
-    return std::move(list_);
+    return list_.take();
   }
 
  private:
-  template <class... Words>
-  void add(const Words&... words) {
-    std::ostringstream text;
-    (text << ... << words);
-    list_.push_back(text.str());
-  }
-
   /// Where the first layer will be when it leaves.
   void look_at_mouth(const EmitterState& emitter) {
     if (emitter.held.empty()) return;
@@ -49,10 +39,10 @@ class SourceWarnings {
     const std::vector<ParticleId>& layer = emitter.held.front();
     const std::string& name = state_.body(emitter.body).name;
     if (layer.size() == 1 && settings.points.empty())
-      add("body '", name, "': layers of its emitter are one particle each, as ",
-          settings.radius ? "radius " : "width ", settings.radius ? *settings.radius : *settings.width,
-          " is too small for a spacing of ", settings.spacing,
-          ": a line of particles; give a smaller spacing, or a wider emitter");
+      list_.add("body '", name, "': layers of its emitter are one particle each, as ",
+                settings.radius ? "radius " : "width ", settings.radius ? *settings.radius : *settings.width,
+                " is too small for a spacing of ", settings.spacing,
+                ": a line of particles; give a smaller spacing, or a wider emitter");
     const Vec3 ahead = 0.5f * settings.spacing * rotation_of(settings.pose).col(2).cast<float>();
     for (std::size_t c = 0; c < state_.colliders.size(); ++c) {
       const auto is_inside = [&](ParticleId id) {
@@ -60,9 +50,9 @@ class SourceWarnings {
         return nearest(state_.colliders[c], x).distance < -k_rounding_depth * settings.spacing;
       };
       if (const auto inside = std::ranges::count_if(layer, is_inside); inside > 0)
-        add("body '", name, "': ", inside, " of ", layer.size(),
-            " particles of a layer leave its emitter inside ", "collider ", c,
-            ", which drives them out; move one of the two");
+        list_.add("body '", name, "': ", inside, " of ", layer.size(),
+                  " particles of a layer leave its emitter inside ", "collider ", c,
+                  ", which drives them out; move one of the two");
     }
   }
 
@@ -79,54 +69,15 @@ class SourceWarnings {
       ++free;
     }
     if (free > 0)
-      add("sink ", number, ": all ", free, " particles that are not held are ",
-          sink.outside ? "outside" : "inside", " its box at the start, and are removed at once",
-          sink.outside ? "; give a larger box" : "; with outside = true it takes what leaves the box");
-  }
-
-  /// Between which all heat is.
-  void find_temperatures() {
-    const auto reach = [&](float least, float most) {
-      coldest_ = std::min(coldest_, least);
-      warmest_ = std::max(warmest_, most);
-    };
-    for (const float temperature : state_.store.temperature.span()) reach(temperature, temperature);
-    for (const BodyState& body : state_.bodies) {
-      const Material& material = body.material->settings;
-      if (material.temperature) reach(*material.temperature, *material.temperature);
-      if (material.temperature && material.heat_transfer > 0)
-        reach(state_.config.air_temperature.lowest(), state_.config.air_temperature.highest());
-    }
-    for (const Collider& collider : state_.colliders)
-      if (collider.temperature) reach(collider.temperature->lowest(), collider.temperature->highest());
-  }
-
-  void look_at_heat(const BodyState& body) {
-    const Material& material = body.material->settings;
-    if (!material.temperature && material.conductivity > 0)
-      add("body '", body.name, "': conductivity ", material.conductivity,
-          " has no effect, as it carries no heat; give material.temperature");
-    const bool follows = material.alpha_by_temperature || material.viscosity_by_temperature ||
-                         material.plastic_yield_by_temperature;
-    if (material.temperature && follows && material.conductivity == 0)
-      add("body '", body.name,
-          "': no heat passes through it, as its conductivity is 0; give material.conductivity");
-    if (!material.temperature || !material.alpha_by_temperature) return;
-    const std::vector<ScheduleKey>& keys = material.alpha_by_temperature->keys();
-    const float least = material.alpha_by_temperature->lowest(),
-                most = material.alpha_by_temperature->highest();
-    if (least == most || !(keys.back().time <= coldest_ || keys.front().time >= warmest_)) return;
-    add("body '", body.name, "': alpha_by_temperature changes from ", keys.front().time, " to ",
-        keys.back().time, " K, but nothing is ", keys.back().time <= coldest_ ? "colder" : "warmer", " than ",
-        keys.back().time <= coldest_ ? coldest_ : warmest_,
-        " K, neither at the start nor of colliders or the air that give heat: alpha stays ",
-        material.alpha_by_temperature->at(static_cast<double>(coldest_)));
+      list_.add("sink ", number, ": all ", free, " particles that are not held are ",
+                sink.outside ? "outside" : "inside", " its box at the start, and are removed at once",
+                sink.outside ? "; give a larger box" : "; with outside = true it takes what leaves the box");
   }
 
   void look_at_modulus(const BodyState& body) {
     if (body.material->settings.youngs_modulus && !body.keeps_reference())
-      add("body '", body.name, "': youngs_modulus ", *body.material->settings.youngs_modulus,
-          " has no effect where alpha is 1: a fluid springs back to no shape; lower alpha");
+      list_.add(body, "youngs_modulus ", *body.material->settings.youngs_modulus,
+                " has no effect where alpha is 1: a fluid springs back to no shape; lower alpha");
   }
 
   void look_at_parts(const BodyState& body) {
@@ -134,7 +85,8 @@ class SourceWarnings {
     Parts parts;
     find_parts(body.shape, parts);
     if (parts.count > 1)
-      add("body '", body.name, "': its ", parts.count,
+      list_.add(
+          body, "its ", parts.count,
           " parts pass through each other where alpha is 0, as nothing acts between parts of a body; make "
           "them "
           "bodies of their own, or give alpha, or volume_iterations");
@@ -146,7 +98,8 @@ class SourceWarnings {
       return body.paints_alpha || body.material->settings.alpha.highest() > 0;
     };
     if (std::ranges::none_of(state_.bodies, flows) && !needs_sph_)
-      add("solver.formulation = \"printed\" has no effect where alpha is 0: it is of the accelerations that "
+      list_.add(
+          "solver.formulation = \"printed\" has no effect where alpha is 0: it is of the accelerations that "
           "alpha blends in");
   }
 
@@ -154,17 +107,17 @@ class SourceWarnings {
     if (state_.config.arithmetic == Arithmetic::exact || state_.bodies.empty()) return;
     const InstructionLevel level = state_.execution.level;
     if (!needs_sph_ && !keeps_volume_)
-      add("solver.arithmetic = \"native\" has no effect: it is of sums of SPH and of volume iterations, and "
+      list_.add(
+          "solver.arithmetic = \"native\" has no effect: it is of sums of SPH and of volume iterations, and "
           "there are none where alpha is 0");
     else if (level == InstructionLevel::baseline)
-      add("solver.arithmetic = \"native\" has no effect: at instruction level ", name(level),
-          " there are no fused multiply-adds, and sums are exact");
+      list_.add("solver.arithmetic = \"native\" has no effect: at instruction level ", name(level),
+                " there are no fused multiply-adds, and sums are exact");
   }
 
   const Simulation::State& state_;
   const bool needs_sph_, keeps_volume_;  ///< asked once, not for each body
-  float coldest_ = std::numeric_limits<float>::infinity(), warmest_ = -coldest_;
-  std::vector<std::string> list_;
+  WarningList list_;
 };
 
 }  // namespace

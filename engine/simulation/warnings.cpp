@@ -10,6 +10,7 @@
 #include "simulation/settings.h"
 #include "simulation/state.h"
 #include "simulation/stiffness.h"
+#include "simulation/warning_list.h"
 
 namespace mallow {
 namespace {
@@ -20,6 +21,8 @@ constexpr float k_resting = 2;
 constexpr float k_least_density = 5, k_most_density = 30000;
 /// Share of the longest step to which a limit may shorten all of them.
 constexpr double k_short_steps = 0.5;
+/// The same for viscosity, which matter has: honey and chocolate at 2 mm have more, and who pours them knows.
+constexpr double k_thick_steps = 0.05;
 /// Neighbours that slow a step down and show nothing: those of ten spacings.
 constexpr double k_many_neighbors = 4000;
 /// Support radius in spacings beyond which what flows no longer keeps its volume.
@@ -28,6 +31,8 @@ constexpr float k_wide_radius = 3.6f;
 constexpr float k_usual_radius = 3.05f;
 /// Strain by the own weight from which on a body is hardly meant to stand.
 constexpr float k_own_weight = 0.5f;
+/// Height [m] from which on nobody makes matter that bears less than itself: a room full of dough.
+constexpr float k_room = 3;
 /// Stiffness that holds nothing, and alpha whose share of pressure does not either.
 constexpr float k_limp = 1e-3f, k_no_pressure = 0.05f;
 /// Damping times as long as so many steps that follow from them.
@@ -41,9 +46,6 @@ constexpr float k_least_share = 0.3f;
 constexpr std::ptrdiff_t k_inside = 3;
 /// Of the particles of a region, the stride that leaves fewest regions.
 constexpr double k_best_stride = 0.2;
-/// Mean compression that nobody means to leave.
-constexpr float k_loose_tolerance = 0.05f;
-
 std::string number_text(float value) {
   std::ostringstream text;
   text << value;
@@ -67,7 +69,6 @@ class Warnings {
   std::vector<std::string> list() && {
     for (const BodyState& body : state_.bodies) {
       look_at_threshold(body);
-      look_at_flow(body);
       look_at_merging(body);
       look_at_density(body);
       look_at_limits(body);
@@ -78,22 +79,23 @@ class Warnings {
       look_at_volume(body);
       look_at_limp(body);
     }
-    look_at_tolerance();
     if (state_.step == 0 && state_.bodies.size() > 1) look_at_overlaps();
     if (state_.step == 0)
       for (const BodyState& body : state_.bodies) look_at_colliders(body);
-    std::ranges::copy(source_warnings(state_), std::back_inserter(list_));
-    return std::move(list_);
+    std::vector<std::string> all = list_.take();
+    for (const auto& more : {source_warnings, heat_warnings, matter_warnings})
+      std::ranges::copy(more(state_), std::back_inserter(all));
+    return all;
   }
 
  private:
   template <class... Words>
   void add(const BodyState& body, const Words&... words) {
-    std::ostringstream text;
-    text << "body '" << body.name << "': ";
-    (text << ... << words);
-    list_.push_back(text.str());
+    list_.add(body, words...);
   }
+
+  /// What stands behind a number, in units of SI; nothing where a scene has its own.
+  const char* unit(const char* name) const { return has_free_units(state_.config.gravity) ? "" : name; }
 
   void look_at_threshold(const BodyState& body) {
     if (!body.material->settings.update_threshold) return;
@@ -104,8 +106,8 @@ class Warnings {
     const float threshold = body.material->update_threshold * (1 - alpha);
     if (alpha < 0 || threshold >= k_resting * gravity) return;
     add(body, "update_threshold ", body.material->update_threshold, " times 1 - alpha (", alpha, ") is ",
-        threshold, " m/s2, below twice gravity (", k_resting * gravity,
-        " m/s2): at rest its own weight updates the reference shape, so that it sinks like clay; 40 times "
+        threshold, unit(" m/s2"), ", below twice gravity (", k_resting * gravity, unit(" m/s2"),
+        "): at rest its own weight updates the reference shape, so that it sinks like clay; 40 times "
         "gravity is ",
         40 * gravity);
   }
@@ -118,25 +120,6 @@ class Warnings {
     add(body, "slides along bodies that it merges with, as friction is between bodies that do not",
         body.shape.flows ? ": where they are not pressed together at once, leave merges out"
                          : ", and never becomes one with them, as it has no plastic_yield: leave merges out");
-  }
-
-  /// What can flow nowhere.
-  void look_at_flow(const BodyState& body) {
-    if (!body.shape.flows) return;
-    if (!body.keeps_reference())
-      return add(body, "plastic_yield has no effect where alpha is 1: a fluid flows by itself");
-    const Material& material = body.material->settings;
-    if (material.damping_time > state_.longest_step() && !material.plastic_creep)
-      add(body, "damping_time ", material.damping_time, " s is longer than a step, ", state_.longest_step(),
-          " s, and what the damper bears flows at once too: a blow may break it into shards; give "
-          "material.plastic_creep, or lower it");
-    if (!body.shape.built) return;
-    for (std::size_t j = 0; j < body.shape.region_weight.size(); ++j)
-      if (!is_thin(stretched_moment(body.shape, j))) return;
-    add(body,
-        "plastic_yield has no effect, as its particles are one layer, or a line: they have no strain across; "
-        "two layers "
-        "do");
   }
 
   void look_at_density(const BodyState& body) {
@@ -161,17 +144,21 @@ class Warnings {
       text << " shortens every step from " << longest << " s to " << step << " s or less; ";
       return text.str();
     };
-    if (limits.by_viscosity < k_short_steps * longest)
-      add(body, "viscosity ", body.viscosity, shortens(limits.by_viscosity), "lower it, or solver.time_step");
+    const Material& material = body.material->settings;
+    const std::string viscosity =
+        material.viscosity_by_temperature
+            ? "viscosity_by_temperature, " + number_text(body.viscosity) + " at its thickest,"
+            : "viscosity " + number_text(body.viscosity);
+    if (limits.by_viscosity < k_thick_steps * longest)
+      add(body, viscosity, shortens(limits.by_viscosity), "lower it, or raise the spacing, ", body.spacing,
+          " m, with whose square steps grow");
     if (limits.by_pressure >= k_short_steps * longest) return;
-    if (body.material->settings.pressure_coefficient)
-      add(body, "pressure_coefficient ", *body.material->settings.pressure_coefficient,
-          shortens(limits.by_pressure),
-          body.material->settings.cohesion > 0
-              ? "lower it, or cohesion, or solver.time_step, or raise viscosity"
-              : "lower it, or solver.time_step, or raise viscosity");
-    else if (body.material->settings.viscosity)
-      add(body, "viscosity ", body.viscosity, " is too low to calm the pressure that keeps the volume, and",
+    if (material.pressure_coefficient)
+      add(body, "pressure_coefficient ", *material.pressure_coefficient, shortens(limits.by_pressure),
+          material.cohesion > 0 ? "lower it, or cohesion, or solver.time_step, or raise viscosity"
+                                : "lower it, or solver.time_step, or raise viscosity");
+    else if (material.viscosity || material.viscosity_by_temperature)
+      add(body, viscosity, " is too low to calm the pressure that keeps the volume, and",
           shortens(limits.by_pressure), "leave it out, raise it, or give a lower pressure_coefficient");
     else {
       const auto [why, what_to_do] = why_pressure_shortens(body);
@@ -231,7 +218,7 @@ class Warnings {
         "them: they fall together; give solver.volume_iterations = 2, or them a stiffness or an alpha");
   }
 
-  /// Where elasticity alone bears it.
+  /// Where elasticity alone bears it, or where it is as high as nobody means.
   void look_at_weight(const BodyState& body) {
     const float modulus =
         state_.stiffness(body, 1 - body.most_alpha()) *
@@ -241,23 +228,16 @@ class Warnings {
         (box.max - box.min).cwiseAbs().dot(state_.config.gravity.cwiseAbs().stableNormalized());
     const float weight =
         body.mass / (body.spacing * body.spacing * body.spacing) * state_.config.gravity.norm() * height;
-    if (!body.matches_shape() || body.most_alpha() > 0.2f || !(weight > k_own_weight * modulus)) return;
-    add(body, "its own weight presses with ", weight, " Pa, where it is as stiff as ", modulus,
-        " Pa: it ends as a layer; raise material.youngs_modulus, or lower solver.time_step where that is "
+    if (!body.matches_shape() || !(weight > k_own_weight * modulus)) return;
+    if (body.material->settings.youngs_modulus && height > k_room && is_in_metres(state_.config.gravity))
+      return add(body, "it is ", height, " m high, and presses with ", weight, " Pa where it is as stiff as ",
+                 modulus, " Pa: under a gravity of ", state_.config.gravity.norm(),
+                 " m/s2 lengths are in metres; give a hundredth of them if these are centimetres");
+    if (body.most_alpha() > 0.2f) return;
+    add(body, "its own weight presses with ", weight, unit(" Pa"), ", where it is as stiff as ", modulus,
+        unit(" Pa"),
+        ": it ends as a layer; raise material.youngs_modulus, or lower solver.time_step where that is "
         "left out");
-  }
-
-  void look_at_tolerance() {
-    const float tolerance = state_.config.volume_tolerance;
-    if (tolerance > 0 && volume_iterations_ == 0)
-      list_.push_back(
-          "solver.volume_tolerance ends volume iterations, of which there are none: give volume_iterations");
-    else if (tolerance > k_loose_tolerance)
-      list_.push_back("solver.volume_tolerance " + number_text(tolerance) +
-                      " ends volume iterations where matter is compressed by " +
-                      number_text(100 * tolerance) +
-                      "% in the mean, as it hardly ever is: none are taken; 0.001 to 0.05 are usual, and 0 "
-                      "takes all");
   }
 
   void look_at_damping(const BodyState& body) {
@@ -349,7 +329,7 @@ class Warnings {
   const bool needs_sph_, keeps_volume_;
   const int volume_iterations_;
   std::vector<std::size_t> merging_;  ///< bodies of each material that merge
-  std::vector<std::string> list_;
+  WarningList list_;
 };
 
 }  // namespace
@@ -358,6 +338,10 @@ bool is_in_metres(const Vec3& gravity) {
   constexpr float k_moon = 1.5f, k_jupiter = 30;  // [m/s²]
   const float size = gravity.norm();
   return size >= k_moon && size <= k_jupiter;
+}
+
+bool has_free_units(const Vec3& gravity) {
+  return gravity != Vec3::Zero() && !is_in_metres(gravity);
 }
 
 std::vector<std::string> warnings(const Simulation::State& state) {

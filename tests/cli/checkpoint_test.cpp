@@ -158,7 +158,7 @@ TEST_F(cli_checkpoint, that_is_damaged_is_passed_over_for_the_one_before) {
   fs::remove(at("out/particles/frame_000005.ply"));
   const Outcome outcome = resume("out");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("warning: " + at("out/checkpoint") + ": "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("mallow: warning: " + at("out/checkpoint") + ": "), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("damaged"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("checkpoint.previous: step 12, frame 4"), std::string::npos) << outcome.err;
   expect_same_run("out", "whole");

@@ -139,7 +139,8 @@ TEST_F(cli_run, warns_at_its_end_of_a_paste_that_was_crushed) {
   const auto scene = [&](const std::string& material) {
     return write(
                "paste.toml",
-               "[solver]\ngravity = [0, 0, -9.81]\nvolume_iterations = 0\n[[material]]\nname = \"paste\"\nalpha = 0.2\n"
+               "[solver]\ngravity = [0, 0, -9.81]\nvolume_iterations = 0\n[[material]]\nname = "
+               "\"paste\"\nalpha = 0.2\n"
                "plastic_yield = 0.02\nrest_density = 1000\nyoungs_modulus = 5000\n" +
                    material +
                    "[[body]]\nmaterial = \"paste\"\nbox = { count = [10, 10, 6], spacing = 0.005, corner = "
@@ -178,6 +179,27 @@ TEST_F(cli_run, info_names_what_would_run) {
   EXPECT_NE(outcome.out.find("particles        125 in 1 body"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("SPH              on"), std::string::npos);
   EXPECT_NE(outcome.out.find("viscosity        off"), std::string::npos);
+}
+
+TEST_F(cli_run, info_says_what_was_left_out_and_what_bodies_are_at_the_temperatures_that_they_have) {
+  const std::string scene = R"([solver]
+gravity = [0, 0, -9.81]
+[[body]]
+material = "chocolate"
+box = { count = [4, 4, 4], spacing = 0.005 }
+paint = [{ box = { min = [-1, -1, 0.01], max = [1, 1, 1] }, temperature = 290 }]
+)";
+  const Outcome outcome = run_mallow({"info", write("warm.toml", scene).string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* text :
+       {"392.4*", "* is left out: threshold, 40 times gravity", "           0 to 1.4e+04            2e+04",
+        "      290 to 313       0.3 to 1           300 to 305", "gravity          0 0 -9.81 m/s2\n",
+        "s, 60 time steps\n"})
+    EXPECT_NE(outcome.out.find(text), std::string::npos) << text << '\n' << outcome.out;
+  EXPECT_EQ(outcome.out.find("units "), std::string::npos);
+  const Outcome free = run_mallow({"info", scene_, "--set", "solver.gravity=[0,0,-0.3]"});
+  EXPECT_NE(free.out.find("gravity          0 0 -0.3\nunits            the scene's own"), std::string::npos)
+      << free.out;
 }
 
 TEST_F(cli_run, info_print_is_a_scene_that_gives_the_same_state) {
@@ -222,7 +244,8 @@ TEST_F(cli_run, what_was_done_to_a_mesh_is_a_warning_of_sample_info_and_run) {
                                 {"run", scene, "--report", at("report.json")}}) {
     const Outcome outcome = run_mallow(arguments);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("warning: "), std::string::npos) << arguments[0];
+    EXPECT_NE(outcome.err.find("mallow: warning: "), std::string::npos) << arguments[0];
+    EXPECT_EQ(('\n' + outcome.err).find("\nwarning: "), std::string::npos) << "in one style";
     EXPECT_NE(outcome.err.find("cube.off: the mesh is inside out: its triangles were turned\n"),
               std::string::npos)
         << outcome.err;

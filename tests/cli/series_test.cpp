@@ -51,7 +51,7 @@ TEST_F(cli_series, has_a_row_for_each_frame_and_changes_no_bit_of_the_run) {
   ASSERT_EQ(with.exit_code, 0) << with.err;
   EXPECT_EQ(with.out, without.out);
   const std::string text = read_text(at("a.csv"));
-  EXPECT_TRUE(text.starts_with("frame,time [s],steps,particles,height [m],")) << text;
+  EXPECT_TRUE(text.starts_with("frame,time,steps,particles,height,")) << "units of its own\n" << text;
   auto series = columns(text);
   ASSERT_EQ(series.at("frame").size(), 13u);
   for (std::size_t k = 0; k <= 12; ++k) {
@@ -139,8 +139,56 @@ box = { count = [3, 3, 3], spacing = 1.0, corner = [-1, -1, 8] }
 )");
   ASSERT_EQ(run_mallow({"run", write("two.toml", scene).string(), "--series", at("a.csv")}).exit_code, 0);
   const std::string text = read_text(at("a.csv"));
-  EXPECT_NE(text.find(",cube.height [m],cube.top [m],cube.x [m],"), std::string::npos) << text;
-  EXPECT_NE(text.find(",\"ball, high.height [m]\","), std::string::npos) << text;
+  EXPECT_NE(text.find(",cube.height,cube.top,cube.x,"), std::string::npos) << text;
+  EXPECT_NE(text.find(",\"ball, high.height\","), std::string::npos) << text;
+}
+
+TEST_F(cli_series, has_the_temperatures_of_bodies_that_carry_heat_and_units_where_gravity_is_in_metres) {
+  const std::string scene = R"([solver]
+gravity = [0, 0, -9.81]
+[[material]]
+name = "hot"
+alpha = 0.3
+youngs_modulus = 2e4
+rest_density = 1000
+temperature = 300
+conductivity = 50
+[[material]]
+name = "plain"
+alpha = 0.3
+youngs_modulus = 2e4
+rest_density = 1000
+[[body]]
+material = "hot"
+group = "warm"
+box = { count = [4, 4, 4], spacing = 0.01, corner = [0, 0, 0] }
+paint = [{ box = { min = [-1, -1, 0.02], max = [1, 1, 1] }, temperature = 360 }]
+[[body]]
+material = "plain"
+group = "plain"
+box = { count = [3, 3, 3], spacing = 0.01, corner = [1, 0, 0] }
+[run]
+frames = 4
+frame_time = 0.02
+)";
+  ASSERT_EQ(run_mallow({"run", write("hot.toml", scene).string(), "--series", at("a.csv")}).exit_code, 0);
+  const std::string text = read_text(at("a.csv"));
+  EXPECT_TRUE(text.starts_with("frame,time [s],steps,particles,height [m],")) << text;
+  EXPECT_NE(text.find(",warm.temperature_min [K],warm.temperature_mean [K],warm.temperature_max [K]\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("plain.temperature"), std::string::npos);
+  const auto series = columns(text);
+  const std::vector<double>&least = series.at("warm.temperature_min"),
+        &mean = series.at("warm.temperature_mean"), &most = series.at("warm.temperature_max");
+  ASSERT_EQ(mean.size(), 5u);
+  EXPECT_EQ(least[0], 300);
+  EXPECT_EQ(most[0], 360);
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(mean[k], 330, 1e-3) << "none goes out, so far";
+  for (std::size_t k = 1; k < 5; ++k) {
+    EXPECT_GT(least[k] - least[k - 1], 0) << k;
+    EXPECT_LT(most[k] - most[k - 1], 0) << k;
+  }
 }
 
 TEST_F(cli_series, of_an_interrupted_run_goes_on_to_the_same_bytes) {

@@ -491,6 +491,34 @@ TEST_F(scene, names_the_override_that_is_wrong) {
   EXPECT_TRUE(broken[0].starts_with("--set solver.gravity=[0, 1: solver.gravity: ")) << broken[0];
 }
 
+TEST_F(scene, names_the_override_that_clashes_with_what_stands_in_the_file) {
+  const std::string text =
+      k_small_scene +
+      "[[emitter]]\nmaterial = \"jelly\"\nradius = 2\nspacing = 1\nstop = 4.8\n[[sink]]\n"
+      "box = { min = [0, 0, 0], max = [1, 1, 1] }\n[[collider]]\nplane = {}\nvelocity = [0, 0, "
+      "1]\n";
+  const std::string with_update = "[solver]\nupdate_interval = 20\n" + text.substr(text.find('\n') + 1);
+  const std::pair<const char*, const char*> cases[] = {
+      {"emitter[0].start=5", "emitter[0].stop: 4.8 is not allowed: after start, 5 s, or it never flows"},
+      {"emitter[0].width=5", "emitter[0].radius: is not allowed beside width"},
+      {"emitter[0].radius=9000", "emitter[0].spacing: makes layers of over a million particles"},
+      {"solver.update_period=5", "solver.update_interval: is not allowed beside update_period"},
+      {"sink[0].box.min=[0,0,2]", "sink[0].box.max: "},
+      {"collider[0].keyframes=[{time=1}]", "collider[0].velocity: is not allowed beside keyframes"},
+  };
+  for (const auto& [given, problem] : cases) {
+    const auto found = problems(with_update, {given, "emitter[0].jitter=0.1"});
+    ASSERT_FALSE(found.empty()) << given;
+    EXPECT_TRUE(found[0].starts_with(std::string("--set ") + given + ": " + problem)) << found[0];
+  }
+  const auto in_file = problems(with_update +
+                                    "[[emitter]]\nmaterial = \"jelly\"\nradius = 2\nspacing = 1\nstart "
+                                    "= 5\nstop = 4.8\n",
+                                {"emitter[1].jitter=0.1"});
+  ASSERT_EQ(in_file.size(), 1u);
+  EXPECT_TRUE(in_file[0].starts_with("scene.toml:")) << in_file[0];
+}
+
 TEST_F(scene, shows_problems_of_overrides_after_those_of_the_file) {
   const auto found = problems(k_small_scene + "[run]\nframes = -2\n", {"solver.time_step=-1"});
   ASSERT_EQ(found.size(), 2u);

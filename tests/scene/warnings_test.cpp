@@ -1,25 +1,12 @@
-#include <algorithm>
 #include <optional>
 
 #include "scene/scene_fixture.h"
+#include "scene/warning_scenes.h"
 
 namespace mallow {
 namespace warnings_test {
 
 using scene_warnings = SceneFixture;
-
-/// A body of a spacing under a gravity, in a film of 30 frames; `run`: lines of that section.
-std::string falling(const std::string& spacing, const std::string& radius, const std::string& gravity,
-                    const std::string& run) {
-  return "[solver]\nsupport_radius = " + radius + "\ngravity = [0, 0, " + gravity +
-         "]\n[[material]]\nname = \"blob\"\nalpha = 0.3\nrest_density = 1000.0\n[[body]]\nmaterial = "
-         "\"blob\"\nbox = { count = [4, 4, 4], spacing = " +
-         spacing + ", corner = [0, 0, 0] }\n[run]\nframes = 30\n" + run;
-}
-
-std::vector<std::string> warnings_of(const Scene& scene) {
-  return warnings(scene, build(scene, 1).info());
-}
 
 TEST_F(scene_warnings, name_a_film_that_is_many_times_slower_than_real_time_and_the_frame_time_that_is_not) {
   const auto slow = warnings_of(read(falling("0.003", "0.0063", "-9.81", "")));
@@ -45,15 +32,20 @@ TEST_F(scene_warnings, name_frames_in_which_nothing_moves_a_spacing_far) {
       "than the spacing of 1 m; give more frames, or a longer frame_time");
 }
 
-bool warns(const std::vector<std::string>& all, const std::string& of) {
-  return std::ranges::any_of(all, [&](const std::string& text) { return text.find(of) != text.npos; });
-}
-
 TEST_F(scene_warnings, name_a_frame_time_in_milliseconds) {
   EXPECT_TRUE(warns(warnings_of(read(falling("0.003", "0.0063", "-9.81", "frame_time = 33\n"))),
                     "frame_time is in seconds, and 0.0333333 shows real time"));
   EXPECT_FALSE(
       warns(warnings_of(read(falling("0.003", "0.0063", "-9.81", "frame_time = 0.5\n"))), "frame_time"));
+}
+
+TEST_F(scene_warnings, name_no_units_of_si_where_a_scene_has_its_own) {
+  const auto with = [&](const std::string& gravity) {
+    std::string text = falling("1.0", "2.1", gravity, "");
+    return warnings_of(read(text.insert(text.find("alpha"), "update_threshold = 0.1\n")));
+  };
+  EXPECT_TRUE(warns(with("-0.3"), "(0.3) is 0.07, below twice gravity (0.6): at rest"));
+  EXPECT_TRUE(warns(with("-9.81"), "(0.3) is 0.07 m/s2, below twice gravity (19.62 m/s2): at rest"));
 }
 
 TEST_F(scene_warnings, name_keyframes_that_are_half_a_turn_or_more_apart) {
@@ -95,14 +87,6 @@ TEST_F(scene_warnings, name_a_density_that_is_in_grams_by_cubic_centimetre) {
   EXPECT_TRUE(warns(warnings_of(read(text)), "a rest density of 1 kg/m3 is given"));
 }
 
-/// The same with other lines of the material, and more sections.
-std::string jelly(const std::string& material, const std::string& more = "") {
-  std::string text = falling("0.1", "0.21", "-9.81", "frame_time = 0.0333333\n");
-  const std::string alpha = "alpha = 0.3";
-  text.replace(text.find(alpha), alpha.size(), material);
-  return text + more;
-}
-
 TEST_F(scene_warnings, name_an_emitter_whose_mouth_is_inside_a_collider) {
   const auto above = [&](const std::string& height) {
     return warnings_of(
@@ -133,16 +117,6 @@ TEST_F(scene_warnings, name_a_sink_that_takes_all_at_once) {
   EXPECT_FALSE(warns(sink("[-9, -9, -9]", "true"), "removed at once"));
   EXPECT_TRUE(warns(sink("[8, 8, 8]", "true"), "removed at once"));
   EXPECT_FALSE(warns(sink("[8, 8, 8]", "false"), "removed at once"));
-}
-
-TEST_F(scene_warnings, name_heat_that_does_nothing) {
-  EXPECT_TRUE(warns(warnings_of(read(jelly("conductivity = 1.0"))), "conductivity 1 has no effect"));
-  const std::string melts =
-      "temperature = 290.0\nconductivity = 1.0\nalpha_by_temperature = [[300.0, 0.1], [310.0, 1.0]]";
-  EXPECT_TRUE(warns(warnings_of(read(jelly(melts))), "alpha stays 0.1"));
-  EXPECT_FALSE(
-      warns(warnings_of(read(jelly(melts, "[[collider]]\nplane = { offset = -1.0 }\ntemperature = 350.0\n"))),
-            "alpha stays"));
 }
 
 TEST_F(scene_warnings, name_what_acts_on_nothing) {

@@ -12,8 +12,7 @@ void print_warning(const std::string& warning) {
 
 void print_notes(std::span<const std::string> notes) {
   // Names of files are in them, which to_string() makes fit for a terminal.
-  for (const std::string& note : notes)
-    std::fprintf(stderr, "warning: %s\n", to_string(Problem{.message = note}).c_str());
+  for (const std::string& note : notes) print_warning(to_string(Problem{.message = note}));
 }
 
 void print_warnings(const Scene& scene, const SimulationInfo& info) {

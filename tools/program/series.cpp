@@ -4,10 +4,12 @@
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <utility>
 
 #include "program/csv.h"
 #include "program/loads.h"
+#include "program/units.h"
 
 namespace mallow::program {
 namespace fs = std::filesystem;
@@ -74,6 +76,19 @@ double volume(const Simulation& simulation, const Simulation::Rows& rows, double
   return sum;
 }
 
+/// Least, mean and most of some particles; empty cells where there are none.
+void add_temperatures(const Simulation& simulation, const Simulation::Rows& rows, Line& line) {
+  const std::span<const float> all = simulation.temperatures();
+  if (rows.begin == rows.end || all.size() < rows.end) {
+    for (int cell = 0; cell < 3; ++cell) line.add(std::string());
+    return;
+  }
+  const std::span<const float> own = all.subspan(rows.begin, rows.end - rows.begin);
+  line.add(static_cast<double>(std::ranges::min(own)));
+  line.add(std::accumulate(own.begin(), own.end(), 0.0) / static_cast<double>(own.size()));
+  line.add(static_cast<double>(std::ranges::max(own)));
+}
+
 std::vector<ColliderId> measured_colliders(const Simulation& simulation) {
   std::vector<ColliderId> ids = simulation.collider_ids();
   std::erase_if(ids, [&](ColliderId id) { return !simulation.collider(id).measure_load; });
@@ -91,8 +106,14 @@ fs::path file_of(const nlohmann::json& state, const fs::path& now) {
 }  // namespace
 
 Series::Series(const fs::path& file, Simulation& simulation)
-    : file_(file), colliders_(measured_colliders(simulation)) {
-  for (const BodyId id : simulation.bodies()) bodies_.push_back({.id = id, .name = simulation.name(id)});
+    : file_(file),
+      has_units_(!has_own_units(simulation.config())),
+      colliders_(measured_colliders(simulation)) {
+  for (const BodyId id : simulation.bodies())
+    bodies_.push_back(
+        {.id = id,
+         .name = simulation.name(id),
+         .is_heated = simulation.material_settings(simulation.material(id)).temperature.has_value()});
   find_rest_volumes(simulation);
   row_time_ = simulation.time();
   loads_.resize(colliders_.size());
@@ -107,7 +128,8 @@ Series::Series(const std::string& text, const fs::path& file, Simulation& simula
   for (const auto& body : state.at("bodies"))
     bodies_.push_back({.id = BodyId{body.at("id").get<std::uint64_t>()},
                        .name = body.at("name").get<std::string>(),
-                       .parts = body.at("parts").get<std::size_t>()});
+                       .parts = body.at("parts").get<std::size_t>(),
+                       .is_heated = body.value("is_heated", false)});
   find_rest_volumes(simulation);
   state.at("row_time").get_to(row_time_);
   state.at("largest_compression").get_to(largest_compression_);
@@ -134,23 +156,34 @@ bool Series::has_collider_columns() const {
   return colliders_.size() <= k_most_described;
 }
 
+bool Series::has_temperatures(const Body& body) const {
+  return body.is_heated && bodies_.size() <= k_most_described;
+}
+
 std::string Series::header() const {
   Line line;
+  const auto of_units = [&](const std::string& name) {
+    return has_units_ ? name : name.substr(0, name.find(" ["));
+  };
   for (const char* name : {"frame", "time [s]", "steps", "particles", "height [m]", "top [m]", "extent_x [m]",
                            "extent_y [m]", "volume [m3]", "kinetic_energy [J]", "elastic_energy [J]",
                            "conserved_energy [J]", "momentum_x [N s]", "momentum_y [N s]", "momentum_z [N s]",
                            "parts", "awake_bodies", "largest_compression", "mean_compression"})
-    line.add(std::string(name));
+    line.add(of_units(name));
   if (has_collider_columns())
     for (std::size_t k = 0; k < colliders_.size(); ++k)
       for (const auto& [what, unit] : {std::pair{".force_", " [N]"}, std::pair{".torque_", " [N m]"}})
         for (const char axis : {'x', 'y', 'z'})
-          line.add("collider[" + std::to_string(k) + ']' + what + axis + unit);
+          line.add("collider[" + std::to_string(k) + ']' + what + axis + of_units(unit));
   if (has_body_columns())
     for (const Body& body : bodies_)
       for (const char* name :
            {"height [m]", "top [m]", "x [m]", "y [m]", "z [m]", "kinetic_energy [J]", "parts"})
-        line.add(body.name + '.' + name);
+        line.add(body.name + '.' + of_units(name));
+  for (const Body& body : bodies_)
+    if (has_temperatures(body))
+      for (const char* name : {"temperature_min [K]", "temperature_mean [K]", "temperature_max [K]"})
+        line.add(body.name + '.' + of_units(name));
   return line.text();
 }
 
@@ -168,14 +201,16 @@ void Series::add_step(const StepReport& step, const Simulation& simulation) {
 void Series::add_row(int frame, Simulation& simulation, const std::optional<double>& volume_of_surface) {
   const std::vector<BodyId> ids = simulation.bodies();
   Sums sums;
-  Line of_bodies;
+  Line of_bodies, of_heat;
   for (const Body& body : bodies_) {
-    if (std::ranges::find(ids, body.id) == ids.end()) {
+    const bool is_there = std::ranges::find(ids, body.id) != ids.end();
+    const Simulation::Rows rows = is_there ? simulation.rows(body.id) : Simulation::Rows{};
+    if (has_temperatures(body)) add_temperatures(simulation, rows, of_heat);
+    if (!is_there) {
       if (has_body_columns())
         for (int cell = 0; cell < 7; ++cell) of_bodies.add(std::string());
       continue;
     }
-    const Simulation::Rows rows = simulation.rows(body.id);
     const Aabb box = simulation.bounds(body.id);
     const BodyMotion motion = simulation.motion(body.id);
     const std::size_t particles = rows.end - rows.begin;
@@ -219,6 +254,7 @@ void Series::add_row(int frame, Simulation& simulation, const std::optional<doub
       for (const Eigen::Vector3d& sum : {load.impulse, load.torque})
         line.add(seconds > 0 ? Eigen::Vector3d(sum / seconds) : Eigen::Vector3d(0, 0, 0));
   line.add(of_bodies);
+  line.add(of_heat);
   file_.add(line.text());
   row_time_ = simulation.time();
   largest_compression_ = 0;
@@ -229,8 +265,10 @@ std::string Series::saved() const {
   file_.sync();
   nlohmann::json bodies = nlohmann::json::array(), loads = nlohmann::json::array();
   for (const Body& body : bodies_)
-    bodies.push_back(
-        {{"id", static_cast<std::uint64_t>(body.id)}, {"name", body.name}, {"parts", body.parts}});
+    bodies.push_back({{"id", static_cast<std::uint64_t>(body.id)},
+                      {"name", body.name},
+                      {"parts", body.parts},
+                      {"is_heated", body.is_heated}});
   for (const ColliderLoad& load : loads_) loads.push_back(nlohmann::json(to_json(load)));
   const nlohmann::json state = {{"file", fs::absolute(file_.file()).string()},
                                 {"bytes", file_.size()},
@@ -259,7 +297,9 @@ const char* series_help() {
          "collider[0].force_x, _y, _z, .torque_x, _y, _z: on each of up to 32 colliders, mean since the row\n"
          "  before; torques are about where its pose is, the origin of its shape;\n"
          "NAME.height, .top, .x, .y, .z (centre of mass), .kinetic_energy, .parts: of each body where there\n"
-         "  are 2 to 32; empty once a body is gone.";
+         "  are 2 to 32; empty once a body is gone;\n"
+         "NAME.temperature_min, _mean, _max: of the particles of each body that carries heat, up to 32.\n"
+         "Where gravity is no planet's in m/s2 units are the scene's own, and the header names none.";
 }
 
 }  // namespace mallow::program

@@ -37,13 +37,16 @@ class Series {
     std::string name;
     double rest_volume = 0;  ///< of a particle [m³]
     std::size_t parts = 1;
+    bool is_heated = false;
   };
   void find_rest_volumes(Simulation& simulation);
   std::string header() const;
   bool has_body_columns() const;
   bool has_collider_columns() const;
+  bool has_temperatures(const Body& body) const;
 
   GrowingFile file_;
+  bool has_units_ = true;  ///< of SI, in the header
   std::vector<Body> bodies_;
   std::vector<ColliderId> colliders_;  ///< that measure loads
   // Since the last row.
