@@ -103,10 +103,10 @@ void list_touches(const VectorColumn& before, const ContactPairs& pairs, std::ve
       auto touch = std::find_if(touches.begin() + static_cast<std::ptrdiff_t>(first), touches.end(),
                                 [&](const BodyTouch& known) { return known.other == other; });
       if (touch == touches.end()) touch = touches.insert(touch, {blocks[number].range, other, {}});
-      const Vec3 x = 0.5f * (pairs.points[i].position + pairs.points[j].position);
       const Vec3 v = before.get(near.row[i]) - before.get(near.row[j]);
       const Eigen::Vector3d normal(block.normal_x[k], block.normal_y[k], block.normal_z[k]);
-      touch->sums.add(got.cast<double>(), x.cast<double>(), v.cast<double>(), normal);
+      touch->sums.add_between(got.cast<double>(), pairs.points[i].position.cast<double>(),
+                              pairs.points[j].position.cast<double>(), v.cast<double>(), normal);
     }
   }
 }
