@@ -41,20 +41,20 @@ void push_apart(const Execution& execution, const ContactLanes& lanes, ContactPa
     for_touching(pairs.sides[number], [&](std::uint32_t i, std::span<const BlockSides::Side> sides) {
       float acting = 0;
       for (const BlockSides::Side& side : sides) acting += pairs.acts[side.pair];
-      pairs.shared_velocity[i] = {pairs.velocity[i].velocity, acting * pairs.points[i].inverse_mass};
+      pairs.velocity[i].share = acting * pairs.points[i].inverse_mass;
     });
   });
   parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
     BlockPairs& block = pairs.blocks[number];
-    lanes.impulses(pairs.shared_velocity.front().velocity.data(), block.columns(), block.count,
-                   pairs.acts.data() + block.first, pairs.impulses.data() + 4 * block.first);
+    lanes.impulses(pairs.rows().velocities, block.columns(), block.count, pairs.acts.data() + block.first,
+                   pairs.impulses.data() + 4 * block.first);
     if (pairs.sums.size() == 0) return;
     for (std::size_t k = 4 * block.first; k < 4 * (block.first + block.count); ++k)
       pairs.sums.data()[k] += pairs.impulses.data()[k];
   });
   parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
     for_touching(pairs.sides[number], [&](std::uint32_t i, std::span<const BlockSides::Side> sides) {
-      if (pairs.shared_velocity[i].share == 0) return;
+      if (pairs.velocity[i].share == 0) return;
       Eigen::Vector4f sum = Eigen::Vector4f::Zero();
       for (const auto& [pair, sign] : sides)
         sum += sign * Eigen::Map<const Eigen::Vector4f>(pairs.impulses.data() + 4 * pair);
@@ -103,10 +103,10 @@ void list_touches(const VectorColumn& before, const ContactPairs& pairs, std::ve
       auto touch = std::find_if(touches.begin() + static_cast<std::ptrdiff_t>(first), touches.end(),
                                 [&](const BodyTouch& known) { return known.other == other; });
       if (touch == touches.end()) touch = touches.insert(touch, {blocks[number].range, other, {}});
-      const Vec3 x = 0.5f * (pairs.points[i].position + pairs.points[j].position);
       const Vec3 v = before.get(near.row[i]) - before.get(near.row[j]);
       const Eigen::Vector3d normal(block.normal_x[k], block.normal_y[k], block.normal_z[k]);
-      touch->sums.add(got.cast<double>(), x.cast<double>(), v.cast<double>(), normal);
+      touch->sums.add_between(got.cast<double>(), pairs.points[i].position.cast<double>(),
+                              pairs.points[j].position.cast<double>(), v.cast<double>(), normal);
     }
   }
 }

@@ -35,6 +35,34 @@ std::size_t in_boxes(const ConstVectors& of, std::size_t begin, std::size_t end,
   return static_cast<std::size_t>(out - start);
 }
 
+std::size_t in_box(const ConstVectors& of, std::size_t begin, std::size_t end, const LaneBox& box,
+                   const ConstVectors& low, const ConstVectors& high, std::uint32_t* out) noexcept {
+  const std::uint32_t* const start = out;
+  const float *const axes[3] = {of.x, of.y, of.z}, *const lows[3] = {low.x, low.y, low.z},
+                     *const highs[3] = {high.x, high.y, high.z};
+  Floats from[3], to[3];
+  for (int a = 0; a < 3; ++a) {
+    from[a] = all(box.low[a]);
+    to[a] = all(box.high[a]);
+  }
+  const std::size_t boxes = (end - begin + k_cluster - 1) / k_cluster;
+  for (std::size_t b = 0; b < boxes; b += k_cluster) {
+    Ints meets = ~Ints{};
+    for (int a = 0; a < 3; ++a)
+      meets &= is_at_most(load(lows[a] + b), to[a]) & is_at_most(from[a], load(highs[a] + b));
+    for (unsigned left = bits_of(meets, boxes - b); left != 0; left &= left - 1) {
+      const std::size_t j = begin + k_cluster * (b + static_cast<unsigned>(__builtin_ctz(left)));
+      Ints inside = ~Ints{};
+      for (int a = 0; a < 3; ++a) {
+        const Floats x = load(axes[a] + j);
+        inside &= is_at_most(from[a], x) & is_at_most(x, to[a]);
+      }
+      out += compress(bits_of(inside, end - j), k_count + static_cast<int>(j), out);
+    }
+  }
+  return static_cast<std::size_t>(out - start);
+}
+
 /// Four numbers of each of eight points: a vector, and one more.
 struct Row {
   ClusterVec3 vector;
@@ -236,6 +264,6 @@ void impulses(const float* velocities, const PairColumns& pairs, std::size_t n, 
 }  // namespace
 
 extern const ContactLanes contact_lanes;
-const ContactLanes contact_lanes = {in_boxes, gather, meeting, add_pairs, acting, impulses};
+const ContactLanes contact_lanes = {in_boxes, in_box, gather, meeting, add_pairs, acting, impulses};
 
 }  // namespace mallow::MALLOW_LEVEL

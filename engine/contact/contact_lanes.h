@@ -48,6 +48,9 @@ struct ContactLanes {
   /// k_cluster more.
   std::size_t (*in_boxes)(const ConstVectors&, std::size_t begin, std::size_t end, const LaneBox*,
                           std::size_t boxes, std::uint32_t* out) noexcept;
+  /// The same of one box, where boxes around each k_cluster points from `begin` on are known: their corners.
+  std::size_t (*in_box)(const ConstVectors&, std::size_t begin, std::size_t end, const LaneBox&,
+                        const ConstVectors& low, const ConstVectors& high, std::uint32_t* out) noexcept;
   /// n names of points -> all else that they are tried by. velocity: of a frame in which they move little.
   void (*gather)(const ContactRows&, const PairStep&, const float* velocity, std::size_t n,
                  const MeetingPoints&) noexcept;

@@ -53,9 +53,19 @@ void gather(const VectorColumn& positions, const VectorColumn& velocities, const
   pairs.positions.resize_unset(n);
   pairs.points.resize(n);
   pairs.velocity.resize(n);
-  pairs.shared_velocity.resize(n);
+  const std::size_t blocks = near.blocks.blocks.size();
+  pairs.first_few.resize_unset(blocks + 1);
+  pairs.first_few[0] = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t points = near.first_point[b + 1] - near.first_point[b];
+    pairs.first_few[b + 1] =
+        pairs.first_few[b] + static_cast<std::uint32_t>((points + k_cluster - 1) / k_cluster);
+  }
+  pairs.few_low.resize_unset(pairs.first_few[blocks]);
+  pairs.few_high.resize_unset(pairs.first_few[blocks]);
   parallel_for(threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     const TouchingBody& body = bodies[block.range];
+    const float friction = std::sqrt(body.friction), adhesion = std::sqrt(body.adhesion);
     for (std::uint32_t p = near.first_point[number]; p < near.first_point[number + 1]; ++p) {
       const std::uint32_t row = near.row[p];
       const Vec3 x = positions.get(row), v = velocities.get(row), out = outward(body, row);
@@ -67,9 +77,15 @@ void gather(const VectorColumn& positions, const VectorColumn& velocities, const
                          .outward = depth > 0 ? Vec3(out / depth) : Vec3(0, 0, 0),
                          .depth = depth,
                          .inverse_mass = pin && pin[row] != 0 ? 0.0f : 1.0f / body.mass,
-                         .friction = std::sqrt(body.friction),
-                         .adhesion = std::sqrt(body.adhesion),
+                         .friction = friction,
+                         .adhesion = adhesion,
                          .unused = 0};
+    }
+    const std::size_t begin = near.first_point[number], end = near.first_point[number + 1];
+    for (std::size_t few = pairs.first_few[number], from = begin; from < end; ++few, from += k_cluster) {
+      const Aabb box = box_around(pairs.positions, from, std::min(from + k_cluster, end));
+      pairs.few_low.set(few, box.min);
+      pairs.few_high.set(few, box.max);
     }
   });
 }
@@ -104,6 +120,10 @@ struct PairSearch {
   std::vector<std::uint32_t> first, second;  ///< points that may touch
 };
 
+ConstVectors from(const VectorColumn& column, std::size_t first) {
+  return {column.x() + first, column.y() + first, column.z() + first};
+}
+
 /// Points of later blocks of other bodies near the box of some of a block.
 void find_candidates(const ContactPairs& pairs, std::size_t number, const Aabb& box,
                      const ContactLanes& lanes, Candidates& found) {
@@ -114,8 +134,9 @@ void find_candidates(const ContactPairs& pairs, std::size_t number, const Aabb& 
     const std::uint32_t first = near.first_point[other], last = near.first_point[other + 1];
     found.reserve(found.count + (last - first));
     const LaneBox wide = lane_box(box, reach);
-    found.count +=
-        lanes.in_boxes(raw(pairs.positions), first, last, &wide, 1, found.name.data() + found.count);
+    const std::size_t few = pairs.first_few[other];
+    found.count += lanes.in_box(raw(pairs.positions), first, last, wide, from(pairs.few_low, few),
+                                from(pairs.few_high, few), found.name.data() + found.count);
   }
 }
 
@@ -132,9 +153,8 @@ void find_all_candidates(std::size_t number, const ContactLanes& lanes, ContactP
   const std::size_t rows = near.blocks.blocks[number].end - near.blocks.blocks[number].begin;
   block.points.reserve(k_room_near * rows);
   block.ends.reserve((rows + k_cluster - 1) / k_cluster);
-  for (std::uint32_t from = begin; from < end; from += k_cluster) {
-    const std::size_t count = std::min<std::size_t>(k_cluster, end - from);
-    find_candidates(pairs, number, box_around(pairs.positions, from, from + count), lanes, others);
+  for (std::size_t few = pairs.first_few[number]; few < pairs.first_few[number + 1]; ++few) {
+    find_candidates(pairs, number, {pairs.few_low.get(few), pairs.few_high.get(few)}, lanes, others);
     block.points.insert(block.points.end(), others.name.begin(),
                         others.name.begin() + static_cast<std::ptrdiff_t>(others.count));
     block.ends.push_back(static_cast<std::uint32_t>(block.points.size()));
@@ -248,9 +268,9 @@ ContactRows ContactPairs::rows() const {
 }
 
 std::size_t ContactPairs::bytes() const {
-  std::size_t sum = near.bytes() + positions.bytes() + acts.bytes() + impulses.bytes() + sums.bytes() +
-                    points.capacity() * sizeof(ContactPoint) +
-                    (velocity.capacity() + shared_velocity.capacity()) * sizeof(ContactVelocity);
+  std::size_t sum = near.bytes() + positions.bytes() + few_low.bytes() + few_high.bytes() +
+                    first_few.bytes() + acts.bytes() + impulses.bytes() + sums.bytes() +
+                    points.capacity() * sizeof(ContactPoint) + velocity.capacity() * sizeof(ContactVelocity);
   for (const BlockPairs& block : blocks) sum += block.bytes();
   for (const BlockCandidates& block : candidates)
     sum += (block.points.capacity() + block.ends.capacity()) * sizeof(std::uint32_t);

@@ -19,7 +19,8 @@ struct ContactPoint {
   float unused;
 };
 
-/// A velocity, and the inverse mass of its point times how many of its pairs act: a row of four floats.
+/// A velocity, and the inverse mass of its point times how many of its pairs act in a round: a row of four
+/// floats.
 struct ContactVelocity {
   Vec3 velocity;  ///< [m/s]
   float share;    ///< [1/kg]
@@ -69,8 +70,10 @@ struct ContactPairs {
   // By point.
   std::vector<ContactPoint> points;
   std::vector<ContactVelocity> velocity;
-  std::vector<ContactVelocity> shared_velocity;  ///< the same, with the shares of a round
   VectorColumn positions;
+  // By k_cluster points of a block, those of one block behind those of the other.
+  Column<std::uint32_t> first_few;  ///< per block, and one more
+  VectorColumn few_low, few_high;   ///< corners of the box around them [m]
   // By pair, of a round.
   Column<float> acts;       ///< 1 or 0
   Column<float> impulses;   ///< on the first point, rows of four: three, and nothing [N s]

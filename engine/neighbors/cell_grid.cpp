@@ -32,14 +32,40 @@ Aabb finite_bounds(const VectorColumn& x, std::size_t begin, std::size_t end) {
   return box;
 }
 
+/// Makes the covered box one of whole cells of the lattice: those that the points lie in, within `most`.
+/// Pillars stay in the strips that they are in.
+void anchor(const Aabb& points, const Aabb& most, CellGrid& grid) {
+  constexpr float k_most_cells = 1 << 22;  // whose numbers a float holds
+  const Vec3 edges(grid.along, grid.across, grid.across);
+  std::array<int, 3> first, last;
+  for (int a = 0; a < 3; ++a) {
+    // As lanes count.
+    const auto cell = [&](float place) { return std::floor(place * (1.0f / edges[a])); };
+    const float low = cell(std::max(points.min[a], most.min[a])),
+                high = cell(std::min(points.max[a], most.max[a]));
+    if (!(std::abs(low) < k_most_cells && std::abs(high) < k_most_cells)) return;
+    first[static_cast<std::size_t>(a)] = static_cast<int>(low);
+    last[static_cast<std::size_t>(a)] = static_cast<int>(std::max(low, high));
+  }
+  first[1] -= (first[1] % k_strip + k_strip) % k_strip;
+  for (std::size_t a = 0; a < 3; ++a) {
+    grid.dims[a] = last[a] - first[a] + 1;
+    grid.origin[static_cast<int>(a)] = static_cast<float>(first[a]) * edges[static_cast<int>(a)];
+  }
+  grid.first = first;
+  grid.cells_from.setZero();
+  grid.rounding += 1e-6f * std::max(points.min.cwiseAbs().maxCoeff(), points.max.cwiseAbs().maxCoeff());
+}
+
 /// Chooses the cells and the covered box. Where points lie too thinly for cells of their spacing, cells are
 /// made longer, then larger, up to the radius; where a few strays make the box too large even so, it shrinks
 /// around the mean until its cells are affordable.
 void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, float radius,
                   const Threads& threads, CellGrid& grid) {
-  Aabb box = bounds_of(x, begin, end, threads, grid.partial_bounds);
-  if (!box.min.allFinite() || !box.max.allFinite()) box = finite_bounds(x, begin, end);
-  const auto n = static_cast<double>(end - begin);
+  Aabb own = bounds_of(x, begin, end, threads, grid.partial_bounds);
+  if (!own.min.allFinite() || !own.max.allFinite()) own = finite_bounds(x, begin, end);
+  const Aabb box = grid.points_beside > 0 ? box_around(own, grid.box_beside) : own;
+  const auto n = static_cast<double>(end - begin + grid.points_beside);
   const double spacing = static_cast<double>(grid.spacing > 0 ? grid.spacing : 0.5f * radius);
   double across = k_across * spacing, along = k_along * spacing;
   const double budget = std::max(k_min_cells, k_cells_per_point * n);
@@ -54,7 +80,7 @@ void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, flo
     Eigen::Vector3d mean(0, 0, 0);
     for (std::size_t i = begin; i < end; ++i)
       if (x.get(i).allFinite()) mean += x.get(i).cast<double>();
-    mean /= n;
+    mean /= static_cast<double>(end - begin);
     while (too_many()) {
       // The size itself: of a box far from 0 low and high would not come any nearer than they are rounded.
       Eigen::Index widest = 0;
@@ -68,6 +94,9 @@ void choose_cells(const VectorColumn& x, std::size_t begin, std::size_t end, flo
   grid.across = static_cast<float>(across);
   grid.rounding = static_cast<float>(1e-6 * size.maxCoeff() + 1e-5 * static_cast<double>(radius));
   for (int a = 0; a < 3; ++a) grid.dims[static_cast<std::size_t>(a)] = static_cast<int>(cells(a));
+  grid.first = {0, 0, 0};
+  grid.cells_from = grid.origin;
+  if (grid.anchored) anchor(own, {low.cast<float>(), (low + size).cast<float>()}, grid);
 }
 
 /// Cuts every pillar into clusters, the last of a pillar short.
@@ -141,6 +170,8 @@ SearchInput search_input(const CellGrid& grid, float radius) {
       .edge = {grid.along, grid.across, grid.across},
       .inverse_edge = {1.0f / grid.along, 1.0f / grid.across, 1.0f / grid.across},
       .dims = {grid.dims[0], grid.dims[1], grid.dims[2]},
+      .cells_from = {grid.cells_from.x(), grid.cells_from.y(), grid.cells_from.z()},
+      .first = {grid.first[0], grid.first[1], grid.first[2]},
       .squared_radius = radius * radius,
       .reach = radius + grid.rounding,
   };

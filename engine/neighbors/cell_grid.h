@@ -22,11 +22,20 @@ struct CellGrid {
   /// Typical distance of a point from the next [m], which the size of the cells follows; 0: half the radius.
   /// Sets how fast searches are, not what they find.
   float spacing = 0;
+  /// Cells lie on a lattice that stays where it is. In which order lists have their points then depends on
+  /// these alone, not on how far all points reach.
+  bool anchored = false;
+  /// Points that are left out, as they sleep, but count where the size of cells is chosen: it changes with
+  /// none that falls asleep.
+  std::size_t points_beside = 0;
+  Aabb box_beside;  ///< around them [m]
 
   Vec3 origin{0, 0, 0};                 ///< corner of the covered box [m]
   float along = 0, across = 0;          ///< edges of a cell: in x, and in y and z [m]
   float rounding = 0;                   ///< bound of what coordinates within the box are off by [m]
   std::array<int, 3> dims{0, 0, 0};     ///< cells per axis
+  Vec3 cells_from{0, 0, 0};             ///< where cells are counted from: the origin, or 0 if anchored [m]
+  std::array<int, 3> first{0, 0, 0};    ///< the first cell, counted from there
   Column<std::uint32_t> cell_start;     ///< cells + 1: first sorted point of each cell
   Column<std::uint32_t> order;          ///< point of each sorted place
   VectorColumn sorted;                  ///< positions in sorted order [m]

@@ -6,11 +6,15 @@
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
-/// What `place` along an axis counts to, before it is rounded down. Clamped before: a coordinate far outside
-/// would not fit an integer.
-MALLOW_INLINE Floats clamped_cell(const SearchInput& in, int axis, const Floats& place) {
-  const Floats cell = (place - in.origin[axis]) * in.inverse_edge[axis];
-  return larger(smaller(all(static_cast<float>(in.dims[axis] - 1)), cell), Floats{});
+/// The cell of `place` along an axis. Clamped before it is rounded down: a coordinate far outside would not
+/// fit an integer. Rounded down before it is counted from the first cell: where that is then changes nothing.
+MALLOW_INLINE Ints clamped_cell(const SearchInput& in, int axis, const Floats& place) {
+  const Floats cell = (place - in.cells_from[axis]) * in.inverse_edge[axis];
+  const int first = in.first[axis];
+  const Floats within = larger(smaller(all(static_cast<float>(first + in.dims[axis] - 1)), cell),
+                               all(static_cast<float>(first)));
+  const Ints towards_zero = converted<Ints>(within);
+  return towards_zero + is_larger(converted<Floats>(towards_zero), within) - first;
 }
 
 void cells_of(const SearchInput& in, ConstVectors points, std::size_t begin, std::size_t end,
@@ -19,11 +23,10 @@ void cells_of(const SearchInput& in, ConstVectors points, std::size_t begin, std
   const int last_strip = (in.dims[1] - 1) / k_strip * k_strip, narrower = k_strip - (in.dims[1] - last_strip);
   const Floats last = all(static_cast<float>(last_strip));
   const auto cells_from = [&](std::size_t i) {
-    const Floats y_cell = clamped_cell(in, 1, load(points.y + i));
-    const Ints x = converted<Ints>(clamped_cell(in, 0, load(points.x + i)));
-    const Ints y = converted<Ints>(y_cell);
-    const Ints z = converted<Ints>(clamped_cell(in, 2, load(points.z + i)));
-    const Ints width = k_strip - (~is_larger(last, y_cell) & narrower);
+    const Ints x = clamped_cell(in, 0, load(points.x + i));
+    const Ints y = clamped_cell(in, 1, load(points.y + i));
+    const Ints z = clamped_cell(in, 2, load(points.z + i));
+    const Ints width = k_strip - (~is_larger(last, converted<Floats>(y)) & narrower);
     const Ints pillar = (y & -k_strip) * in.dims[2] + z * width + (y & (k_strip - 1));
     return pillar * in.dims[0] + x;
   };

@@ -27,6 +27,8 @@ struct SearchInput {
   float edge[3];          ///< of a cell
   float inverse_edge[3];  ///< 1/edge
   int dims[3];
+  float cells_from[3];  ///< where cells are counted from: the origin, or 0 in a grid that is anchored
+  int first[3];         ///< the first cell, counted from there
   float squared_radius;
   float reach;  ///< the radius, and what coordinates may be off by
 };

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/bounds.h"
 #include "neighbors/neighbor_lists.h"
@@ -44,41 +45,61 @@ Eigen::Quaternionf turn(const Eigen::Vector4f& rotation) {
   return Eigen::Quaternionf(rotation);
 }
 
-/// Per added point the nearest particle of the body within the region radius, if there is one.
-std::vector<std::optional<std::size_t>> nearest_of_body(const VectorColumn& positions, std::size_t begin,
-                                                        std::span<const Vec3> added,
-                                                        const Execution& execution,
-                                                        const ShapeMatching& shape) {
+/// An added point, and what it is put beside, the nearest first: particles of the body, or, as behind these,
+/// added points that are put somewhere before. It rests in the mean of where each of them would have it,
+/// which evens out what their regions are turned by.
+struct Beside {
+  std::size_t added;
+  std::vector<std::size_t> of;
+};
+
+/// In which order added points are put beside what is within the region radius: first those beside
+/// the body, then those beside these, and so on. Nothing is beside the rest.
+std::vector<Beside> put_beside(const VectorColumn& positions, std::size_t begin, std::span<const Vec3> added,
+                               const Execution& execution, const ShapeMatching& shape) {
   Aabb box = empty_box();
   for (const Vec3& x : added) box = box_around(box, {x, x});
-  std::vector<std::size_t> beside;
+  std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < shape.reference.size(); ++i)
-    if (is_near(positions.get(begin + i), box, shape.region_radius)) beside.push_back(i);
-  const std::size_t n = beside.size();
+    if (is_near(positions.get(begin + i), box, shape.region_radius)) rows.push_back(i);
+  const std::size_t n = rows.size();
   VectorColumn points(n + added.size());
-  for (std::size_t k = 0; k < n; ++k) points.set(k, positions.get(begin + beside[k]));
-  for (std::size_t k = 0; k < added.size(); ++k) points.set(n + k, added[k]);
+  for (std::size_t k = 0; k < n; ++k) points.set(k, positions.get(begin + rows[k]));
+  for (std::size_t k = 0; k < added.size(); ++k) {
+    points.set(n + k, added[k]);
+    rows.push_back(shape.reference.size() + k);
+  }
   CellGrid grid;
   NeighborLists lists;
   build_cell_grid(points, 0, points.size(), shape.region_radius, execution, grid);
   build_neighbor_lists(grid, shape.region_radius, execution, lists);
-  std::vector<std::optional<std::size_t>> nearest(added.size());
-  for (std::size_t s = 0; s < points.size(); ++s) {
-    const std::size_t own = grid.order[s];
-    if (own < n) continue;
-    std::optional<std::size_t>& best = nearest[own - n];
-    float least = std::numeric_limits<float>::infinity();
-    for (const std::uint32_t t : lists.of(s)) {
-      const std::size_t other = grid.order[t];
-      if (other >= n) continue;
-      const float distance = (points.get(own) - points.get(other)).squaredNorm();
-      // Of several as near the first, so that the order of a list does not matter.
-      if (distance > least || (distance == least && beside[other] > *best)) continue;
-      least = distance;
-      best = beside[other];
+
+  std::vector<bool> placed(points.size(), false);
+  std::fill_n(placed.begin(), n, true);
+  const auto beside = [&](std::size_t own, std::span<const std::uint32_t> list) {
+    std::vector<std::pair<float, std::size_t>> found;
+    for (const std::uint32_t t : list)
+      if (const std::size_t other = grid.order[t]; placed[other])
+        found.emplace_back((points.get(own) - points.get(other)).squaredNorm(), rows[other]);
+    // Of several as near the first, so that the order of a list does not matter.
+    std::ranges::sort(found);
+    std::vector<std::size_t> of;
+    for (const auto& [distance, row] : found) of.push_back(row);
+    return of;
+  };
+  std::vector<Beside> order;
+  for (std::size_t before = SIZE_MAX; order.size() < added.size() && order.size() != before;) {
+    before = order.size();
+    for (std::size_t s = 0; s < points.size(); ++s) {
+      const std::size_t own = grid.order[s];
+      if (placed[own]) continue;
+      if (auto of = beside(own, lists.of(s)); !of.empty()) order.push_back({own - n, std::move(of)});
     }
+    for (std::size_t k = before; k < order.size(); ++k) placed[n + order[k].added] = true;
   }
-  return nearest;
+  for (std::size_t k = 0; k < added.size(); ++k)
+    if (!placed[n + k]) order.push_back({k, {}});
+  return order;
 }
 
 /// Puts particles beside others that are in place already.
@@ -260,27 +281,38 @@ void rest_anew(const VectorColumn& positions, std::size_t begin, std::span<const
 void append_to_reference(const VectorColumn& positions, std::size_t begin, std::span<const Vec3> added,
                          const Execution& execution, CarriedRegions& carried, ShapeMatching& shape) {
   const std::size_t n = shape.reference.size();
-  const auto nearest = nearest_of_body(positions, begin, added, execution, shape);
+  const std::vector<Beside> order = put_beside(positions, begin, added, execution, shape);
   Eigen::Vector3d middle(0, 0, 0);
   for (std::size_t i = 0; i < n; ++i)
     middle += positions.get(begin + i).cast<double>() / static_cast<double>(n);
   const Eigen::Vector4f whole = shape.frame.rotation.coeffs().cast<float>();
   shape.reference.resize(n + added.size());
-  for (std::size_t k = 0; k < added.size(); ++k) {
-    const std::optional<std::size_t> beside = nearest[k];
-    const Eigen::Vector4f rotation = beside ? carried.rotations[*beside] : whole;
-    const Vec3 from = beside ? positions.get(begin + *beside) : Vec3(middle.cast<float>());
-    const Vec3 rest = beside ? shape.reference.get(*beside) : Vec3(shape.mean.cast<float>());
+  carried.rotations.resize(n + added.size());
+  carried.former.resize(n + added.size(), FormerLists::k_none);
+  if (shape.flows) carried.stretches.resize(n + added.size());
+  const auto put = [&](std::size_t k, const Vec3& from, const Vec3& rest, const Eigen::Vector4f& rotation,
+                       const CarriedStretch& stretch) {
     Vec3 away = turn(rotation).conjugate() * (added[k] - from);
-    if (shape.flows) {
-      // Beside what has flowed it rests where nothing pulls at it: stretched as its neighbour is.
-      const CarriedStretch stretch = beside ? carried.stretches[*beside] : CarriedStretch{};
-      away = stretch.stretch.inverse() * away;
-      carried.stretches.push_back({.stretch = stretch.stretch});
+    // Beside what has flowed it rests where nothing pulls at it: stretched as its neighbour is.
+    if (shape.flows) away = stretch.stretch.inverse() * away;
+    return Vec3(rest + away);
+  };
+  for (const auto& [k, of] : order) {
+    CarriedStretch stretch{};
+    if (shape.flows && !of.empty()) stretch.stretch = carried.stretches[of[0]].stretch;
+    Eigen::Vector4f rotation = of.empty() ? whole : carried.rotations[of[0]];
+    Vec3 rest(0, 0, 0);
+    if (of.empty()) rest = put(k, middle.cast<float>(), shape.mean.cast<float>(), whole, stretch);
+    for (std::size_t o = 0; o < of.size(); ++o) {
+      const Eigen::Vector4f& other = carried.rotations[of[o]];
+      const Vec3 from = of[o] < n ? positions.get(begin + of[o]) : added[of[o] - n];
+      rest += put(k, from, shape.reference.get(of[o]), other, stretch) / static_cast<float>(of.size());
+      if (o > 0) rotation += other.dot(carried.rotations[of[0]]) < 0 ? Eigen::Vector4f(-other) : other;
     }
-    shape.reference.set(n + k, rest + away);
-    carried.rotations.push_back(rotation);
-    carried.former.push_back(FormerLists::k_none);
+    if (of.size() > 1) rotation.normalize();
+    shape.reference.set(n + k, rest);
+    carried.rotations[n + k] = rotation;
+    if (shape.flows) carried.stretches[n + k] = stretch;
   }
   carried.news = box_around(carried.news, box_around(shape.reference, n, n + added.size()));
   center_reference(carried, shape);

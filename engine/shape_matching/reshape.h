@@ -50,8 +50,9 @@ void erase_from_reference(std::span<const std::uint32_t> places, CarriedRegions&
 /// positions: of the body, from row `begin` on. Regions are due to be built.
 void rest_anew(const VectorColumn& positions, std::size_t begin, std::span<const std::uint8_t> yields,
                const Execution& execution, CarriedRegions& carried, ShapeMatching& shape);
-/// Adds particles at `added` where they would rest: beside the particle that is nearest, as its region is
-/// turned; what has none within the region radius goes with the body as a whole.
+/// Adds particles at `added` where they would rest: in the mean of where those of the body within the region
+/// radius would have them, as their regions are turned, or, where there are none, added ones that rest beside
+/// such, and so on; what nothing reaches goes with the body as a whole.
 /// positions: of the body, from row `begin` on. Regions are due to be built.
 void append_to_reference(const VectorColumn& positions, std::size_t begin, std::span<const Vec3> added,
                          const Execution& execution, CarriedRegions& carried, ShapeMatching& shape);

@@ -122,7 +122,9 @@ BodyEvent describe(const Simulation::State& s, const Contacts::Found& found, con
   event.position = x.cast<float>();
   event.normal = normal.cast<float>();
   event.impulse = sums.impulse.cast<float>();
-  event.torque = Vec(sums.moment - (x - s.origin.cast<double>()).cross(sums.impulse)).cast<float>();
+  const Vec moment = (x - s.origin.cast<double>()).cross(sums.impulse);  // of the impulse at `position`
+  event.torque = Vec(sums.moment - moment).cast<float>();
+  if (!collider) event.other_torque = Vec(sums.other_moment + moment).cast<float>();
   event.speed = static_cast<float>(std::max(0.0, -v.dot(normal)));
   return event;
 }

@@ -48,7 +48,7 @@ void read_alphas(Simulation::State& state) {
 
 void sort_fluids(Simulation::State& state) {
   const CellGrid& grid = state.sph.grid;
-  if (state.step % k_sort_interval != 1 || grid.order.size() != state.store.size()) return;
+  if (state.step % k_sort_interval != 1 || grid.order.empty()) return;
   const auto sorts = [](const BodyState& body) { return !body.keeps_reference() && body.moves(); };
   if (std::ranges::none_of(state.bodies, sorts)) return;
   // From the first row of each body on: its rows within the body, in the order of the grid.
@@ -60,10 +60,12 @@ void sort_fluids(Simulation::State& state) {
     std::uint32_t& next = filled[static_cast<std::size_t>(&body - state.bodies.data())];
     state.fluid_order[body.begin + next++] = row - static_cast<std::uint32_t>(body.begin);
   }
-  for (const BodyState& body : state.bodies)
-    if (sorts(body) && body.size() > 1)
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    const BodyState& body = state.bodies[b];
+    if (sorts(body) && body.size() > 1 && filled[b] == body.size())  // none is in it of one that slept
       state.store.permute(body.begin, state.fluid_order.span().subspan(body.begin, body.size()),
                           state.execution.threads);
+  }
   state.rows_moved();
 }
 

@@ -9,11 +9,11 @@
 namespace mallow {
 namespace {
 
-void require_permutation(const UnpackingArchive& archive, std::span<const std::uint32_t> values) {
-  std::vector<bool> seen(values.size(), false);
+/// Some of n rows, in any order.
+void require_rows(const UnpackingArchive& archive, std::span<const std::uint32_t> values, std::size_t n) {
+  std::vector<bool> seen(n, false);
   for (const std::uint32_t value : values) {
-    if (value >= values.size() || seen[value])
-      archive.fail(std::to_string(value) + " appears twice or is too large");
+    if (value >= n || seen[value]) archive.fail(std::to_string(value) + " appears twice or is too large");
     seen[value] = true;
   }
 }
@@ -124,10 +124,8 @@ void pack_columns(const Simulation::State& s, SavedState& saved) {
       archive.array(shape.plastic.flow.data(), shape.plastic.flow.size());
     });
   }));
-  add(packed("cell_order", [&](PackingArchive& archive) {
-    // An order of fewer rows than there are is never used again.
-    if (grid.order.size() == s.store.size()) archive.array(grid.order.data(), grid.order.size());
-  }));
+  add(packed("cell_order",
+             [&](PackingArchive& archive) { archive.array(grid.order.data(), grid.order.size()); }));
   add(packed("searched", [&](PackingArchive& archive) {
     if (s.prepared && s.sph.kept.any) archive.columns(s.sph.kept.searched);
   }));
@@ -145,13 +143,11 @@ void unpack_neighbors(const SavedState& saved, Simulation::State& state) {
   const std::size_t n = state.store.size();
   unpack(saved, "cell_order", [&](UnpackingArchive& archive) {
     unpack_column(archive, sph.grid.order);
-    if (!sph.grid.order.empty() && sph.grid.order.size() != n)
-      archive.fail("there must be one entry for each particle, or none");
-    require_permutation(archive, sph.grid.order.span());
+    require_rows(archive, sph.grid.order.span(), n);
   });
   unpack(saved, "searched", [&](UnpackingArchive& archive) {
     if (archive.remaining() == 0) return;
-    if (!state.prepared || sph.neighbor_slack <= 0 || sph.grid.order.empty())
+    if (!state.prepared || sph.neighbor_slack <= 0 || sph.grid.order.size() != n)
       archive.fail("must be empty, as this simulation keeps no neighbour lists");
     VectorColumn searched;
     archive.columns(searched, n);

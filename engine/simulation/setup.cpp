@@ -136,6 +136,8 @@ void describe_bodies(Simulation::State& state) {
   }
   const std::size_t particles = std::max(state.store.size(), std::size_t{1});
   sph.grid.spacing = static_cast<float>(std::cbrt(volume / static_cast<double>(particles)));
+  // Bodies of one group sleep together.
+  sph.grid.anchored = state.bodies_sleep() && sph.groups.size() > 1;
 }
 
 std::string why_unknown(const ParticleStore& store, ParticleId id) {

@@ -186,6 +186,22 @@ void hold_sleepers(Simulation::State& state) {
   }
 }
 
+namespace {
+
+/// What sleeps is not sorted into cells, but their size does not change with it.
+void leave_out_sleepers(Simulation::State& state) {
+  CellGrid& grid = state.sph.grid;
+  grid.points_beside = 0;
+  grid.box_beside = empty_box();
+  for (const BodyState& body : state.bodies) {
+    if (!body.enabled || body.moves()) continue;
+    grid.points_beside += body.size();
+    grid.box_beside = box_around(grid.box_beside, body.box);
+  }
+}
+
+}  // namespace
+
 void wake_bodies(Simulation::State& state) {
   if (!state.held) hold_sleepers(state);
   for (BodyState& body : state.bodies)
@@ -197,6 +213,7 @@ void wake_bodies(Simulation::State& state) {
     if (body.moves()) state.awake.push_back(&body);
   Column<std::uint32_t>& rows = state.sph.rows;
   rows.resize(0);
+  leave_out_sleepers(state);
   if (state.awake.size() == state.bodies.size()) return;
   std::size_t count = 0;
   for (const BodyState* body : state.awake) count += body->size();

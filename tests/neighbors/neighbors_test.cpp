@@ -180,6 +180,50 @@ TEST(neighbors, what_is_found_does_not_depend_on_the_size_of_cells) {
   }
 }
 
+/// Per point the list of its cluster, thinned to what is within the radius and one of the first `n`, in
+/// order.
+std::vector<std::vector<std::uint32_t>> ordered_lists(const CellGrid& grid, float radius, std::size_t n) {
+  NeighborLists lists;
+  build_cluster_lists(grid, radius, {2, best_instruction_level()}, lists);
+  std::vector<std::vector<std::uint32_t>> result(n);
+  for (std::size_t c = 0; c < grid.clusters(); ++c)
+    for (std::size_t i = grid.cluster_start[c]; i < grid.cluster_start[c + 1]; ++i)
+      for (const std::uint32_t j : lists.of(c))
+        if (grid.order[i] < n && grid.order[j] < n &&
+            (grid.sorted.get(i) - grid.sorted.get(j)).norm() < 0.999f * radius)
+          result[grid.order[i]].push_back(grid.order[j]);
+  return result;
+}
+
+TEST(neighbors, order_in_an_anchored_grid_does_not_depend_on_who_else_is_there) {
+  constexpr float k_radius = 1.2f;
+  for (const float middle : {0.0f, 40.0f, -3e4f}) {
+    SCOPED_TRACE(middle);
+    Points points = random_points(1500, 7, 9);
+    for (Vec3& p : points) p += Vec3(middle - 3.3f, middle - 2.9f, middle - 3.1f);
+    const std::size_t n = points.size();
+    points.push_back(points[5] + Vec3(-18, -33.3f, -7));  // moves where the box begins, strips and all
+    const Points some(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n));
+    CellGrid with, without;
+    with.spacing = without.spacing = 0.4f;
+    with.anchored = without.anchored = true;
+    without.points_beside = 1;
+    without.box_beside = {points.back(), points.back()};
+    build_cell_grid(column(points), 0, n + 1, k_radius, {1, InstructionLevel::baseline}, with);
+    build_cell_grid(column(some), 0, n, k_radius, {2, best_instruction_level()}, without);
+    ASSERT_EQ(with.along, without.along);
+    const auto lists = ordered_lists(with, k_radius, n);
+    EXPECT_EQ(lists, ordered_lists(without, k_radius, n));
+    std::vector<std::uint32_t> order;
+    std::ranges::copy_if(with.order, std::back_inserter(order), [&](std::uint32_t i) { return i < n; });
+    EXPECT_TRUE(std::ranges::equal(order, without.order));
+    const auto expected = oracle_lists(some, 0.998f * k_radius);
+    for (std::size_t i = 0; i < n; ++i)
+      for (const std::uint32_t j : expected[i])
+        EXPECT_EQ(std::ranges::count(lists[i], j), 1) << i << ' ' << j;
+  }
+}
+
 TEST(neighbors, cell_order_is_stable_at_every_level_and_thread_count) {
   // So many that several threads count, and a few that are clamped.
   Points points = random_points(70001, 10, 6);

@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "mallow/errors.h"
@@ -214,28 +215,55 @@ TEST(contact_events, have_the_moment_that_goes_to_a_collider_and_into_the_spin_o
   EXPECT_GT(hits, 5);
 }
 
-TEST(contact_events, have_the_moment_that_turns_a_body_which_is_hit_by_another) {
-  Simulation s(solver(0));
-  const BodyId hit = s.add_body(cube(6, {0, 0, 0}), Material{.alpha = 0.0f, .friction = 0.5f});
-  s.add_body(cube(4, {4, 1, 9}, {0.1f, 0, -0.5f}), Material{.alpha = 0.0f, .friction = 0.5f});
-  s.report_contacts(0.0);
-  const auto spin = [&] {
-    Eigen::Vector3d sum(0, 0, 0);
-    const double mass = s.motion(hit).mass / 216;
-    const Simulation::Rows rows = s.rows(hit);
-    for (std::size_t row = rows.begin; row < rows.end; ++row)
-      sum += mass * s.positions()[row].cast<double>().cross(s.velocities()[row].cast<double>());
-    return sum;
-  };
-  Eigen::Vector3d given(0, 0, 0);
-  for (int k = 0; k < 60; ++k) {
-    s.step();
-    for (const BodyEvent& event : contacts(s, Kind::hit))
-      given += (event.torque + event.position.cross(event.impulse)).cast<double>();
+/// What a body's particles carry.
+struct Carried {
+  Eigen::Vector3d momentum{0, 0, 0}, spin{0, 0, 0};
+};
+Carried carried(const Simulation& s, BodyId body) {
+  Carried sum;
+  const Simulation::Rows rows = s.rows(body);
+  const double mass = s.motion(body).mass / static_cast<double>(rows.end - rows.begin);
+  for (std::size_t row = rows.begin; row < rows.end; ++row) {
+    const Eigen::Vector3d v = mass * s.velocities()[row].cast<double>();
+    sum.momentum += v;
+    sum.spin += s.positions()[row].cast<double>().cross(v);
   }
-  EXPECT_GT(given.norm(), 10);
-  EXPECT_LT((spin() - given).norm(), 0.02 * given.norm())
-      << given.transpose() << " for " << spin().transpose();
+  return sum;
+}
+
+TEST(contact_events, have_the_momentum_and_spin_that_each_of_two_bodies_gets_in_a_step) {
+  for (const float alpha : {0.0f, 0.4f}) {
+    SCOPED_TRACE(alpha);
+    Simulation s(solver(0));
+    const Material material{.alpha = alpha, .friction = 0.5f};
+    const BodyId lower = s.add_body(cube(6, {0, 0, 0}), material);
+    const BodyId upper = s.add_body(cube(4, {4, 1, 9}, {0.1f, 0, -0.5f}), material);
+    s.report_contacts(0.0);
+    Carried of_lower = carried(s, lower), of_upper = carried(s, upper);
+    double most = 0, worst = 0, between = 0;
+    for (int k = 0; k < 60; ++k) {
+      s.step();
+      Carried got, other_got;
+      for (const BodyEvent& event : contacts(s, Kind::hit)) {
+        const Eigen::Vector3d impulse = event.impulse.cast<double>();
+        const Eigen::Vector3d moment = event.position.cast<double>().cross(impulse);
+        got = {impulse, event.torque.cast<double>() + moment};
+        other_got = {-impulse, event.other_torque.cast<double>() - moment};
+        between = std::max(between, static_cast<double>((event.torque + event.other_torque).norm()));
+      }
+      for (const auto& [before, body, change] :
+           {std::tuple(&of_lower, lower, got), std::tuple(&of_upper, upper, other_got)}) {
+        const Carried now = carried(s, body);
+        worst = std::max({worst, (now.momentum - before->momentum - change.momentum).norm(),
+                          (now.spin - before->spin - change.spin).norm()});
+        *before = now;
+      }
+      most = std::max(most, got.spin.norm());
+    }
+    EXPECT_GT(most, 1);
+    EXPECT_GT(between, 0.01 * most) << "they rub a spacing apart";
+    EXPECT_LT(worst, 3e-6 * most);
+  }
 }
 
 TEST(contact_events, of_hits_are_those_above_the_impulse_that_is_asked_for) {

@@ -172,6 +172,44 @@ TEST(sleep, of_some_changes_no_bit_of_what_an_elastic_body_does) {
   EXPECT_EQ(with, path(0).first);
 }
 
+TEST(sleep, of_some_changes_no_bit_of_what_flows_or_presses) {
+  // Another body far away, on the side where the search would begin, sleeps or is kept awake.
+  for (const bool pours : {false, true})
+    for (const int iterations : {0, 2}) {
+      SCOPED_TRACE(testing::Message() << (pours ? "a fluid" : "a jelly") << ", iterations " << iterations);
+      const auto path = [&](bool sleeps) {
+        SolverConfig config = solver();
+        config.volume_iterations = iterations;
+        Simulation s(config);
+        Body awake = cube(7, {3.3, 2.1, 4});
+        awake.velocity = {0.2f, 0.1f, 0};
+        const Material material{.alpha = pours ? 1.0f : 0.4f, .viscosity = 0.3f};
+        const BodyId flows = s.add_body(awake, material);
+        const BodyId sleeper = s.add_body(cube(6, {-410.7, -230.1, 0}), Material{.alpha = 0.6f});
+        s.add_collider({.shape = Plane{}, .friction = 0.3f});
+        std::vector<std::vector<Vec3>> states;
+        std::size_t slept = 0;
+        for (int k = 0; k < 500; ++k) {
+          s.wake(flows);
+          if (!sleeps) s.wake(sleeper);
+          if (sleeps && k == 350) s = Simulation::restore(s.save(), 1);
+          slept += s.step().awake_bodies < 2;
+          std::vector<Vec3> x = s.positions_by_id();
+          x.resize(343);
+          states.push_back(std::move(x));
+        }
+        return std::pair(std::move(states), slept);
+      };
+      const auto [with, slept] = path(true);
+      EXPECT_GT(slept, 150u);
+      const auto [without, never] = path(false);
+      EXPECT_EQ(never, 0u);
+      std::size_t alike = 0;
+      while (alike < with.size() && with[alike] == without[alike]) ++alike;
+      EXPECT_EQ(alike, with.size()) << "steps with the same bits";
+    }
+}
+
 TEST(sleep, has_the_same_bits_on_any_number_of_threads_and_after_a_restore) {
   const auto run = [](int threads, bool restored) {
     SolverConfig config = solver();

@@ -81,10 +81,13 @@ struct BodyEvent {
   Vec3 position{0, 0, 0};  ///< between the two bodies, or on the collider [m]
   Vec3 normal{0, 0, 0};    ///< unit length, from what is touched to `body`
   Vec3 impulse{0, 0, 0};   ///< momentum that `body` got from it in the step, friction and all [N s]
-  /// Moment of the same about `position` [N m s], as it acts on a collider's side where the particles are,
-  /// and between bodies half-way from one's to the other's. About another point c: torque + (position − c) ×
-  /// impulse.
+  /// Moment of the same about `position` [N m s], as it acts where the particles of `body` are. About another
+  /// point c: torque + (position − c) × impulse.
   Vec3 torque{0, 0, 0};
+  /// Moment about `position` of what `other` got, −impulse, as it acts where its particles are [N m s]; 0 of
+  /// colliders, which get −torque. Particles of two bodies touch a spacing apart: where they rub, the two
+  /// torques do not cancel.
+  Vec3 other_torque{0, 0, 0};
   float speed = 0;  ///< along the normal at which they came nearer before the step, >= 0 [m/s]
 };
 

@@ -113,6 +113,7 @@ void bind_events(py::module_& module) {
       .field("normal", &BodyEvent::normal)
       .field("impulse", &BodyEvent::impulse)
       .field("torque", &BodyEvent::torque)
+      .field("other_torque", &BodyEvent::other_torque)
       .field("speed", &BodyEvent::speed)
       .done();
 }
