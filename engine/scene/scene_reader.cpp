@@ -201,10 +201,7 @@ class SceneReader {
         if (material->second < own) used[material->second] = true;
       } else if (const MaterialPreset* preset = find_preset(name)) {
         index_of.emplace(name, scene_.materials.size());
-        scene_.materials.push_back({.name = name,
-                                    .material = preset->material,
-                                    .color = preset->appearance.color,
-                                    .finish = preset->appearance.finish});
+        scene_.materials.push_back(scene_material(*preset));
       } else {
         problems_.add(place_of(list, i, "material"), element_path(list, i) + ".material",
                       "unknown material '" + name + "'" + (problems_.full() ? "" : suggestion(name, known)));
