@@ -4,9 +4,9 @@
 #include <charconv>
 #include <optional>
 
+#include "files/nearest_name.h"
 #include "mallow/materials.h"
 #include "scene/field_reader.h"
-#include "scene/nearest_name.h"
 #include "scene/scene_fields.h"
 
 namespace mallow::scene_file {

@@ -5,10 +5,10 @@
 #include <system_error>
 
 #include "config/validation.h"
+#include "files/nearest_name.h"
 #include "mallow/materials.h"
 #include "scene/document.h"
 #include "scene/field_reader.h"
-#include "scene/nearest_name.h"
 #include "scene/overrides.h"
 #include "scene/scene_fields.h"
 #include "scene/shape_reader.h"
