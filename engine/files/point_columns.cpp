@@ -34,10 +34,10 @@ std::string misnamed_column(std::string_view name, const FoundColumns& found) {
   if (!found[k_stiffness]) known.emplace_back(k_modulus);
   const std::string* meant = nearest_name(name, known);
   if (!meant) return {};
-  const std::string given = "column " + in_quotes(name) + " is not read";
+  const std::string given = "column " + in_quotes(name);
   if (*meant == k_modulus)
-    return given + ": give 'stiffness', a factor on the youngs_modulus of the material";
-  return given + "; did you mean " + in_quotes(*meant) + "?";
+    return given + " is not read: give 'stiffness', a factor on the youngs_modulus of the material";
+  return given + " is not read; did you mean " + in_quotes(*meant) + "?";
 }
 
 std::string listed_columns(std::span<const std::string> names) {
@@ -54,10 +54,10 @@ std::string note_of_columns(std::span<const std::string> names) {
     if (!name.empty() && std::ranges::find(k_of_runs, name) == k_of_runs.end()) others.push_back(name);
   if (others.empty()) return {};
   std::string text = std::string(others.size() == 1 ? "column " : "columns ") + listed_columns(others) +
-                     (others.size() == 1 ? " is" : " are") + " not read;";
+                     (others.size() == 1 ? " is" : " are") + " not read; those that are:";
   for (std::size_t k = 0; k < k_point_columns.size(); ++k)
-    text += std::string(k == 0 ? " " : k + 1 < k_point_columns.size() ? ", " : " and ") + k_point_columns[k];
-  return text + " would be";
+    text += std::string(k == 0 ? " " : ", ") + k_point_columns[k];
+  return text;
 }
 
 }  // namespace mallow

@@ -171,7 +171,7 @@ TEST(points_file, columns_that_are_not_read_are_noted) {
     return read_points(folder.file(name, text), 1).notes;
   };
   const std::string read =
-      " not read; x, y, z, vx, vy, vz, alpha, stiffness, plastic_yield and temperature would be";
+      " not read; those that are: x, y, z, vx, vy, vz, alpha, stiffness, plastic_yield, temperature";
   EXPECT_EQ(notes("a.csv", "id,x,y,z,Time,East\n1,1,2,3,0,0\n"),
             std::vector<std::string>{"columns 'Time', 'East' are" + read});
   EXPECT_EQ(notes("a.ply", ply_of({"float vx", "float vy", "float vz", "float nx"}, {"1 2 3 4 5 6 7"})),

@@ -23,7 +23,8 @@ void print_modulus(const Material& material, float alpha) {
 
 /// A file that belongs to the program: `installed` below share/mallow, `source` below the folder that it was
 /// built in. What is nowhere is named as the source calls it.
-std::string file_of_program(const std::string& installed, const std::string& source) {
+std::string file_of_program(const std::string& installed, const std::string& source,
+                            const std::string& anchor = {}) {
   namespace fs = std::filesystem;
   constexpr int k_highest = 5;  // PREFIX/bin/mallow, SOURCE/build/release/bin/mallow
   std::error_code error;
@@ -31,9 +32,9 @@ std::string file_of_program(const std::string& installed, const std::string& sou
   for (int above = 0; above < k_highest && folder.has_parent_path(); ++above) {
     folder = folder.parent_path();
     for (const fs::path& file : {folder / "share/mallow" / installed, folder / source})
-      if (fs::exists(file, error)) return file.string();
+      if (fs::exists(file, error)) return file.string() + anchor;
   }
-  return source + " (in the source of mallow)";
+  return source + anchor + " (in the source of mallow)";
 }
 
 void list_materials() {
@@ -89,9 +90,8 @@ void describe(const std::string& name) {
   std::printf("picture  %s\n", file_of_program("pictures/materials/" + name + ".jpg",
                                                "data/pictures/materials/" + name + ".jpg")
                                    .c_str());
-  std::printf("page     %s#%s\n",
-              file_of_program("materials_by_name.md", "tools/docs/materials_by_name.md").c_str(),
-              preset.name);
+  std::printf("page     %s\n",
+              file_of_program("materials_by_name.md", "tools/docs/materials_by_name.md", "#" + name).c_str());
   std::printf("in a scene: material = \"%s\", and --set material.%s.friction=0.5 turns one number of it\n",
               preset.name, preset.name);
 }
