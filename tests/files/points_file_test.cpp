@@ -200,14 +200,14 @@ TEST(points_file, columns_that_are_nearly_those_are_refused_with_their_name) {
       {"modulus", "'modulus' is not read: give 'stiffness', a factor on the youngs_modulus of the material"},
   };
   for (const auto& [name, message] : cases) {
-    const Problem csv = io_problem(
-        [&] { read_points(folder.file("a.csv", "x,y,z," + std::string(name) + "\n1,2,3,0\n"), 1); });
+    const auto csv_file = folder.file("a.csv", "x,y,z," + std::string(name) + "\n1,2,3,0\n");
+    const auto ply_file = folder.file("a.ply", ply_of({"float " + std::string(name)}, {"1 2 3 0"}));
+    const Problem csv = io_problem([&] { read_points(csv_file, 1); });
     EXPECT_EQ(csv.message, std::string("column ") + message);
     EXPECT_EQ(csv.line, 1);
-    const Problem ply = io_problem(
-        [&] { read_points(folder.file("a.ply", ply_of({"float " + std::string(name)}, {"1 2 3 0"})), 1); });
+    const Problem ply = io_problem([&] { read_points(ply_file, 1); });
     EXPECT_EQ(ply.message, std::string("column ") + message);
-    EXPECT_EQ(ply.file, (folder / "a.ply").string());
+    EXPECT_EQ(ply.file, ply_file.string());
   }
   // Beside the right one, or far from any, they are only noted.
   for (const char* header : {"x,y,z,alpha,alpha2\n1,2,3,1,0\n", "x,y,z,mass,u\n1,2,3,1,0\n"})
