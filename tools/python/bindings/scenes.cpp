@@ -1,5 +1,6 @@
 #include "mallow/scene.h"
 
+#include "mallow/materials.h"
 #include "parts.h"
 #include "simulation.h"
 
