@@ -1,6 +1,6 @@
 # data/materials/*.toml -> mallow/materials.h and the table behind it, so that a material by name has one source. The files
 # are flat ("key = value" lines under [material]), which CMake can read; tests hold the table to what a reader of TOML makes
-# of them. A new material is a file and a name in this list; a new key of Material is a line in its file.
+# of them. What their comments say of sources comes along. A new material is a file and a name in this list; a new key of Material is a line in its file.
 set(MALLOW_MATERIALS rubber gelatin jelly plasticine clay dough butter chocolate toothpaste shaving_cream mayonnaise ketchup honey water)
 
 # Sets `result` to the C++ of one value: numbers and texts are the same, arrays have other brackets.
@@ -20,7 +20,10 @@ foreach(material ${MALLOW_MATERIALS})
   set(material_file ${PROJECT_SOURCE_DIR}/data/materials/${material}.toml)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${material_file})
   file(STRINGS ${material_file} lines REGEX "^[a-z_]+ = " ENCODING UTF-8)
-  string(APPEND MALLOW_MATERIAL_VALUES "  {\n    MaterialPreset& preset = add(\"${material}\");\n")
+  file(READ ${material_file} source)
+  string(REGEX REPLACE "\n\\[material\\].*" "" source "${source}")
+  string(REGEX REPLACE "(^|\n)# ?" "\\1" source "${source}")
+  string(APPEND MALLOW_MATERIAL_VALUES "  {\n    MaterialPreset& preset = add(\"${material}\");\n    preset.source = R\"source(${source})source\";\n")
   foreach(line ${lines})
     string(REGEX MATCH "^([a-z_]+) = (.*)$" matched "${line}")
     set(key ${CMAKE_MATCH_1})

@@ -177,10 +177,7 @@ Eigen::Vector3d PlyReader::finite_point(const std::array<std::size_t, 3>& proper
   Eigen::Vector3d vector;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double value = values_[properties[axis]];
-    if (!std::isfinite(static_cast<float>(value))) {
-      fail_row(element_->properties[properties[axis]].name,
-               shown(value) + " is not allowed: a finite number");
-    }
+    if (!std::isfinite(static_cast<float>(value))) fail_value(properties[axis], "a finite number");
     vector[static_cast<Eigen::Index>(axis)] = value;
   }
   return vector;
@@ -197,6 +194,10 @@ std::uint32_t PlyReader::index(double value, std::uint64_t limit, const char* wh
 
 void PlyReader::fail(const std::string& message) const {
   fail_file(file_, message);
+}
+
+void PlyReader::fail_value(std::size_t property, const std::string& allowed) const {
+  fail_row(element_->properties[property].name, shown(values_[property]) + " is not allowed: " + allowed);
 }
 
 void PlyReader::fail_row(const std::string& property, const std::string& message) const {

@@ -92,6 +92,8 @@ class PlyReader {
 
   /// Throws IoError about the file as a whole.
   [[noreturn]] void fail(const std::string& message) const;
+  /// Throws IoError about the value of a property in the current row; allowed: "0 to 1".
+  [[noreturn]] void fail_value(std::size_t property, const std::string& allowed) const;
   /// Throws IoError about a property of the current row.
   [[noreturn]] void fail_row(const std::string& property, const std::string& message) const;
 

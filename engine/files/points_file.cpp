@@ -7,17 +7,14 @@
 
 #include "files/byte_reader.h"
 #include "files/ply.h"
+#include "files/point_columns.h"
 #include "files/text_reader.h"
 #include "mallow/files.h"
 
 namespace mallow {
 namespace {
 
-/// The columns that a point file may hold, in the order of a row's numbers below.
-constexpr std::array<const char*, 10> k_columns = {
-    "x", "y", "z", "vx", "vy", "vz", "alpha", "stiffness", "plastic_yield", "temperature"};
-/// Where those begin that particles have of their own, and the members that they become.
-constexpr std::size_t k_own = 6;
+/// What the columns become that particles have of their own.
 constexpr std::array<std::vector<float> Body::*, 4> k_own_members = {
     &Body::alpha, &Body::stiffness, &Body::plastic_yield, &Body::temperature};
 
@@ -28,9 +25,10 @@ constexpr std::array<std::array<std::string_view, 4>, 2> k_vector_names = {
 
 struct CsvColumns {
   char separator = ',';
-  std::vector<std::optional<std::size_t>> meaning;  ///< by column of the file: index into k_columns
+  std::vector<std::optional<std::size_t>> meaning;  ///< by column of the file: index into k_point_columns
   bool velocities = false;
   std::array<bool, k_own_members.size()> own{};
+  std::string note;  ///< of those that nothing reads
 };
 
 /// "x" of "X [m]".
@@ -43,7 +41,7 @@ std::string plain_name(std::string_view name) {
   return plain;
 }
 
-/// Index into k_columns of a column called as other programs do: "points:0", "velocity_x".
+/// Index into k_point_columns of a column called as other programs do: "points:0", "velocity_x".
 std::optional<std::size_t> other_name(std::string_view name) {
   if (name.size() < 3 || (name[name.size() - 2] != ':' && name[name.size() - 2] != '_')) return std::nullopt;
   const std::size_t axis = std::string_view("0x1y2z").find(name.back());
@@ -68,15 +66,6 @@ char find_separator(std::string_view header) {
   return ',';
 }
 
-/// "'a', 'b'", the first of many.
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t k_most = 12;
-  std::string text;
-  for (std::size_t k = 0; k < std::min(names.size(), k_most); ++k)
-    text += (k ? ", " : "") + in_quotes(names[k]);
-  return text + (names.size() > k_most ? ", ..." : "");
-}
-
 CsvColumns read_csv_header(TextReader& text) {
   if (!text.next_filled_line())
     text.fail("header", "is missing: a line that names the columns, such as x,y,z");
@@ -85,15 +74,15 @@ CsvColumns read_csv_header(TextReader& text) {
   std::vector<std::string> names;
   while (const auto name = text.cell(columns.separator)) names.emplace_back(*name);
   columns.meaning.resize(names.size());
-  std::array<bool, k_columns.size()> found{};
+  FoundColumns found{};
   const auto take = [&](std::size_t column, std::size_t k) {
     if (found[k]) text.fail("header", "column " + in_quotes(names[column]) + " is given twice");
     found[k] = true;
     columns.meaning[column] = k;
   };
   for (std::size_t c = 0; c < names.size(); ++c) {
-    const auto known = std::find(k_columns.begin(), k_columns.end(), plain_name(names[c]));
-    if (known != k_columns.end()) take(c, static_cast<std::size_t>(known - k_columns.begin()));
+    const auto known = std::find(k_point_columns.begin(), k_point_columns.end(), plain_name(names[c]));
+    if (known != k_point_columns.end()) take(c, static_cast<std::size_t>(known - k_point_columns.begin()));
   }
   // Other programs' names count where none of a vector's own is there.
   const std::array<bool, 2> own = {found[0] || found[1] || found[2], found[3] || found[4] || found[5]};
@@ -101,22 +90,29 @@ CsvColumns read_csv_header(TextReader& text) {
     const auto k = other_name(plain_name(names[c]));
     if (k && !own[*k / 3]) take(c, *k);
   }
-  for (std::size_t k = 0; k < columns.own.size(); ++k) columns.own[k] = found[k_own + k];
+  for (std::size_t k = 0; k < columns.own.size(); ++k) columns.own[k] = found[k_first_own_column + k];
   columns.velocities = found[3] || found[4] || found[5];
   for (std::size_t k = 0; k < (columns.velocities ? 6u : 3u); ++k) {
     if (found[k]) continue;
-    text.fail("header", "lacks column " + in_quotes(k_columns[k]) +
-                            "; x, y, z are needed, and vx, vy, vz all or none; there are " + listed(names));
+    text.fail("header", "lacks column " + in_quotes(k_point_columns[k]) +
+                            "; x, y, z are needed, and vx, vy, vz all or none; there are " +
+                            listed_columns(names));
   }
+  std::vector<std::string> others;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    if (columns.meaning[c]) continue;
+    if (std::string why = misnamed_column(plain_name(names[c]), found); !why.empty())
+      text.fail("header", why);
+    others.push_back(names[c]);
+  }
+  columns.note = note_of_columns(others);
   return columns;
 }
 
 float read_number(const TextReader& text, std::size_t column, std::string_view cell) {
-  const double value = text.finite(k_columns[column], cell);
-  const bool of_their_own = column >= k_own && column < k_columns.size() - 1;  // temperatures are any
-  const bool to_one = column == k_own;
-  if (of_their_own && (value < 0 || (to_one && value > 1)))
-    text.fail(k_columns[column], in_quotes(cell) + " is not allowed: " + (to_one ? "0 to 1" : "0 or more"));
+  const double value = text.finite(k_point_columns[column], cell);
+  if (const char* allowed = why_not_in_column(column, value))
+    text.fail(k_point_columns[column], in_quotes(cell) + " is not allowed: " + allowed);
   return static_cast<float>(value);
 }
 
@@ -125,8 +121,9 @@ Body read_csv_points(const std::filesystem::path& file) {
   TextReader text(file, content);
   const CsvColumns columns = read_csv_header(text);
   Body body;
+  if (!columns.note.empty()) body.notes.push_back(columns.note);
   while (text.next_filled_line()) {
-    std::array<float, k_columns.size()> row{};
+    std::array<float, k_point_columns.size()> row{};
     std::size_t cells = 0;
     while (const auto cell = text.cell(columns.separator)) {
       if (cells < columns.meaning.size()) {
@@ -142,27 +139,74 @@ Body read_csv_points(const std::filesystem::path& file) {
     body.positions.emplace_back(row[0], row[1], row[2]);
     if (columns.velocities) body.velocities.emplace_back(row[3], row[4], row[5]);
     for (std::size_t k = 0; k < columns.own.size(); ++k)
-      if (columns.own[k]) (body.*k_own_members[k]).push_back(row[k_own + k]);
+      if (columns.own[k]) (body.*k_own_members[k]).push_back(row[k_first_own_column + k]);
   }
   return body;
+}
+
+/// Whether what PLY calls alpha is how opaque a colour is: a byte beside red, green and blue.
+bool is_of_color(const PlyElement& vertex, std::size_t alpha) {
+  return vertex.properties[alpha].type == PlyType::uint8 && vertex.find("red") && vertex.find("green") &&
+         vertex.find("blue");
+}
+
+/// Which properties of a vertex are read: places among its properties.
+struct PlyColumns {
+  std::array<std::size_t, 3> position{};
+  std::optional<std::array<std::size_t, 3>> velocity;
+  std::array<std::optional<std::size_t>, k_own_members.size()> own;
+  std::string note;  ///< of those that are not
+};
+
+PlyColumns find_columns(const PlyReader& ply, const PlyElement& vertex) {
+  PlyColumns columns;
+  columns.position = *ply.find_vector(vertex, {"x", "y", "z"}, true);
+  columns.velocity = ply.find_vector(vertex, {"vx", "vy", "vz"}, false);
+  FoundColumns found{};
+  for (std::size_t k = 0; k < columns.own.size(); ++k) {
+    columns.own[k] = ply.find_scalar(vertex, k_point_columns[k_first_own_column + k]);
+    if (k == 0 && columns.own[k] && is_of_color(vertex, *columns.own[k])) columns.own[k].reset();
+    found[k_first_own_column + k] = columns.own[k].has_value();
+  }
+  const auto is_read = [&](std::size_t property) {
+    return std::ranges::find(columns.position, property) != columns.position.end() ||
+           (columns.velocity && std::ranges::find(*columns.velocity, property) != columns.velocity->end()) ||
+           std::ranges::find(columns.own, std::optional(property)) != columns.own.end();
+  };
+  std::vector<std::string> others;
+  for (std::size_t k = 0; k < vertex.properties.size(); ++k) {
+    const std::string& name = vertex.properties[k].name;
+    if (is_read(k)) continue;
+    others.push_back(name);
+    const bool color = name == "alpha";  // any other alpha is read
+    if (const std::string why = color ? "" : misnamed_column(plain_name(name), found); !why.empty())
+      ply.fail(why);
+  }
+  columns.note = note_of_columns(others);
+  return columns;
+}
+
+float read_number(const PlyReader& ply, std::size_t column, std::size_t property) {
+  const double value = ply.value(property);
+  if (const char* allowed = why_not_in_column(column, value)) ply.fail_value(property, allowed);
+  return static_cast<float>(value);
 }
 
 Body read_ply_points(const std::filesystem::path& file) {
   PlyReader ply(file);
   const PlyElement& vertex = ply.require("vertex");
-  const auto position = ply.find_vector(vertex, {"x", "y", "z"}, true);
-  const auto velocity = ply.find_vector(vertex, {"vx", "vy", "vz"}, false);
-  std::array<std::optional<std::size_t>, k_own_members.size()> own;
-  for (std::size_t k = 0; k < own.size(); ++k) own[k] = ply.find_scalar(vertex, k_columns[k_own + k]);
+  const PlyColumns columns = find_columns(ply, vertex);
   Body body;
+  if (!columns.note.empty()) body.notes.push_back(columns.note);
   while (const PlyElement* element = ply.next_element()) {
     if (element != &vertex) continue;
     body.positions.reserve(element->count);
     while (ply.next_row()) {
-      body.positions.push_back(ply.finite_vector(*position));
-      if (velocity) body.velocities.push_back(ply.finite_vector(*velocity));
-      for (std::size_t k = 0; k < own.size(); ++k)
-        if (own[k]) (body.*k_own_members[k]).push_back(static_cast<float>(ply.value(*own[k])));
+      body.positions.push_back(ply.finite_vector(columns.position));
+      if (columns.velocity) body.velocities.push_back(ply.finite_vector(*columns.velocity));
+      for (std::size_t k = 0; k < columns.own.size(); ++k)
+        if (columns.own[k])
+          (body.*k_own_members[k]).push_back(read_number(ply, k_first_own_column + k, *columns.own[k]));
     }
   }
   return body;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/nearest_name.h"
+#include "files/nearest_name.h"
 #include "scene/scene_fields.h"
 
 namespace mallow::scene_file {

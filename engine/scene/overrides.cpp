@@ -4,8 +4,9 @@
 #include <charconv>
 #include <optional>
 
+#include "files/nearest_name.h"
+#include "mallow/materials.h"
 #include "scene/field_reader.h"
-#include "scene/nearest_name.h"
 #include "scene/scene_fields.h"
 
 namespace mallow::scene_file {
@@ -78,6 +79,63 @@ void set_place(Node& node, const Place& place) {
     }
 }
 
+/// The element of a list of that name, or nullptr.
+template <class List>
+auto named(List& list, const std::string& key) -> decltype(&list.front()) {
+  for (auto& element : list) {
+    const Node* name = find(element, "name");
+    const std::string* text = name ? name->get_if<std::string>() : nullptr;
+    if (text && *text == key) return &element;
+  }
+  return nullptr;
+}
+
+constexpr const char* k_materials = "material";
+
+/// "material.dough.alpha" of a scene that has no [[material]] called dough: it gets one with the numbers of
+/// the material by that name. What is then wrong with it, such as that no body uses it, the override says.
+void take_in_preset(Node& root, const std::vector<Segment>& segments, const Place& place) {
+  if (segments.size() < 3 || segments[0].key != k_materials) return;
+  const MaterialPreset* preset = find_preset(segments[1].key);
+  Table* scene = root.get_if<Table>();
+  if (!preset || !scene) return;
+  if (!find(root, k_materials)) scene->push_back({k_materials, place, {.place = place, .value = Array{}}});
+  Array* list = find(root, k_materials)->get_if<Array>();
+  if (!list || named(*list, preset->name)) return;
+  SceneMaterial material = scene_material(*preset);
+  std::string text;
+  for (const BoundField& field : fields(material))
+    if (const std::string value = value_text(field); !value.empty())
+      text += std::string(field.name) + " = " + value + '\n';
+  list->push_back(parse_document(text, {}));
+  set_place(list->back(), place);
+}
+
+/// What to say of "material.NAME" where neither the scene nor the presets have the name.
+std::string other_materials(const Node& root, const std::string& name) {
+  std::vector<std::string> names;
+  const Node* given = find(root, k_materials);
+  if (const Array* list = given ? given->get_if<Array>() : nullptr)
+    for (const Node& element : *list)
+      if (const Node* own = find(element, "name"); own && own->get_if<std::string>())
+        names.push_back(*own->get_if<std::string>());
+  for (const MaterialPreset& preset : material_presets())
+    if (std::ranges::find(names, preset.name) == names.end()) names.emplace_back(preset.name);
+  return "no material has the name '" + name + "'" + suggestion(name, names);
+}
+
+/// Why "section[0]" or "material.NAME" leads nowhere, or nothing; where a scene has no such section, enter()
+/// would give it a table.
+std::string what_is_missing(const Node& root, const std::vector<Segment>& segments) {
+  if (segments.size() < 2) return {};
+  const Node* section = find(root, segments[0].key);
+  if (segments[1].index) return section ? "" : "there is none";
+  if (segments[0].key != k_materials) return {};
+  const Array* list = section ? section->get_if<Array>() : nullptr;
+  if (section && !list) return {};  // told when it is read
+  return list && named(*list, segments[1].key) ? "" : other_materials(root, segments[1].key);
+}
+
 /// What `segment` leads to, or nullptr and the reason. Keys that a table does not hold are added to it.
 Node* enter(Node& node, const Segment& segment, const Place& place, std::string& why_not) {
   if (segment.index) {
@@ -92,11 +150,7 @@ Node* enter(Node& node, const Segment& segment, const Place& place, std::string&
     return &table->back().node;
   }
   if (Array* list = node.get_if<Array>()) {
-    for (Node& element : *list) {
-      const Node* name = find(element, "name");
-      const std::string* text = name ? name->get_if<std::string>() : nullptr;
-      if (text && *text == segment.key) return &element;
-    }
+    if (Node* element = named(*list, segment.key)) return element;
     why_not = "none of these has the name '" + segment.key + "'";
     return nullptr;
   }
@@ -127,6 +181,10 @@ void apply_override(Node& root, const std::string& override_text, Problems& prob
   const std::vector<std::string>& known = section_keys();
   if (segments->size() > 1 && (*segments)[1].index && std::ranges::find(known, section) == known.end())
     return problems.add(place, path, "unknown key '" + section + "'" + suggestion(section, known));
+
+  take_in_preset(root, *segments, place);
+  if (const std::string why = what_is_missing(root, *segments); !why.empty())
+    return problems.add(place, path, "does not exist: " + why);
 
   Node* node = &root;
   for (const Segment& segment : *segments) {

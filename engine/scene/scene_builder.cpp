@@ -137,7 +137,9 @@ struct Sample {
     }
   }
   Body operator()(const PointsSource& source) const {
-    return read_points(folder / source.file, source.spacing);
+    Body body = read_points(folder / source.file, source.spacing);
+    for (std::string& note : body.notes) note = source.file.string() + ": " + note;
+    return body;
   }
   Body operator()(const ImplicitSource& source) const {
     return mallow::sample(place(implicit_shape(source.shape), source.placement), source.sampling);

@@ -29,6 +29,13 @@ BoundFields fields(SceneMaterial& material) {
                 joined(fields(material.material), look));
 }
 
+SceneMaterial scene_material(const MaterialPreset& preset) {
+  return {.name = preset.name,
+          .material = preset.material,
+          .color = preset.appearance.color,
+          .finish = preset.appearance.finish};
+}
+
 BoundFields fields(SceneBody& body) {
   return {
       {"material", &body.material, k_any, "",

@@ -6,6 +6,7 @@
 #include "colliders/shapes.h"
 #include "config/field_tables.h"
 #include "config/run_field_tables.h"
+#include "mallow/materials.h"
 #include "scene/bound_field.h"
 
 /// Every key a scene file may hold, a list per config; bound_field.h makes those of configs that have a
@@ -16,6 +17,8 @@ namespace mallow::scene_file {
 const std::vector<std::string>& section_keys();
 
 BoundFields fields(SceneMaterial& material);
+/// A material by name as a scene holds it.
+SceneMaterial scene_material(const MaterialPreset& preset);
 BoundFields fields(SceneBody& body);  ///< without its source
 BoundFields fields(SphereSource& source);
 BoundFields fields(MeshSource& source);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string_view>
 
 #include "scene/document.h"
@@ -86,12 +87,16 @@ std::string posed_lines(Posed& posed) {
   return std::string(k_keyframes_key) + " = [" + text + " ]\n" + lines_of(lines);
 }
 
+/// To a width in letters: bytes that go on one, as two of m³ do, take no room.
+std::string padded(std::string text, std::size_t width) {
+  const auto going_on = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) == 0x80; };
+  width += static_cast<std::size_t>(std::ranges::count_if(text, going_on));
+  text.resize(std::max(text.size(), width), ' ');
+  return text + "  ";
+}
+
 /// A line of describe_scene_keys(), in columns.
 std::string key_line(const std::string& key, const BoundField& field) {
-  const auto padded = [](std::string text, std::size_t width) {
-    text.resize(std::max(text.size(), width), ' ');
-    return text + "  ";
-  };
   const std::string value = value_text(field);
   const std::string initially = field.required() ? k_required
                                 : value.empty()  ? std::string("left out: ") + field.left_out
@@ -174,6 +179,22 @@ std::string describe_scene_keys() {
           key_lines("sink[]", fields(sink)) + key_lines("sink[].box", fields(sink.box));
   return text + key_lines("surface", fields(scene.surface)) + key_lines("run", fields(scene.run)) +
          key_lines("render", fields(scene.render));
+}
+
+std::string describe_material(const MaterialPreset& preset) {
+  using namespace scene_file;
+  Material given = preset.material, left_out;
+  const BoundFields fields_given = fields(given), fields_left_out = fields(left_out);
+  std::string text;
+  for (std::size_t i = 0; i < fields_given.size(); ++i) {
+    const BoundField& field = fields_given[i];
+    const std::string value = value_text(field);
+    const bool is_alpha = std::string_view(field.name) == "alpha";  // always told: it says what matter it is
+    if (value.empty() || (!is_alpha && value == value_text(fields_left_out[i]))) continue;
+    text +=
+        padded(field.name, 26) + padded(value + (*field.unit ? " " : "") + field.unit, 18) + field.doc + '\n';
+  }
+  return text;
 }
 
 }  // namespace mallow

@@ -5,10 +5,10 @@
 #include <system_error>
 
 #include "config/validation.h"
+#include "files/nearest_name.h"
 #include "mallow/materials.h"
 #include "scene/document.h"
 #include "scene/field_reader.h"
-#include "scene/nearest_name.h"
 #include "scene/overrides.h"
 #include "scene/scene_fields.h"
 #include "scene/shape_reader.h"
@@ -216,10 +216,7 @@ class SceneReader {
         if (material->second < own) used[material->second] = true;
       } else if (const MaterialPreset* preset = find_preset(name)) {
         index_of.emplace(name, scene_.materials.size());
-        scene_.materials.push_back({.name = name,
-                                    .material = preset->material,
-                                    .color = preset->appearance.color,
-                                    .finish = preset->appearance.finish});
+        scene_.materials.push_back(scene_material(*preset));
       } else {
         problems_.add(place_of(list, i, "material"), element_path(list, i) + ".material",
                       "unknown material '" + name + "'" + (problems_.full() ? "" : suggestion(name, known)));

@@ -5,10 +5,10 @@
 #include <sstream>
 #include <system_error>
 
+#include "files/nearest_name.h"
 #include "mallow/files.h"
 #include "mallow/level_set.h"
 #include "scene/field_reader.h"
-#include "scene/nearest_name.h"
 
 namespace mallow::scene_file {
 namespace {

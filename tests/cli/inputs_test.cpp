@@ -34,6 +34,19 @@ void expect_refused(const Outcome& outcome, const std::string& word) {
   EXPECT_NE(outcome.err.find(word), std::string::npos) << "'" << word << "' is not in: " << outcome.err;
 }
 
+TEST_F(cli_inputs, columns_of_points_that_nothing_reads_are_told_once) {
+  write("p.csv", "x,y,z,Time\n0,0,1,7\n1,0,1,7\n0,1,1,7\n1,1,1,7\n");
+  const std::string note = "body[0].points: p.csv: column 'Time' is not read; those that are: x, y, z, ";
+  const Outcome ran = quick_run({write("points.toml", points_scene("p.csv")).string(), "--out", at("out")});
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_NE(ran.err.find(note), std::string::npos) << ran.err;
+  EXPECT_EQ(ran.err.find(note), ran.err.rfind(note)) << ran.err;
+  write("p.csv", "x,y,z,youngs_modulus\n0,0,1,7\n");
+  const Outcome refused = quick_run({at("points.toml"), "--out", at("other")});
+  expect_refused(refused, "p.csv:1:");
+  expect_refused(refused, "give 'stiffness', a factor on the youngs_modulus of the material");
+}
+
 TEST_F(cli_inputs, a_scene_is_never_replaced_by_its_run) {
   fs::create_directory(at("mine"));
   write("mine/scene.toml", read_text(scene_) + "# by hand\n");

@@ -96,6 +96,34 @@ def check_messages(page, text):
             problem(page, text, found.start())(f"nothing says '{found[1]}'")
 
 
+def check_sources(name, text):
+    """Keys of sources, "[Steffe 1996, table of foods]", stand in REFERENCES.md."""
+    known = re.findall(r"\*\*([^*]+)\*\*", (SOURCE / "engine/REFERENCES.md").read_text())
+    for found in re.finditer(r"(?<!!)\[(?=[A-Z])([^\],]+)[^\]]*\](?!\()", text):
+        if " ".join(re.sub(r"\n#?", " ", found[1]).split()) not in known:
+            problems.append(f"{name}: no source {found[1]} in REFERENCES.md")
+
+
+def check_materials(page, text):
+    """A section for each material by name, with its picture, and a row for each number of its file that says the same."""
+    sections = dict(re.findall(r"^## (\w+)\n(.*?)(?=^## |\Z)", text, re.M | re.S))
+    files = {file.stem: file.read_text() for file in (SOURCE / "data/materials").glob("*.toml")}
+    if set(sections) != set(files):
+        problems.append(f"{page.name}: sections {sorted(set(sections) ^ set(files))} are on one side alone")
+    for name, section in sections.items():
+        rows = re.findall(r"^\| `(\w+)` \| ([^|]*) \|", section, re.M)
+        numbers = re.findall(r"^(?!about|color|finish)(\w+) = (.*)$", files.get(name, ""), re.M)
+        if [key for key, _ in rows] != [key for key, _ in numbers]:
+            problems.append(f"{page.name}: {name} has rows {rows}, and numbers {numbers}")
+        for (key, here), (_, value) in zip(rows, numbers):
+            if not re.match(re.escape(value) + r"(?![\w.])", here):
+                problems.append(f"{page.name}: {name} has {key} = {value}, not {here}")
+        if f"pictures/materials/{name}.jpg" not in section:
+            problems.append(f"{page.name}: {name} has no picture")
+        check_sources(f"data/materials/{name}.toml", files.get(name, ""))
+    check_sources(page.name, text)
+
+
 for page in PAGES:
     text = page.read_text()
     check_links(page, text)
@@ -105,5 +133,7 @@ for page in PAGES:
     check_scenes(page, text)
     if page.name == "errors.md":
         check_messages(page, text)
+    if page.name == "materials_by_name.md":
+        check_materials(page, text)
 print("\n".join(problems))
 sys.exit(1 if problems else 0)

@@ -120,5 +120,121 @@ TEST(points_file, a_bad_value_is_named_with_line_column_and_text) {
   EXPECT_NE(problem("# nothing\n").message.find("names the columns"), std::string::npos);
 }
 
+/// A PLY with x, y, z and further properties, "float alpha", and rows of it.
+std::string ply_of(const std::vector<std::string>& more, const std::vector<std::string>& rows) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(rows.size()) +
+                     "\nproperty float x\nproperty float y\nproperty float z\n";
+  for (const std::string& property : more) text += "property " + property + '\n';
+  text += "end_header\n";
+  for (const std::string& row : rows) text += row + '\n';
+  return text;
+}
+
+TEST(points_file, columns_of_their_own_become_what_particles_have) {
+  const TemporaryFolder folder;
+  const auto expect_own = [](const Body& body) {
+    EXPECT_EQ(body.positions, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}));
+    EXPECT_EQ(body.alpha, (std::vector<float>{0.25f, 1}));
+    EXPECT_EQ(body.stiffness, (std::vector<float>{0, 2.5f}));
+    EXPECT_EQ(body.plastic_yield, (std::vector<float>{0.125f, 0}));
+    EXPECT_EQ(body.temperature, (std::vector<float>{-10, 293.5f}));
+    EXPECT_TRUE(body.notes.empty());
+  };
+  expect_own(read_points(folder.file("a.csv",
+                                     "x,temperature [K],y,z,stiffness,alpha,plastic_yield\n"
+                                     "1,-10,2,3,0,0.25,0.125\n4,293.5,5,6,2.5,1,0\n"),
+                         1));
+  expect_own(read_points(folder.file("a.ply", ply_of({"float temperature", "double stiffness", "float alpha",
+                                                      "float plastic_yield"},
+                                                     {"1 2 3 -10 0 0.25 0.125", "4 5 6 293.5 2.5 1 0"})),
+                         1));
+  // Each by itself leaves the others as the material has them.
+  for (const std::string name : {"alpha", "stiffness", "plastic_yield", "temperature"}) {
+    const Body csv = read_points(folder.file("b.csv", "x,y,z," + name + "\n1,2,3,0.5\n"), 1),
+               ply = read_points(folder.file("b.ply", ply_of({"float " + name}, {"1 2 3 0.5"})), 1);
+    for (const Body* body : {&csv, &ply}) {
+      const std::pair<const char*, const std::vector<float>*> members[] = {
+          {"alpha", &body->alpha},
+          {"stiffness", &body->stiffness},
+          {"plastic_yield", &body->plastic_yield},
+          {"temperature", &body->temperature}};
+      for (const auto& [member, values] : members)
+        EXPECT_EQ(*values, name == member ? std::vector<float>{0.5f} : std::vector<float>{})
+            << name << member;
+    }
+  }
+}
+
+TEST(points_file, columns_that_are_not_read_are_noted) {
+  const TemporaryFolder folder;
+  const auto notes = [&](const char* name, const std::string& text) {
+    return read_points(folder.file(name, text), 1).notes;
+  };
+  const std::string read =
+      " not read; those that are: x, y, z, vx, vy, vz, alpha, stiffness, plastic_yield, temperature";
+  EXPECT_EQ(notes("a.csv", "id,x,y,z,Time,East\n1,1,2,3,0,0\n"),
+            std::vector<std::string>{"columns 'Time', 'East' are" + read});
+  EXPECT_EQ(notes("a.ply", ply_of({"float vx", "float vy", "float vz", "float nx"}, {"1 2 3 4 5 6 7"})),
+            std::vector<std::string>{"column 'nx' is" + read});
+  EXPECT_EQ(notes("a.csv", "x,y,z,id,body\n1,2,3,1,1\n"), std::vector<std::string>{});
+  // A colour's alpha is 0 to 255, and no particle's.
+  const Body color = read_points(
+      folder.file("c.ply",
+                  ply_of({"uchar red", "uchar green", "uchar blue", "uchar alpha"}, {"1 2 3 9 9 9 255"})),
+      1);
+  EXPECT_TRUE(color.alpha.empty());
+  EXPECT_EQ(color.notes, std::vector<std::string>{"columns 'red', 'green', 'blue', 'alpha' are" + read});
+  EXPECT_EQ(read_points(folder.file("d.ply", ply_of({"uchar alpha"}, {"1 2 3 1"})), 1).alpha,
+            std::vector<float>{1});
+}
+
+TEST(points_file, columns_that_are_nearly_those_are_refused_with_their_name) {
+  const TemporaryFolder folder;
+  const std::pair<const char*, const char*> cases[] = {
+      {"aplha", "'aplha' is not read; did you mean 'alpha'?"},
+      {"Plastic_Yeild", "'plastic_yeild' is not read; did you mean 'plastic_yield'?"},
+      {"temp", "'temp' is not read; did you mean 'temperature'?"},
+      {"stiffnes", "'stiffnes' is not read; did you mean 'stiffness'?"},
+      {"youngs_modulus",
+       "'youngs_modulus' is not read: give 'stiffness', a factor on the youngs_modulus of the material"},
+      {"modulus", "'modulus' is not read: give 'stiffness', a factor on the youngs_modulus of the material"},
+  };
+  for (const auto& [name, message] : cases) {
+    const auto csv_file = folder.file("a.csv", "x,y,z," + std::string(name) + "\n1,2,3,0\n");
+    const auto ply_file = folder.file("a.ply", ply_of({"float " + std::string(name)}, {"1 2 3 0"}));
+    const Problem csv = io_problem([&] { read_points(csv_file, 1); });
+    EXPECT_EQ(csv.message, std::string("column ") + message);
+    EXPECT_EQ(csv.line, 1);
+    const Problem ply = io_problem([&] { read_points(ply_file, 1); });
+    EXPECT_EQ(ply.message, std::string("column ") + message);
+    EXPECT_EQ(ply.file, ply_file.string());
+  }
+  // Beside the right one, or far from any, they are only noted.
+  for (const char* header : {"x,y,z,alpha,alpha2\n1,2,3,1,0\n", "x,y,z,mass,u\n1,2,3,1,0\n"})
+    EXPECT_EQ(read_points(folder.file("b.csv", header), 1).notes.size(), 1u) << header;
+}
+
+TEST(points_file, a_bad_value_of_a_ply_is_named_with_row_and_property) {
+  const TemporaryFolder folder;
+  const auto problem = [&](const std::string& property, const std::string& value) {
+    return io_problem([&] {
+      read_points(folder.file("a.ply", ply_of({"float " + property}, {"1 2 3 0.5", "4 5 6 " + value})), 1);
+    });
+  };
+  const Problem alpha = problem("alpha", "1.5");
+  EXPECT_EQ(alpha.file, (folder / "a.ply").string());
+  EXPECT_EQ(alpha.line, 10);
+  EXPECT_EQ(alpha.field, "vertex 1, alpha");
+  EXPECT_EQ(alpha.message, "1.5 is not allowed: 0 to 1");
+  EXPECT_EQ(problem("alpha", "-0.5").message, "-0.5 is not allowed: 0 to 1");
+  EXPECT_EQ(problem("stiffness", "-1").message, "-1 is not allowed: 0 or more");
+  EXPECT_EQ(problem("plastic_yield", "-1").message, "-1 is not allowed: 0 or more");
+  for (const char* name : {"alpha", "stiffness", "plastic_yield", "temperature"}) {
+    EXPECT_EQ(problem(name, "nan").message, "nan is not allowed: a finite number") << name;
+    EXPECT_EQ(problem(name, "1e39").message, "1e+39 is not allowed: a finite number") << name;
+  }
+  EXPECT_NO_THROW(read_points(folder.file("b.ply", ply_of({"float temperature"}, {"1 2 3 -40"})), 1));
+}
+
 }  // namespace points_file_test
 }  // namespace mallow

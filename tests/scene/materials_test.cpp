@@ -98,5 +98,45 @@ TEST_F(materials_by_name, are_suggested_where_a_name_is_nearly_theirs) {
   EXPECT_EQ(changed.materials[0].name, "water");
 }
 
+// "a table is not allowed: a list of tables", as if the scene had said so.
+TEST_F(materials_by_name, have_one_number_turned_by_an_override) {
+  for (const MaterialPreset& preset : material_presets()) {
+    const Scene same =
+        read(by_name(preset.name), {std::string("material.") + preset.name + ".merge_flow=0.25"});
+    ASSERT_EQ(same.materials.size(), 1u);
+    Material turned = preset.material;
+    turned.merge_flow = 0.25f;
+    EXPECT_EQ(packed(same.materials[0].material), packed(turned)) << preset.name;
+    EXPECT_EQ(same.materials[0].color, preset.appearance.color);
+    EXPECT_EQ(same.materials[0].finish, preset.appearance.finish);
+  }
+  const Scene twice = read(by_name("water"), {"body[0].material=dough", "material.dough.plastic_yield=0.2",
+                                              "material.dough.friction=0.5"});
+  EXPECT_EQ(twice.materials[0].material.plastic_yield, 0.2f);
+  EXPECT_EQ(twice.materials[0].material.friction, 0.5f);
+  const Scene own = read(by_name("honey", "[[material]]\nname = \"honey\"\nalpha = 0.25\n"),
+                         {"material.honey.viscosity=3"});
+  EXPECT_EQ(own.materials[0].material.alpha.at(0), 0.25f);
+  EXPECT_EQ(own.materials[0].material.viscosity, 3.0f);
+}
+
+TEST_F(materials_by_name, name_the_override_that_is_wrong) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"material.dough.plastic_yeild=0.2",
+       "material[0]: unknown key 'plastic_yeild'; did you mean 'plastic_yield'?"},
+      {"material.dough.alpha=2", "material[0].alpha: 2 is not allowed: "},
+      {"material.honey.alpha=1", "material[0]: material 'honey' is not used by any body"},
+      {"material.duogh.alpha=1",
+       "material.duogh.alpha: does not exist: no material has the name 'duogh'; did you "
+       "mean 'dough'?"},
+      {"material[0].alpha=1", "material[0].alpha: does not exist: there is none"},
+  };
+  for (const auto& [given, problem] : cases) {
+    const auto found = problems(by_name("dough"), {given});
+    ASSERT_EQ(found.size(), 1u) << found[0] << '\n' << found[1];
+    EXPECT_TRUE(found[0].starts_with(std::string("--set ") + given + ": " + problem)) << found[0];
+  }
+}
+
 }  // namespace materials_test
 }  // namespace mallow

@@ -472,7 +472,13 @@ TEST_F(scene, names_the_override_that_is_wrong) {
       {"solver.tim_step=1", "solver: unknown key 'tim_step'; did you mean 'time_step'?"},
       {"run.frames=ten", "run.frames: \"ten\" (a string) is not allowed: a whole number in [0, 2147483647]"},
       {"material[1].alpha=0", "material[1].alpha: does not exist: there are 1, counted from 0"},
-      {"material.jam.alpha=0", "material.jam.alpha: does not exist: none of these has the name 'jam'"},
+      {"material.jam.alpha=0",
+       "material.jam.alpha: does not exist: no material has the name 'jam'; known are jelly, rubber, gelatin, "
+       "plasticine, clay, dough, butter, chocolate, toothpaste, shaving_cream, mayonnaise, ketchup, honey "
+       "and water"},
+      {"pin[0].velocity=[0,0,1]", "pin[0].velocity: does not exist: there is none"},
+      {"material.jely.alpha=0",
+       "material.jely.alpha: does not exist: no material has the name 'jely'; did you mean 'jelly'?"},
       {"solver.time_step.x=1", "solver.time_step.x: does not exist: this is not a table"},
       {"solver[0]=1", "solver[0]: does not exist: this is not a list"},
       {"bodies[0].merges=true", "bodies[0].merges: unknown key 'bodies'; did you mean 'body'?"},

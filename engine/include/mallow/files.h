@@ -54,10 +54,12 @@ MALLOW_EXPORT Mesh read_mesh(const std::filesystem::path& file);
 /// coordinates of a map (y = 4,500,000 m) keeps its shape.
 MALLOW_EXPORT Mesh read_mesh(const std::filesystem::path& file, Eigen::Vector3d& origin);
 
-/// Points of a PLY or CSV file, by its ending: columns or properties x, y, z and, if there, vx, vy, vz;
-/// others are passed over. Columns of a CSV stand between commas, semicolons or tabs, in quotes or not, in
-/// capitals or not, and may be called as ParaView does: Points:0, Velocity:0. spacing goes into the body as
-/// it is.
+/// Points of a PLY or CSV file, by its ending: columns or properties x, y, z and, if there, vx, vy, vz; and
+/// alpha, stiffness, plastic_yield and temperature, which become the members of Body of these names. Others
+/// are passed over, and a note of the body names them; where one was probably meant as one of these, such as
+/// youngs_modulus for stiffness, that is an error. A PLY's alpha that is a byte beside red, green and blue is
+/// of a colour. Columns of a CSV stand between commas, semicolons or tabs, in quotes or not, in capitals or
+/// not, and may be called as ParaView does: Points:0, Velocity:0. spacing goes into the body as it is.
 MALLOW_EXPORT Body read_points(const std::filesystem::path& file, float spacing);
 
 /// What a frame of particles holds on disk, in id order.

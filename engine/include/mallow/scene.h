@@ -21,6 +21,8 @@
 /// Scene files (TOML): target mallow::scene.
 namespace mallow {
 
+struct MaterialPreset;
+
 /// A material of a scene: what moves, and how it looks.
 struct SceneMaterial {
   std::string name = {};
@@ -203,6 +205,9 @@ MALLOW_EXPORT std::string print_scene(const Scene& scene);
 /// Every key a scene file may hold: one line each with default, range, unit and meaning. Lines that begin
 /// with # say which shapes a body, a paint and a collider may have.
 MALLOW_EXPORT std::string describe_scene_keys();
+/// The numbers of a material by name, one line each: key, value as scene files hold it, unit and meaning.
+/// What it leaves out is not listed, nor are color and finish.
+MALLOW_EXPORT std::string describe_material(const MaterialPreset& preset);
 
 /// The same scene in steps of `factor` times its own, see mallow/quality.h; frames stay as long as they are.
 MALLOW_EXPORT Scene at_time_step(const Scene& scene, float factor);

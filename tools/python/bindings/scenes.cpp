@@ -1,5 +1,6 @@
 #include "mallow/scene.h"
 
+#include "mallow/materials.h"
 #include "parts.h"
 #include "simulation.h"
 
@@ -241,6 +242,7 @@ void bind_reading(py::module_& module) {
       "print_scene", [](const SceneObject& scene) { return print_scene(scene.scene()); }, py::arg("scene"),
       doc("print_scene"));
   module.def("describe_scene_keys", &describe_scene_keys, doc("describe_scene_keys"));
+  module.def("describe_material", &describe_material, py::arg("preset"), doc("describe_material"));
   module.def(
       "named_files",
       [](const SceneObject& object) {

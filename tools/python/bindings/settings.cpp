@@ -124,6 +124,8 @@ void bind_presets(py::module_& module) {
       .def_property_readonly(
           "about", [](const MaterialPreset& preset) { return preset.about; }, doc("MaterialPreset.about"))
       .def_property_readonly(
+          "source", [](const MaterialPreset& preset) { return preset.source; }, doc("MaterialPreset.source"))
+      .def_property_readonly(
           "material", [](const MaterialPreset& preset) { return Material(preset.material); },
           doc("MaterialPreset.material"))
       .def_property_readonly(

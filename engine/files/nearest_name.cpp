@@ -1,10 +1,10 @@
-#include "scene/nearest_name.h"
+#include "files/nearest_name.h"
 
 #include <algorithm>
 #include <numeric>
 #include <vector>
 
-namespace mallow::scene_file {
+namespace mallow {
 namespace {
 
 /// Levenshtein distance: inserted, removed and replaced characters each count one.
@@ -55,14 +55,14 @@ const std::string* only_holder(std::string_view name, std::span<const std::strin
 
 }  // namespace
 
-std::string suggestion(std::string_view name, std::span<const std::string> known) {
-  if (known.empty()) return {};
+const std::string* nearest_name(std::string_view name, std::span<const std::string> known) {
   // Longer names are no names anyone mistyped. Both bounds keep hostile input cheap: a scene may have 10,000
   // names and as many that are not among them.
   constexpr std::size_t k_longest_name = 64, k_most_compared = 100;
+  const auto compared = known.first(std::min(known.size(), k_most_compared));
   const std::string* nearest = nullptr;
   std::size_t least = 0;
-  for (const std::string& candidate : known.first(std::min(known.size(), k_most_compared))) {
+  for (const std::string& candidate : compared) {
     if (std::max(name.size(), candidate.size()) > k_longest_name) continue;
     const std::size_t distance = distance_to(name, candidate);
     if (nearest && distance >= least) continue;
@@ -72,9 +72,13 @@ std::string suggestion(std::string_view name, std::span<const std::string> known
   // A third of the letters may be wrong, but two in any case (two that changed places count two) unless that
   // is most of the name.
   if (nearest && least <= std::max(std::min<std::size_t>(2, nearest->size() / 2), nearest->size() / 3))
-    return "; did you mean '" + *nearest + "'?";
-  if (const std::string* holder = only_holder(name, known.first(std::min(known.size(), k_most_compared))))
-    return "; did you mean '" + *holder + "'?";
+    return nearest;
+  return only_holder(name, compared);
+}
+
+std::string suggestion(std::string_view name, std::span<const std::string> known) {
+  if (known.empty()) return {};
+  if (const std::string* meant = nearest_name(name, known)) return "; did you mean '" + *meant + "'?";
   constexpr std::size_t k_most_listed = 24;
   std::string text = known.size() == 1 ? "; the only one known is " : "; known are ";
   const std::size_t listed = std::min(known.size(), k_most_listed);
@@ -85,4 +89,4 @@ std::string suggestion(std::string_view name, std::span<const std::string> known
   return known.size() > listed ? text + ", ..." : text;
 }
 
-}  // namespace mallow::scene_file
+}  // namespace mallow
