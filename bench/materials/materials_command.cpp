@@ -18,10 +18,8 @@ namespace mallow::bench {
 namespace {
 
 constexpr const char* k_bars = "bars";  // among the names of materials
-constexpr std::pair<const char*, void (*)(int, const AddNumber&)> k_numbers[] = {{"volume", measure_volume},
-                                                                                 {"yield", measure_yield},
-                                                                                 {"cost", measure_yield_cost},
-                                                                                 {"heat", measure_heat}};
+constexpr std::pair<const char*, void (*)(int, const AddNumber&)> k_numbers[] = {
+    {"volume", measure_volume}, {"yield", measure_yield}, {"cost", measure_cost}, {"heat", measure_heat}};
 constexpr double k_refined[] = {1, 1.5, 2};
 constexpr double k_steps[] = {0.25, 0.5, 1, 2};
 

@@ -15,8 +15,8 @@ using AddNumber = std::function<void(const char* test, const std::string& settin
 void measure_volume(int threads, const AddNumber& add);
 /// Bars stretched beyond yield, and a dent.
 void measure_yield(int threads, const AddNumber& add);
-/// What it costs in time that matter may yield.
-void measure_yield_cost(int threads, const AddNumber& add);
+/// What yielding, damping and volume iterations cost in time.
+void measure_cost(int threads, const AddNumber& add);
 /// A slab, a half space, a melting front and a cube in the air.
 void measure_heat(int threads, const AddNumber& add);
 

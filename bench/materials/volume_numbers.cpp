@@ -9,7 +9,8 @@
 namespace mallow::bench {
 namespace {
 
-constexpr float k_alphas[] = {0, 0.3f, 0.7f, 1};
+constexpr float k_alphas[] = {0, 0.3f, 0.7f, 0.9f, 1};
+constexpr float k_squeezed_only = 0.9f;
 
 /// -1: to the tolerance.
 struct Iterations {
@@ -121,9 +122,9 @@ void pool(float alpha, const Iterations& iterations, int threads, const AddNumbe
 void measure_volume(int threads, const AddNumber& add) {
   for (const float alpha : k_alphas)
     for (const Iterations& iterations : k_iterations) {
-      drop(alpha, iterations, threads, add);
+      if (alpha != k_squeezed_only) drop(alpha, iterations, threads, add);
       if (alpha < 1) squeeze(alpha, iterations, threads, add);
-      if (alpha > 0.5f) pool(alpha, iterations, threads, add);
+      if (alpha > 0.5f && alpha != k_squeezed_only) pool(alpha, iterations, threads, add);
     }
 }
 

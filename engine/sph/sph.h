@@ -77,7 +77,7 @@ void compute_density(const Execution& execution, Sph& sph);
 /// What particles have of their own, by row.
 struct ByParticle {
   const Column<float>& alpha;      ///< empty: sums within a body are those of alpha 1, else blended by pair
-  const Column<float>& viscosity;  ///< empty: that of their groups [Pa s]; only beside alpha
+  const Column<float>& viscosity;  ///< empty: that of their groups [Pa s]
 };
 /// Pressure and viscosity accelerations. [TK eq. 1, 2, 4, model 1] [model 2, section 7]
 void compute_accelerations(const VectorColumn& velocities, const ByParticle& own, const Execution& execution,

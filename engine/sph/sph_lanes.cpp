@@ -194,8 +194,9 @@ struct Printed {
   }
 };
 
-/// Σ_j of a cluster's pairs within their groups and with others, without F/ρ.
-template <class Formula, bool viscous, bool grouped, bool blended>
+/// Σ_j of a cluster's pairs within their groups and with others, without F/ρ. owned: particles have alpha or
+/// viscosities of their own.
+template <class Formula, bool viscous, bool grouped, bool owned>
 void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, const float* volumes,
                ClusterVec3& same, ClusterVec3& cross) {
   const std::size_t first = in.lists.first[cluster];
@@ -209,7 +210,7 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
   Ints own = Ints{} + (grouped ? static_cast<int>(in.group[first]) : 0);  // lanes without a particle too
   Floats own_viscosity = all(in.groups[0].viscosity), own_rest = all(in.groups[0].rest_volume);
   Floats touching_pressure = {}, half_alpha = {};
-  if (blended) half_alpha = 0.5f * load(in.alpha + first);
+  if (owned && in.alpha) half_alpha = 0.5f * load(in.alpha + first);
   if (grouped) {
     for (std::size_t i = first; i < in.lists.first[cluster + 1]; ++i) {
       const SphGroup& group = in.groups[in.group[i]];
@@ -219,7 +220,7 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
       touching_pressure[i - first] = pressures[i] * group.contact_share;
     }
   }
-  if (blended && in.viscosity) own_viscosity = load(in.viscosity + first);
+  if (owned && in.viscosity) own_viscosity = load(in.viscosity + first);
   // Where there are few neighbours, viscosity takes the rest density for the density: with its own a thin
   // place would be the stiffer the thinner it is, beyond what the limit on the step knows of.
   const Floats own_volume = load(volumes + first);
@@ -228,12 +229,12 @@ void sum_pairs(const SphInput& in, std::size_t cluster, const float* pressures, 
     const int number = grouped ? static_cast<int>(in.group[j]) : 0;
     const SphGroup& group = in.groups[number];
     Sides sides{own_pressure, pressures[j], volumes[j], own_viscosity + group.viscosity, own_share, 0, {}};
-    if (blended && in.viscosity) sides.viscosity = own_viscosity + in.viscosity[j];
+    if (owned && in.viscosity) sides.viscosity = own_viscosity + in.viscosity[j];
     if (viscous) sides.velocity = difference(in.velocity, j, v);
     if (viscous && Formula::central)
       sides.viscous_volume = volumes[j] < group.rest_volume ? volumes[j] : group.rest_volume;
     ClusterVec3 a = Formula::template acceleration<viscous>(in, apart, sides);
-    if (blended) a = (half_alpha + 0.5f * in.alpha[j]) * a;
+    if (owned && in.alpha) a = (half_alpha + 0.5f * in.alpha[j]) * a;
     // Where groups do not touch, which is nearly everywhere, the branch is foreseen.
     const Ints alike = is_equal(own, number);
     if (grouped && any(~alike)) {
@@ -276,12 +277,12 @@ void write_by_row(const SphInput& in, std::size_t cluster, const Floats& scale, 
   }
 }
 
-template <class Formula, bool viscous, bool grouped, bool blended>
+template <class Formula, bool viscous, bool grouped, bool owned>
 void sum_clusters(const SphInput& in, std::size_t begin, std::size_t end, const float* rho,
                   const float* pressure, const float* volume, const Vectors& same, const Vectors& cross) {
   for (std::size_t cluster = begin; cluster < end; ++cluster) {
     ClusterVec3 own = {}, other = {};
-    sum_pairs<Formula, viscous, grouped, blended>(in, cluster, pressure, volume, own, other);
+    sum_pairs<Formula, viscous, grouped, owned>(in, cluster, pressure, volume, own, other);
     const Floats density = load(rho + in.lists.first[cluster]);
     // Plus 0, or what is not a number where the density is infinite and the quotient would hide it.
     const Floats scale = Formula::factor(in) / density + (density - density);
@@ -290,19 +291,19 @@ void sum_clusters(const SphInput& in, std::size_t begin, std::size_t end, const 
   }
 }
 
-template <class Formula, bool blended>
+template <class Formula, bool owned>
 auto choose_sum(const SphInput& in) {
   const bool viscous = in.velocity.x != nullptr, grouped = in.group != nullptr;
-  return viscous ? (grouped ? sum_clusters<Formula, true, true, blended>
-                            : sum_clusters<Formula, true, false, blended>)
-                 : (grouped ? sum_clusters<Formula, false, true, blended>
-                            : sum_clusters<Formula, false, false, blended>);
+  return viscous ? (grouped ? sum_clusters<Formula, true, true, owned>
+                            : sum_clusters<Formula, true, false, owned>)
+                 : (grouped ? sum_clusters<Formula, false, true, owned>
+                            : sum_clusters<Formula, false, false, owned>);
 }
 
 template <class Formula>
 void accelerations(const SphInput& in, std::size_t begin, std::size_t end, const float* rho,
                    const float* pressure, const float* volume, Vectors same, Vectors cross) noexcept {
-  const auto sum = in.alpha ? choose_sum<Formula, true>(in) : choose_sum<Formula, false>(in);
+  const auto sum = in.alpha || in.viscosity ? choose_sum<Formula, true>(in) : choose_sum<Formula, false>(in);
   sum(in, begin, end, rho, pressure, volume, same, cross);
 }
 

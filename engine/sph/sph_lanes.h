@@ -40,7 +40,7 @@ struct SphInput {
   ConstVectors position;
   ConstVectors velocity;   ///< accelerations only; null without viscosity
   const float* alpha;      ///< α_i, accelerations only; null: sums of one group are not blended
-  const float* viscosity;  ///< μ_i [Pa s], beside alpha; null: that of their groups
+  const float* viscosity;  ///< μ_i [Pa s]; null: that of their groups
   float radius;            ///< σ [m]
   float inverse_radius;    ///< 1/σ
   float density_factor;    ///< KernelFactors

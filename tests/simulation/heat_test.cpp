@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "mallow/mallow.h"
@@ -52,11 +53,14 @@ TEST(heat, of_a_slab_is_the_analytic_one_within_two_percent) {
       for (const double f : {0.05, 0.2, 0.5}) {
         s.advance(f * k_length * k_length / k_diffusivity - s.time());
         std::vector<double> off(20, 0);  // mean of each layer
+        double farthest = 0;             // of a particle
         for (std::size_t row = 0; row < s.particle_count(); ++row) {
           const double x = static_cast<double>(s.positions()[row].x());
-          off[static_cast<std::size_t>(x)] +=
-              static_cast<double>(s.temperatures()[row]) - 100 * in_slab(x / k_length, f);
+          const double error = static_cast<double>(s.temperatures()[row]) - 100 * in_slab(x / k_length, f);
+          off[static_cast<std::size_t>(x)] += error;
+          farthest = std::max(farthest, std::abs(error));
         }
+        EXPECT_LT(farthest, 2.3) << support_radius << ' ' << jitter << ' ' << f;
         for (const double sum : off)
           EXPECT_LT(std::abs(sum) / 36, 2) << support_radius << ' ' << jitter << ' ' << f;
       }
@@ -126,7 +130,7 @@ TEST(heat, of_melting_moves_the_front_as_stefan_says) {
     for (const float temperature : s.temperatures())
       melted += std::clamp(static_cast<double>(temperature) / 2, 0.0, 1.0);
     const double front = 2 * k_lambda * std::sqrt(k_diffusivity * t);
-    EXPECT_NEAR(melted / 16 / front, 1, 0.1) << t;
+    EXPECT_NEAR(melted / 16 / front, 1, 0.006) << t;
   }
 }
 
@@ -143,7 +147,61 @@ TEST(heat, goes_to_the_air_by_the_area_of_the_surface) {
   const double exact = 100 * std::exp(-1.0 * 6 * 144 * 60 / (1728 * 100.0));
   double mean = 0;
   for (const float t : s.temperatures()) mean += static_cast<double>(t) / 1728;
-  EXPECT_NEAR(mean, exact, 0.1 * (100 - exact));
+  EXPECT_NEAR(mean, exact, 0.07 * (100 - exact));  // 7% too much: bench/PHYSICS.md
+}
+
+/// A fluid that shears: its upper half goes one way and its lower half the other.
+Simulation sheared(const Material& fluid, const std::vector<float>& temperature = {}) {
+  Simulation s({.time_step = 0.02f, .support_radius = 2.1f, .gravity = {0, 0, 0}, .threads = 2});
+  Body body = sample(Lattice{.count = {8, 8, 8}, .corner = {-4, -4, -4}, .jitter = 0.1f});
+  for (const Vec3& x : body.positions) body.velocities.push_back({0.1f * x.z(), 0, 0});
+  body.temperature = temperature;
+  s.add_body(body, fluid);
+  return s;
+}
+/// Shearing speed in those with x below or above 0, of what it was.
+double shear(const Simulation& s, bool above) {
+  const Simulation start = sheared({.alpha = 1.0f});
+  double now = 0, then = 0;
+  const std::vector<Vec3> x = start.positions_by_id(), v = s.velocities_by_id(), u = start.velocities_by_id();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if ((x[i].x() > 0) != above) continue;
+    now += static_cast<double>(v[i].x() * x[i].z());
+    then += static_cast<double>(u[i].x() * x[i].z());
+  }
+  return now / then;
+}
+
+TEST(heat, thins_what_flows_by_viscosity_by_temperature) {
+  const auto fluid = [](std::optional<float> viscosity, float temperature) {
+    Material material{.alpha = 1.0f, .pressure_coefficient = 1.0f, .viscosity = viscosity};
+    material.temperature = temperature;
+    material.specific_heat = 1.0f;
+    if (!viscosity) material.viscosity_by_temperature = Schedule{{300, 2}, {350, 0.2f}};
+    return material;
+  };
+  const auto advanced = [&](const Material& material, const std::vector<float>& temperature = {}) {
+    Simulation s = sheared(material, temperature);
+    s.advance(1);
+    return s;
+  };
+  // Of one temperature it is what one viscosity makes it, between keys too.
+  for (const auto& [temperature, viscosity] : {std::pair{290.0f, 2.0f}, {325.0f, 1.1f}, {400.0f, 0.2f}}) {
+    const Simulation by_heat = advanced(fluid({}, temperature)),
+                     given = advanced(fluid(viscosity, temperature));
+    const std::vector<Vec3> x = by_heat.positions_by_id(), y = given.positions_by_id();
+    for (std::size_t i = 0; i < x.size(); ++i) ASSERT_LT((x[i] - y[i]).norm(), 1e-5f) << temperature;
+  }
+  const double thick = shear(advanced(fluid({}, 300)), true), thin = shear(advanced(fluid({}, 350)), true);
+  EXPECT_NEAR(thick, 0.81, 0.02);
+  EXPECT_NEAR(thin, 0.97, 0.02);
+  // One half hot, one cold: each shears on as it would by itself, but where they touch.
+  std::vector<float> halves;
+  for (const Vec3& x : sheared({.alpha = 1.0f}).positions_by_id())
+    halves.push_back(x.x() > 0 ? 350.0f : 300.0f);
+  const Simulation both = advanced(fluid({}, 300), halves);
+  EXPECT_NEAR(shear(both, false), thick, 0.05);
+  EXPECT_NEAR(shear(both, true), thin, 0.05);
 }
 
 /// A cube on a plate that is hot and then cold.

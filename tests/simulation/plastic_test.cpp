@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "mallow/errors.h"
@@ -117,34 +119,68 @@ TEST(plastic, below_yield_nothing_stays_after_six_cycles) {
   EXPECT_NEAR(bar.stretch(), 1, 1e-4);
 }
 
-TEST(plastic, ten_thousand_loads_below_yield_leave_nothing) {
-  SolverConfig config = solver(3);
-  Simulation s(config);
-  const Body body = sample(Lattice{.count = {5, 5, 8}});
-  s.add_body(body, dough());
-  s.pin(Aabb{{-1, -1, -1}, {6, 6, 1.5f}}, {0, 0, 0});
-  int updates = 0;
-  for (int k = 0; k < 10000; ++k) {
-    if (k % 4 == 0) s.set_gravity({0, 0, k % 8 == 0 ? -0.05f : 0.05f});
-    updates += s.step().updated_references;
+/// Least and largest strain between neighbouring layers of a bar along x.
+std::pair<double, double> layer_strains(const Simulation& s, const Body& rest, std::size_t layers) {
+  std::vector<double> middle(layers, 0);
+  const std::vector<Vec3> x = s.positions_by_id();
+  for (std::size_t i = 0; i < x.size(); ++i)
+    middle[static_cast<std::size_t>(rest.positions[i].x())] +=
+        static_cast<double>(x[i].x()) * static_cast<double>(layers) / static_cast<double>(x.size());
+  double least = 9, most = -9;
+  for (std::size_t k = 1; k < layers; ++k) {
+    least = std::min(least, middle[k] - middle[k - 1] - 1);
+    most = std::max(most, middle[k] - middle[k - 1] - 1);
   }
+  return {least, most};
+}
+
+TEST(plastic, ten_thousand_reversals_at_four_fifths_of_yield_leave_nothing) {
+  constexpr int k_reversals = 10000, k_steps = 12;
+  constexpr std::size_t k_layers = 8;
+  Simulation s(solver(3, 1));
+  const Body body = sample(Lattice{.count = {k_layers, 4, 4}, .jitter = 0});
+  s.add_body(body, dough());
+  const PinId left = s.pin(Aabb{{-1, -1, -1}, {2, 5, 5}}, {0, 0, 0});
+  const PinId right = s.pin(Aabb{{6, -1, -1}, {9, 5, 5}}, {0, 0, 0});
+  const auto way = static_cast<float>(0.68 * uniaxial(0.1) * 5);
+  const auto load = [&](float by) {
+    s.move_pin(right, {by, 0, 0}, 0.15 * k_steps);
+    return run(s, k_steps);
+  };
+  double least = 0, most = 0;
+  int updates = load(way);
+  for (int k = 0; k < k_reversals; ++k) {
+    if (k % 100 < 2) {
+      const auto [low, high] = layer_strains(s, body, k_layers);
+      least = std::min(least, low), most = std::max(most, high);
+    }
+    updates += load(k % 2 == 0 ? -2 * way : 2 * way);
+  }
+  // With what swings beside: the ends alone strain it by 0.68.
+  EXPECT_NEAR(most / uniaxial(0.1), 0.8, 0.05);
+  EXPECT_NEAR(least / -uniaxial(0.1), 0.8, 0.05);
   EXPECT_EQ(updates, 0);
-  s.set_gravity({0, 0, 0});
+  s.unpin(left);
+  s.unpin(right);
   Material still = dough();
   still.deformation_damping = 2.0f;
   s.set_material(MaterialId{0}, still);
   run(s, 2000);
   const std::vector<Vec3> x = s.positions_by_id();
-  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - body.positions[i]).norm(), 1e-3f) << i;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    EXPECT_LT((x[i] - x[0] - (body.positions[i] - body.positions[0])).norm(), 1e-4f) << i;
 }
 
 /// A ball pressed 2.5 h into a block of 12³ that is held below, and lifted.
 struct Dent {
-  double kept = 0;  ///< of the depth [h]
-  double far = 0;   ///< how far the layer above what is held has moved in the mean [h]
+  double kept = 0;      ///< of the depth [h]
+  double far = 0;       ///< how far the layer above what is held has sunk in the mean [h]
+  double farthest = 0;  ///< how far that of its particles has moved that has moved most [h]
 };
-Dent dent(const Material& material) {
-  Simulation s(solver());
+Dent dent(const Material& material, int volume_iterations = 0) {
+  SolverConfig config = solver();
+  config.volume_iterations = volume_iterations;
+  Simulation s(config);
   const Body body = sample(Lattice{.count = {12, 12, 12}});
   s.add_body(body, material);
   s.pin(Aabb{{-1, -1, -1}, {13, 13, 1}}, {0, 0, 0});
@@ -161,19 +197,27 @@ Dent dent(const Material& material) {
     const Vec3 rest = body.positions[i];
     const double sunk = static_cast<double>(rest.z() - x[i].z());
     if (rest.z() > 11 && std::hypot(rest.x() - 6, rest.y() - 6) < 1.2f) result.kept += sunk, ++top;
-    if (rest.z() > 1 && rest.z() < 2) result.far += sunk, ++low;
+    if (rest.z() < 1 || rest.z() > 2) continue;
+    result.far += sunk, ++low;
+    result.farthest = std::max(result.farthest, static_cast<double>((x[i] - rest).norm()));
   }
-  return {result.kept / top, std::abs(result.far / low)};
+  return {result.kept / top, std::abs(result.far / low), result.farthest};
 }
-
+// The far side is the layer above the one that is held, which cannot move. Its mean is within 0.03 h, a
+// single particle of it is not (bench/PHYSICS.md).
 TEST(plastic, a_dent_stays_and_does_not_reach_the_far_side) {
-  const Dent result = dent(dough(0.1f));
-  EXPECT_GT(result.kept, 1.25);
-  EXPECT_LT(result.far, 0.03);
+  const Dent result = dent(dough(0.1f)), filled = dent(dough(0.1f), 2);
+  EXPECT_NEAR(result.kept, 1.48, 0.02);
+  EXPECT_NEAR(filled.kept, 1.48, 0.02);
+  EXPECT_LT(result.far, 0.01);
+  EXPECT_LT(filled.far, 0.015);
+  EXPECT_LT(result.farthest, 0.04);
+  EXPECT_LT(filled.farthest, 0.07);
 }
 
 TEST(plastic, a_yield_of_0_15_gives_half_of_a_dent_back) {
-  EXPECT_NEAR(dent(dough(0.15f)).kept, 1.25, 0.15);
+  for (const int volume_iterations : {0, 2})
+    EXPECT_NEAR(dent(dough(0.15f), volume_iterations).kept, 1.25, 0.1) << volume_iterations;
 }
 
 TEST(plastic, what_creeps_slowly_keeps_less_of_a_short_load) {
@@ -328,24 +372,49 @@ TEST(plastic, warns_where_nothing_can_flow) {
   EXPECT_FALSE(warns(dough(), {8, 8, 2}));
 }
 
-// By the one step before the check, the first of these drops did not yield and the second did: heights
-// of 3.67 and 2.96.
+/// A cube dropped from so many spacings: twice its centre at the end, and how often it yielded.
+struct Fallen {
+  double height = 0;
+  int updates = 0;
+};
+Fallen fall(float drop, const SolverConfig& config) {
+  Simulation s(config);
+  s.add_collider({.shape = Plane{}, .friction = 0.3f});
+  s.add_body(sample(Lattice{.count = {8, 8, 8}, .corner = {0, 0, drop}, .jitter = 0.1f}),
+             Material{.alpha = 0.7f, .update_threshold = 6.0f});
+  Fallen fallen{.updates = run(s, 600)};
+  for (const Vec3& x : s.positions_by_id()) fallen.height += 2 * static_cast<double>(x.z()) / 512;
+  return fallen;
+}
+constexpr float k_drops[] = {10.0f, 10.2f, 10.4f, 10.5f, 10.6f, 10.8f, 11.0f};
+
 TEST(update_rule, judges_the_hardest_blow_since_the_last_check) {
-  std::vector<double> heights;
-  for (const float drop : {10.5f, 11.0f}) {
-    SolverConfig config = solver(9);
-    config.gravity = {0, 0, -0.3f};
-    Simulation s(config);
-    s.add_collider({.shape = Plane{}, .friction = 0.3f});
-    s.add_body(sample(Lattice{.count = {8, 8, 8}, .corner = {0, 0, drop}, .jitter = 0.1f}),
-               Material{.alpha = 0.7f, .update_threshold = 6.0f});
-    EXPECT_GT(run(s, 600), 0) << drop;
-    double height = 0;
-    for (const Vec3& x : s.positions_by_id()) height += static_cast<double>(x.z()) / 512;
-    heights.push_back(height);
+  SolverConfig config = solver(9);
+  config.gravity = {0, 0, -0.3f};
+  std::map<float, double> heights;
+  for (const float drop : k_drops) {
+    const Fallen fallen = fall(drop, config);
+    EXPECT_GT(fallen.updates, 0) << drop;
+    heights[drop] = fallen.height;
   }
-  // So much half a spacing of drop changes by itself.
-  EXPECT_NEAR(heights[0] / heights[1], 1, 0.1);
+  // Drops of 10.5 and 11 differ by 3.4%, neighbours by up to 8.8: in which of the blows it yields again is
+  // luck (bench/PHYSICS.md).
+  EXPECT_NEAR(heights[10.5f] / heights[11.0f], 1, 0.035);
+  for (std::size_t k = 1; k < std::size(k_drops); ++k)
+    EXPECT_NEAR(heights[k_drops[k]] / heights[k_drops[k - 1]], 1, 0.09) << k_drops[k];
+}
+
+// As the paper has it, which Table 1 keeps: what hits between two checks is not judged. With steps of another
+// length there is no step "before the check", and the largest mean of the interval counts.
+TEST(update_rule, judges_one_step_of_an_interval_that_is_given_in_steps) {
+  SolverConfig config = solver(9);
+  config.gravity = {0, 0, -0.3f};
+  config.update_period.reset();
+  config.update_interval = 60;
+  EXPECT_EQ(fall(10.5f, config).updates, 0);
+  EXPECT_EQ(fall(10.6f, config).updates, 1);
+  config.time_step_factor = 0.99f;
+  for (const float drop : k_drops) EXPECT_GT(fall(drop, config).updates, 0) << drop;
 }
 
 // What it rested in before it melted is not what it rests in after: it sprang apart at 1.5 m/s, in metres.

@@ -42,12 +42,6 @@ double worst_density(Simulation& s) {
   return worst;
 }
 
-Vec momentum(const Simulation& s) {
-  Vec sum(0, 0, 0);
-  for (const BodyId id : s.bodies()) sum += s.motion(id).momentum;
-  return sum;
-}
-
 TEST(lattice, sums_wendlands_kernel_and_the_squares_of_its_gradients_up_to_their_integrals) {
   for (const double sigma : {2.0, 2.9, 17.0}) {
     double sum = 0, squares = 0;
@@ -131,34 +125,51 @@ Dropped drop(float alpha, int iterations, float tolerance = 0, std::optional<flo
   return dropped;
 }
 
-TEST(volume, of_a_dropped_cube_stays_as_the_prototype_says) {
+TEST(volume, of_a_dropped_cube_is_as_the_prototype_says_at_1_2_3_iterations_and_to_tolerance) {
+  constexpr int k_iterations[] = {1, 2, 3, 50};  // the last to the tolerance
   struct Row {
     float alpha;
-    double impact[3], rest[3], to_tolerance, rest_to_tolerance;
+    double impact[4], impact_room[4], rest[4], rest_room[4], most_iterations;
   };
-  // Of model 2, section 2, where densities are poly6's for the constraint too. By a kernel that keeps
-  // particles apart an impact takes up to 0.024 more with one iteration, 0.008 to the tolerance, and 6.4
-  // to 7.8 iterations a step for that.
-  const Row rows[] = {{0.0f, {1.21, 1.19, 1.17}, {1.06, 1.04, 1.03}, 1.06, 1.03},
-                      {0.3f, {1.28, 1.22, 1.21}, {1.06, 1.03, 1.02}, 1.04, 1.02},
-                      {0.7f, {1.23, 1.19, 1.18}, {1.04, 1.02, 1.02}, 1.04, 1.02},
-                      {1.0f, {1.23, 1.19, 1.18}, {1.03, 1.02, 1.01}, 1.04, 1.02}};
-  constexpr double k_room = 0.03;
-  for (const Row& row : rows) {
-    for (const int iterations : {1, 3}) {
-      const Dropped one = drop(row.alpha, iterations);
-      EXPECT_LE(one.impact, row.impact[iterations - 1] + k_room + (iterations == 1 ? 0.025 : 0))
-          << row.alpha << ' ' << iterations;
-      EXPECT_LE(one.rest, row.rest[iterations - 1] + k_room) << row.alpha << ' ' << iterations;
-      EXPECT_GE(one.volume, 0.98) << row.alpha << ' ' << iterations;
+  // Of model 2, section 2, where densities are poly6's for the constraint too. Within 0.03 where nothing else
+  // is measured: bench/PHYSICS.md says why some are not. More than 0.03 below are those at rest alone.
+  const Row rows[] = {{0.0f,
+                       {1.21, 1.19, 1.17, 1.06},
+                       {0.055, 0.03, 0.03, 0.03},
+                       {1.06, 1.04, 1.03, 1.03},
+                       {0.03, 0.04, 0.03, 0.03},
+                       7.9},
+                      {0.3f,
+                       {1.28, 1.22, 1.21, 1.04},
+                       {0.03, 0.03, 0.03, 0.04},
+                       {1.06, 1.03, 1.02, 1.02},
+                       {0.055, 0.03, 0.03, 0.03},
+                       7.1},
+                      {0.7f,
+                       {1.23, 1.19, 1.18, 1.04},
+                       {0.045, 0.03, 0.03, 0.04},
+                       {1.04, 1.02, 1.02, 1.02},
+                       {0.03, 0.03, 0.03, 0.03},
+                       6.5},
+                      {1.0f,
+                       {1.23, 1.19, 1.18, 1.04},
+                       {0.055, 0.03, 0.03, 0.035},
+                       {1.03, 1.02, 1.01, 1.02},
+                       {0.03, 0.03, 0.03, 0.03},
+                       2.6}};
+  for (const Row& row : rows)
+    for (int k = 0; k < 4; ++k) {
+      const bool to_tolerance = k == 3;
+      const Dropped one = drop(row.alpha, k_iterations[k], to_tolerance ? 1e-3f : 0.0f);
+      EXPECT_NEAR(one.impact, row.impact[k], row.impact_room[k]) << row.alpha << ' ' << k_iterations[k];
+      EXPECT_NEAR(one.rest, row.rest[k], row.rest_room[k]) << row.alpha << ' ' << k_iterations[k];
+      EXPECT_GE(one.volume, 0.999) << row.alpha << ' ' << k_iterations[k];
+      EXPECT_LE(one.iterations, to_tolerance ? row.most_iterations : k_iterations[k]) << row.alpha;
     }
-    const Dropped all = drop(row.alpha, 50, 1e-3f);
-    EXPECT_LE(all.impact, row.to_tolerance + k_room + 0.01) << row.alpha;
-    EXPECT_LE(all.rest, row.rest_to_tolerance + k_room) << row.alpha;
-    EXPECT_LE(all.iterations, 8) << row.alpha;
-  }
   // What it cures.
-  EXPECT_NEAR(drop(0.3f, 0, 0, 16.0f).impact, 2.16, 0.1);
+  const Dropped none = drop(0.3f, 0, 0, 16.0f);
+  EXPECT_NEAR(none.impact, 2.16, 0.05);
+  EXPECT_NEAR(none.volume, 0.70, 0.03);
 }
 
 TEST(volume, is_kept_better_beside_the_pressure_that_a_step_can_carry) {
@@ -211,15 +222,38 @@ Squeezed squeeze(float alpha, int iterations, float tolerance = 0) {
 
 TEST(volume, of_what_is_squeezed_goes_to_the_sides_and_comes_back) {
   for (const float alpha : {0.0f, 0.3f, 0.9f}) {
-    const Squeezed with = squeeze(alpha, 50, 1e-3f), three = squeeze(alpha, 3);
-    EXPECT_LT(with.worst, 1.05) << alpha;
-    EXPECT_LT(three.worst, 1.08) << alpha;
-    EXPECT_GT(with.bulge, 1.08) << alpha;  // of the 1.118 that keep all of it
-    EXPECT_LT(with.left, alpha < 0.5f ? 0.05 : 1.0) << alpha;
+    const Squeezed all = squeeze(alpha, 50, 1e-3f), three = squeeze(alpha, 3);
+    EXPECT_LT(all.worst, 1.025) << alpha;
+    EXPECT_LT(three.worst, alpha < 0.1f ? 1.08 : 1.055) << alpha;
+    // The widest row bulges by more than the 1.118 that keep all of it.
+    EXPECT_NEAR(all.bulge, 1.16, 0.005) << alpha;
+    EXPECT_LT(all.left, alpha < 0.5f ? 2e-4 : 0.025) << alpha;
+    EXPECT_LT(three.left, alpha < 0.5f ? 2e-4 : 0.025) << alpha;
   }
 }
 
-TEST(volume, iterations_keep_momentum_and_spin) {
+/// Of all bodies, about the origin.
+struct Moments {
+  Vec momentum{0, 0, 0}, spin{0, 0, 0};
+  double pace = 0, turns = 0;  ///< Σ m |v|, Σ m |x| |v|
+};
+Moments moments(const Simulation& s) {
+  Moments sum;
+  for (const BodyId id : s.bodies()) {
+    const Simulation::Rows rows = s.rows(id);
+    const double mass = s.motion(id).mass / static_cast<double>(rows.end - rows.begin);
+    for (std::size_t row = rows.begin; row < rows.end; ++row) {
+      const Vec x = s.positions()[row].cast<double>(), p = mass * s.velocities()[row].cast<double>();
+      sum.momentum += p;
+      sum.spin += x.cross(p);
+      sum.pace += p.norm();
+      sum.turns += x.norm() * p.norm();
+    }
+  }
+  return sum;
+}
+
+TEST(volume, iterations_keep_momentum_of_bodies_that_hit_each_other) {
   for (const float alpha : {0.0f, 0.5f, 1.0f}) {
     SolverConfig solver = config(2);
     solver.gravity = {0, 0, 0};
@@ -227,16 +261,37 @@ TEST(volume, iterations_keep_momentum_and_spin) {
     const Material heavy{.alpha = alpha, .particle_mass = 2.0f, .cohesion = 0.5f};
     Body one = sample(Lattice{.count = {6, 6, 6}, .jitter = 0.1f});
     one.velocity = {0.4f, 0.2f, 1};
-    const BodyId id = s.add_body(one, heavy);
+    s.add_body(one, heavy);
     Body other = sample(Lattice{.count = {6, 6, 6}, .spacing = 0.9f, .corner = {1, 0.5f, 7}, .jitter = 0.1f});
     other.velocity = {0, 0, -1};
     s.add_body(other, Material{.alpha = alpha});
-    const Vec before = momentum(s);
-    const double pace = s.motion(id).mass * 1.1;
+    s.prepare();
+    const Moments before = moments(s);
     int taken = 0;
     for (int k = 0; k < 1000; ++k) taken += s.step().volume_iterations;
     EXPECT_GT(taken, 100) << alpha;
-    EXPECT_LT((momentum(s) - before).norm() / pace, 1e-5) << alpha;
+    EXPECT_LT((moments(s).momentum - before.momentum).norm(), 1e-6 * before.pace) << alpha;
+  }
+}
+
+// Of one body: the normals and the friction of contact between two know nothing of spin.
+TEST(volume, iterations_keep_momentum_and_spin_of_a_body_that_is_pressed_while_it_turns) {
+  for (const float alpha : {0.0f, 0.5f, 1.0f}) {
+    SolverConfig solver = config(2);
+    solver.gravity = {0, 0, 0};
+    Simulation s(solver);
+    Body body = sample(Lattice{.count = {8, 8, 8}, .corner = {-4, -4, -4}, .jitter = 0.1f});
+    for (const Vec3& x : body.positions)
+      body.velocities.push_back(Vec3(0.01f, 0.02f, 0) + Vec3(0.02f, 0, 0.05f).cross(x) - 0.1f * x);
+    s.add_body(body, Material{.alpha = alpha, .update_threshold = 1e6f, .deformation_damping = 0.0f});
+    s.prepare();
+    const Moments before = moments(s);
+    int taken = 0;
+    for (int k = 0; k < 1000; ++k) taken += s.step().volume_iterations;
+    const Moments after = moments(s);
+    EXPECT_GT(taken, alpha < 1 ? 1000 : 30) << alpha;  // a fluid is pressed once
+    EXPECT_LT((after.momentum - before.momentum).norm(), 1e-6 * before.pace) << alpha;
+    EXPECT_LT((after.spin - before.spin).norm(), 1e-5 * before.turns) << alpha;
   }
 }
 
