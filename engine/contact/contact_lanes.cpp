@@ -51,7 +51,7 @@ std::size_t in_box(const ConstVectors& of, std::size_t begin, std::size_t end, c
     for (int a = 0; a < 3; ++a)
       meets &= is_at_most(load(lows[a] + b), to[a]) & is_at_most(from[a], load(highs[a] + b));
     for (unsigned left = bits_of(meets, boxes - b); left != 0; left &= left - 1) {
-      const std::size_t j = begin + k_cluster * (b + static_cast<unsigned>(__builtin_ctz(left)));
+      const std::size_t j = begin + k_cluster * (b + static_cast<unsigned>(first_bit(left)));
       Ints inside = ~Ints{};
       for (int a = 0; a < 3; ++a) {
         const Floats x = load(axes[a] + j);

@@ -5,11 +5,11 @@
 #include <sstream>
 #include <utility>
 
+#include "config/gravity_units.h"
 #include "mallow/materials.h"
 #include "mallow/scene.h"
 #include "scene/scene_fields.h"
 #include "scene/surface_warnings.h"
-#include "simulation/settings.h"
 
 namespace mallow {
 namespace {

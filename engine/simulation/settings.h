@@ -69,11 +69,6 @@ struct MaterialLimits {
 MaterialLimits material_limits(const Simulation::State& state, const BodyState& body);
 /// Share of the compression that a volume iteration takes from a body in a step of `time_step` [s].
 float volume_relaxation(const Simulation::State& state, const BodyState& body, float time_step);
-/// Whether gravity is that of a planet or moon in metres and seconds, by its size.
-MALLOW_EXPORT bool is_in_metres(const Vec3& gravity);
-/// Whether it is that of no such place, so that units are a scene's own and none of SI stands for them;
-/// without gravity they may be SI's.
-MALLOW_EXPORT bool has_free_units(const Vec3& gravity);
 /// What can be run, but is hardly meant. alpha and defaults are settled.
 std::vector<std::string> warnings(const Simulation::State& state);
 /// Those of them that say what comes and goes, and what acts on nothing.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "colliders/shapes.h"
+#include "config/gravity_units.h"
 #include "core/bounds.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
@@ -333,16 +334,6 @@ class Warnings {
 };
 
 }  // namespace
-
-bool is_in_metres(const Vec3& gravity) {
-  constexpr float k_moon = 1.5f, k_jupiter = 30;  // [m/s²]
-  const float size = gravity.norm();
-  return size >= k_moon && size <= k_jupiter;
-}
-
-bool has_free_units(const Vec3& gravity) {
-  return gravity != Vec3::Zero() && !is_in_metres(gravity);
-}
 
 std::vector<std::string> warnings(const Simulation::State& state) {
   return Warnings(state).list();

@@ -1,6 +1,6 @@
 #include "program/units.h"
 
-#include "simulation/settings.h"
+#include "config/gravity_units.h"
 
 namespace mallow::program {
 
