@@ -6,58 +6,10 @@
 
 #include "oracle/points.h"
 #include "paper_settings.h"
+#include "simulation/oracle_case_parts.h"
 
 namespace mallow {
 namespace {
-
-/// The paper's free units, small: Δt0 0.15, h about 1, |g| 0.4, and the paper's settings; checks often enough
-/// to fire within 40 steps.
-SolverConfig units(float support_radius = 2.2f) {
-  return with_paper_settings(SolverConfig{.support_radius = support_radius,
-                                          .gravity = {0, 0, -0.4f},
-                                          .update_interval = 10,
-                                          .wall_pressure = false});
-}
-
-SolverConfig walled(float support_radius = 2.2f) {
-  SolverConfig solver = units(support_radius);
-  solver.wall_pressure = true;
-  return solver;
-}
-
-SolverConfig printed() {
-  SolverConfig solver = units();
-  solver.formulation = Formulation::printed;
-  return solver;
-}
-
-SolverConfig without_acoustic_limit() {
-  SolverConfig solver = units();
-  solver.acoustic_limit = false;
-  return solver;
-}
-
-SolverConfig with_offset(float contact_offset) {
-  SolverConfig solver = units();
-  solver.contact_offset = contact_offset;
-  return solver;
-}
-
-Material stuff(AlphaSchedule alpha) {
-  return {.alpha = std::move(alpha), .update_threshold = 1.0f};
-}
-/// As stiff as pascals say.
-Material firm(float alpha, float youngs_modulus) {
-  return {.alpha = alpha, .update_threshold = 1.0f, .youngs_modulus = youngs_modulus};
-}
-/// Flows where it is strained.
-Material dough(AlphaSchedule alpha, float yield, std::optional<float> creep = {}) {
-  return {.alpha = std::move(alpha), .plastic_yield = yield, .plastic_creep = creep};
-}
-/// Keeps its first reference shape.
-Material lasting(AlphaSchedule alpha) {
-  return {.alpha = std::move(alpha), .update_threshold = 1e6f};
-}
 
 /// Nothing given but what has no default: metres, and a gravity that is to be felt.
 SolverConfig left_out(float update_period) {
@@ -67,29 +19,10 @@ SolverConfig turned(SolverConfig solver, float time_step_factor) {
   solver.time_step_factor = time_step_factor;
   return solver;
 }
-/// Nothing is pressed together.
-SolverConfig full(SolverConfig solver, int iterations) {
-  solver.volume_iterations = iterations;
-  return solver;
-}
 /// Weightless: seconds follow from the fastest body.
 SolverConfig adrift() {
   return {.support_radius = 2.2f, .gravity = {0, 0, 0}};
 }
-
-const Plane k_tilted{{0.3f, -0.2f, 1.0f}, 0.1f};
-const Collider k_slope{.shape = k_tilted, .restitution = 0.6f, .friction = 0.3f};
-const Collider k_ball{.shape = Sphere{{0.4f, -0.3f, -3.0f}, 3.0f}, .friction = 0.3f};
-const Collider k_bowl{.shape = Sphere{{0, 0, 6}, 6.2f, true}, .friction = 0.2f};
-const Collider k_step{.shape = Box{{-9, -9, -2}, {0.3f, 9, 0.2f}}, .friction = 0.3f};
-const Collider k_tank{.shape = Box{{-3.7f, -9, 0}, {9, 9, 20}, true}, .friction = 0.1f};
-const Collider k_union{
-    .shape = Union{{Sphere{{-2, 0, -1}, 2.0f}, Box{{0.5f, -2, -2}, {5, 2, 0.6f}}, Plane{{0, 0, 1}, -0.6f}}},
-    .friction = 0.3f};
-
-}  // namespace
-
-namespace {
 
 std::vector<Case> paper_cases() {
   // clang-format off
@@ -261,6 +194,9 @@ const std::vector<Case>& oracle_cases() {
     std::vector<Case> all = paper_cases();
     for (Case& one : cases_with_defaults()) all.push_back(std::move(one));
     for (Case& one : cases_that_keep_volume()) all.push_back(std::move(one));
+    for (Case& one : all)
+      for (Blob& b : one.blobs) b.material.deformation_damping = 0.0f;
+    for (Case& one : cases_of_damping()) all.push_back(std::move(one));
     return all;
   }();
   return cases;
@@ -295,6 +231,13 @@ std::vector<Case> ablations(const Case& whole) {
   for (std::size_t p = 0; p < whole.pins.size(); ++p) {
     without("pin " + std::to_string(p),
             [&](Case& less) { less.pins.erase(less.pins.begin() + static_cast<long>(p)); });
+  }
+  for (std::size_t b = 0; b < whole.blobs.size(); ++b) {
+    const Material& material = whole.blobs[b].material;
+    if (material.damping_time > 0)
+      without("damping time", [&](Case& less) { less.blobs[b].material.damping_time = 0; });
+    if (material.deformation_damping != 0.0f)
+      without("deformation damping", [&](Case& less) { less.blobs[b].material.deformation_damping = 0.0f; });
   }
   if (whole.wind) without("wind", [](Case& less) { less.wind = false; });
   if (whole.flows)

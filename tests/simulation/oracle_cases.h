@@ -48,10 +48,12 @@ struct Case {
 std::ostream& operator<<(std::ostream& out, const Case& c);
 
 const std::vector<Case>& oracle_cases();
+/// Of them, those of the second chapter's damping: all others are undamped.
+std::vector<Case> cases_of_damping();
 
 /// The case without one of the things that it claims to test: a collider, a part of a union, friction,
-/// bounce, motion, the pins, the wind, pressure, viscosity, cohesion, the updates. What is left out is
-/// appended to the name.
+/// bounce, motion, the pins, damping, the wind, pressure, viscosity, cohesion, the updates. What is left out
+/// is appended to the name.
 std::vector<Case> ablations(const Case& whole);
 
 /// The points of a blob; the same for all who run the case.
