@@ -62,4 +62,46 @@ std::vector<Case> cases_of_damping() {
   };
 }
 
+std::vector<Case> cases_of_matter() {
+  const auto to = [](SolverConfig solver, float tolerance) {
+    solver.volume_iterations = 12;
+    solver.volume_tolerance = tolerance;
+    return solver;
+  };
+  Material still = damped(stuff(0.3f), 0, 0.0f);
+  still.pressure_coefficient = 0.0f;
+  Material creeping = dough(0.3f, 0.02f, 0.6f);
+  creeping.pressure_coefficient = 0.0f;
+  const auto painted = [](Material material, float speed) {
+    Blob blob = thrown(damped(std::move(material), 0, 0.0f), speed);
+    blob.paints_yield = true;
+    return blob;
+  };
+  return {
+      {.name = "to_tolerance_jelly",
+       .blobs = {thrown(still, 3)},
+       .colliders = {k_slope},
+       .solver = to(units(), 0.01f),
+       .updates = 1},
+      {.name = "to_tolerance_fluid_in_tank",
+       .blobs = {{with_paper_settings(damped(stuff(1.0f), 0, 0.0f)), {0, 0, 3.6f}, {-0.8f, 0.3f, -2.5f}}},
+       .colliders = {k_tank},
+       .solver = to(walled(), 0.02f),
+       .tolerance = 2e-4},
+      {.name = "painted_yield_on_slope",
+       .blobs = {painted(dough(0.0f, 0.05f), 2.5f)},
+       .colliders = {k_slope},
+       .solver = units(),
+       .updates = 1,
+       .flows = true,
+       .tolerance = 1e-3},
+      {.name = "painted_yield_creeps_on_ball",
+       .blobs = {painted(creeping, 2.0f)},
+       .colliders = {k_ball},
+       .solver = full(units(2.9f), 2),
+       .flows = true,
+       .tolerance = 1e-3},
+  };
+}
+
 }  // namespace mallow

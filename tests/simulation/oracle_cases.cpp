@@ -197,6 +197,8 @@ const std::vector<Case>& oracle_cases() {
     for (Case& one : all)
       for (Blob& b : one.blobs) b.material.deformation_damping = 0.0f;
     for (Case& one : cases_of_damping()) all.push_back(std::move(one));
+    for (Case& one : cases_of_matter()) all.push_back(std::move(one));
+    for (Case& one : all) one.walls = one.name.starts_with("walled") || one.name.starts_with("full_walled");
     return all;
   }();
   return cases;
@@ -251,11 +253,17 @@ std::vector<Case> ablations(const Case& whole) {
     });
   for (std::size_t b = 0; b < whole.blobs.size(); ++b)
     if (whole.blobs[b].painted) without("paint", [&](Case& less) { less.blobs[b].painted = false; });
+  for (std::size_t b = 0; b < whole.blobs.size(); ++b)
+    if (whole.blobs[b].paints_yield)
+      without("painted yield", [&](Case& less) { less.blobs[b].paints_yield = false; });
   const bool sph_acts = whole.blobs.front().painted ||
                         whole.blobs.front().material.alpha.keys().back().value > 0 ||
                         std::any_of(whole.blobs.begin() + 1, whole.blobs.end(),
                                     [](const Blob& b) { return !b.joins_the_one_before; });
   const bool full = whole.solver.volume_iterations > 0;
+  if (whole.walls) without("walls", [](Case& less) { less.solver.wall_pressure = false; });
+  if (whole.solver.volume_tolerance > 0)
+    without("tolerance", [](Case& less) { less.solver.volume_tolerance = 0; });
   if (full) without("volume iterations", [](Case& less) { less.solver.volume_iterations = 0; });
   if (sph_acts && whole.blobs.front().material.pressure_coefficient.value_or(1) > 0)
     without("pressure", [](Case& less) {
@@ -285,7 +293,6 @@ namespace {
 /// From `first` to `last` along an axis.
 std::vector<float> graded(const Blob& blob, int axis, float first, float last) {
   std::vector<float> values;
-  if (!blob.painted) return values;
   const std::vector<Vec3> points = points_of(blob);
   const auto along = [&](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
   const auto [low, high] = std::minmax_element(points.begin(), points.end(), along);
@@ -297,11 +304,15 @@ std::vector<float> graded(const Blob& blob, int axis, float first, float last) {
 }  // namespace
 
 std::vector<float> alphas_of(const Blob& blob) {
-  return graded(blob, 0, 0.0f, 1.0f);
+  return blob.painted ? graded(blob, 0, 0.0f, 1.0f) : std::vector<float>{};
 }
 
 std::vector<float> stiffnesses_of(const Blob& blob) {
-  return graded(blob, 1, 0.4f, 1.6f);
+  return blob.painted ? graded(blob, 1, 0.4f, 1.6f) : std::vector<float>{};
+}
+
+std::vector<float> yields_of(const Blob& blob) {
+  return blob.paints_yield ? graded(blob, 1, 0.01f, 0.3f) : std::vector<float>{};
 }
 
 oracle::Oracle oracle_of(const Case& scene) {
@@ -317,6 +328,8 @@ oracle::Oracle oracle_of(const Case& scene) {
     const std::vector<float> alphas = alphas_of(blob), stiffnesses = stiffnesses_of(blob);
     for (std::size_t k = 0; k < alphas.size(); ++k)
       oracle.paint(first + k, double{alphas[k]}, double{stiffnesses[k]});
+    const std::vector<float> yields = yields_of(blob);
+    for (std::size_t k = 0; k < yields.size(); ++k) oracle.paint_yield(first + k, double{yields[k]});
   }
   for (const Collider& collider : scene.colliders) oracle.add_collider(collider);
   for (const Pinned& pin : scene.pins) oracle.pin(pin.box, pin.velocity.cast<double>());

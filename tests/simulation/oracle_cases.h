@@ -25,6 +25,7 @@ struct Blob {
   float jitter = 0.2f;
   bool joins_the_one_before = false;  ///< into one group with it
   bool painted = false;               ///< see alphas_of() and stiffnesses_of()
+  bool paints_yield = false;          ///< see yields_of()
 };
 
 struct Pinned {
@@ -43,6 +44,7 @@ struct Case {
   bool limited = false;     ///< some step must be shorter than Δt0
   int updates = 0;          ///< updates of reference shapes that must happen, at least
   bool flows = false;       ///< what flows must matter
+  bool walls = false;       ///< that walls press as if they were filled must matter
   double tolerance = 1e-4;  ///< what single precision may do to a position in 40 steps, in units of h
 };
 std::ostream& operator<<(std::ostream& out, const Case& c);
@@ -50,6 +52,8 @@ std::ostream& operator<<(std::ostream& out, const Case& c);
 const std::vector<Case>& oracle_cases();
 /// Of them, those of the second chapter's damping: all others are undamped.
 std::vector<Case> cases_of_damping();
+/// Volume to a tolerance, yield that differs within a body.
+std::vector<Case> cases_of_matter();
 
 /// The case without one of the things that it claims to test: a collider, a part of a union, friction,
 /// bounce, motion, the pins, damping, the wind, pressure, viscosity, cohesion, the updates. What is left out
@@ -61,6 +65,8 @@ std::vector<Vec3> points_of(const Blob& blob);
 /// From 0 to 1 along x, and from 0.4 to 1.6 along y, of a blob that is painted; else none.
 std::vector<float> alphas_of(const Blob& blob);
 std::vector<float> stiffnesses_of(const Blob& blob);
+/// From 0.01 to 0.3 along y, of a blob that paints its yield; else none.
+std::vector<float> yields_of(const Blob& blob);
 /// A gust that turns, tears and drags; the same formula for both precisions.
 template <class Scalar>
 Eigen::Matrix<Scalar, 3, 1> wind(double time, std::size_t id, const Eigen::Matrix<Scalar, 3, 1>& x,

@@ -31,6 +31,7 @@ Simulation engine_of(const Case& scene, bool as_bodies = false) {
                       .spacing = blob.spacing,
                       .velocity = blob.velocity,
                       .alpha = alphas_of(blob),
+                      .plastic_yield = yields_of(blob),
                       .stiffness = stiffnesses_of(blob),
                       .merges = as_bodies};
     if (!blob.joins_the_one_before)
