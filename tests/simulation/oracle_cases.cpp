@@ -198,11 +198,41 @@ const std::vector<Case>& oracle_cases() {
       for (Blob& b : one.blobs) b.material.deformation_damping = 0.0f;
     for (Case& one : cases_of_damping()) all.push_back(std::move(one));
     for (Case& one : cases_of_matter()) all.push_back(std::move(one));
+    for (Case& one : cases_of_heat()) all.push_back(std::move(one));
     for (Case& one : all) one.walls = one.name.starts_with("walled") || one.name.starts_with("full_walled");
     return all;
   }();
   return cases;
 }
+
+namespace {
+
+/// What temperatures do to a material.
+void each_without_heat(const Material& material,
+                       const std::function<void(const char*, std::function<void(Material&)>)>& without) {
+  if (!material.temperature) return;
+  const double start = double{*material.temperature};
+  if (material.conductivity > 0) without("conduction", [](Material& less) { less.conductivity = 0; });
+  if (material.heat_transfer > 0) without("air", [](Material& less) { less.heat_transfer = 0; });
+  if (material.latent_heat > 0) without("latent heat", [](Material& less) { less.latent_heat = 0; });
+  if (material.alpha_by_temperature)
+    without("alpha by temperature", [=](Material& less) {
+      less.alpha = less.alpha_by_temperature->at(start);
+      less.alpha_by_temperature = {};
+    });
+  if (material.viscosity_by_temperature)
+    without("viscosity by temperature", [=](Material& less) {
+      less.viscosity = less.viscosity_by_temperature->at(start);
+      less.viscosity_by_temperature = {};
+    });
+  if (material.plastic_yield_by_temperature)
+    without("yield by temperature", [=](Material& less) {
+      less.plastic_yield = less.plastic_yield_by_temperature->at(start);
+      less.plastic_yield_by_temperature = {};
+    });
+}
+
+}  // namespace
 
 std::vector<Case> ablations(const Case& whole) {
   std::vector<Case> lesser;
@@ -222,6 +252,10 @@ std::vector<Case> ablations(const Case& whole) {
       without("bounce", [&](Case& less) { less.colliders[c].restitution = 0; });
     if (!whole.colliders[c].velocity.isZero())
       without("motion", [&](Case& less) { less.colliders[c].velocity.setZero(); });
+    if (whole.colliders[c].temperature)
+      without("heat of collider " + number, [&](Case& less) { less.colliders[c].temperature = {}; });
+    if (whole.colliders[c].heat_transfer)
+      without("a film on collider " + number, [&](Case& less) { less.colliders[c].heat_transfer = {}; });
     const auto* shapes = std::get_if<Union>(&whole.colliders[c].shape);
     for (std::size_t p = 0; shapes && p < shapes->parts.size(); ++p) {
       without("part " + std::to_string(p), [&](Case& less) {
@@ -241,10 +275,15 @@ std::vector<Case> ablations(const Case& whole) {
     if (material.deformation_damping != 0.0f)
       without("deformation damping", [&](Case& less) { less.blobs[b].material.deformation_damping = 0.0f; });
   }
+  for (std::size_t b = 0; b < whole.blobs.size(); ++b)
+    each_without_heat(whole.blobs[b].material, [&](const char* what, const auto& take_away) {
+      without(what, [&](Case& less) { take_away(less.blobs[b].material); });
+    });
   if (whole.wind) without("wind", [](Case& less) { less.wind = false; });
   if (whole.flows)
     without("yield", [](Case& less) {
       for (Blob& b : less.blobs) b.material.plastic_yield = b.material.plastic_creep = {};
+      for (Blob& b : less.blobs) b.material.plastic_yield_by_temperature = {};
       for (Blob& b : less.blobs) b.material.update_threshold = 1e6f;
     });
   if (whole.updates > 0 && !whole.flows)
@@ -256,7 +295,7 @@ std::vector<Case> ablations(const Case& whole) {
   for (std::size_t b = 0; b < whole.blobs.size(); ++b)
     if (whole.blobs[b].paints_yield)
       without("painted yield", [&](Case& less) { less.blobs[b].paints_yield = false; });
-  const bool sph_acts = whole.blobs.front().painted ||
+  const bool sph_acts = whole.blobs.front().painted || whole.blobs.front().material.alpha_by_temperature ||
                         whole.blobs.front().material.alpha.keys().back().value > 0 ||
                         std::any_of(whole.blobs.begin() + 1, whole.blobs.end(),
                                     [](const Blob& b) { return !b.joins_the_one_before; });
@@ -272,6 +311,7 @@ std::vector<Case> ablations(const Case& whole) {
   if (sph_acts)
     without("viscosity", [](Case& less) {
       for (Blob& b : less.blobs) b.material.viscosity = 0;
+      for (Blob& b : less.blobs) b.material.viscosity_by_temperature = {};
     });
   for (std::size_t b = 0; b < whole.blobs.size(); ++b) {
     if (whole.blobs[b].material.cohesion > 0)

@@ -54,6 +54,8 @@ const std::vector<Case>& oracle_cases();
 std::vector<Case> cases_of_damping();
 /// Volume to a tolerance, yield that differs within a body.
 std::vector<Case> cases_of_matter();
+/// Heat, and what follows it.
+std::vector<Case> cases_of_heat();
 
 /// The case without one of the things that it claims to test: a collider, a part of a union, friction,
 /// bounce, motion, the pins, damping, the wind, pressure, viscosity, cohesion, the updates. What is left out

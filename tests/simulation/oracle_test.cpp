@@ -60,6 +60,17 @@ std::vector<Vec> positions_of(const Simulation& engine) {
   return positions;
 }
 
+/// The largest difference of a temperature from its twin's [K].
+double largest_warming(const Oracle& oracle, const Simulation& engine) {
+  double largest = 0;
+  const std::span<const float> temperatures = engine.temperatures();
+  const std::span<const ParticleId> ids = engine.ids();
+  for (std::size_t row = 0; row < temperatures.size(); ++row)
+    largest =
+        std::max(largest, std::abs(oracle.particles()[ids[row]].temperature - double{temperatures[row]}));
+  return largest;
+}
+
 void expect_match(const Case& scene, Simulation& engine) {
   Oracle oracle = oracle_of(scene);
   for (int c = 0; c < k_steps; ++c) {
@@ -73,6 +84,9 @@ void expect_match(const Case& scene, Simulation& engine) {
   const double deviation = largest_deviation(scene, oracle.positions(), positions_of(engine));
   testing::Test::RecordProperty("deviation_in_spacings", std::to_string(deviation));
   EXPECT_LE(deviation, scene.tolerance) << "in units of h";
+  const double warming = largest_warming(oracle, engine);
+  testing::Test::RecordProperty("temperature_off", std::to_string(warming));
+  EXPECT_LE(warming, 1e-3) << "K";
 }
 
 class oracle_case : public testing::TestWithParam<Case> {};
