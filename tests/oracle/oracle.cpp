@@ -77,6 +77,8 @@ bool melts(const Group& group) {
   return most->value > 0.9f && least->value < most->value;
 }
 
+}  // namespace
+
 void set_mass_and_rest_density(Group& group, double sigma) {
   const double sum = lattice_sum(group.spacing, sigma);
   const Material& material = group.material;
@@ -86,8 +88,6 @@ void set_mass_and_rest_density(Group& group, double sigma) {
   group.rest_density = material.rest_density ? *material.rest_density : group.mass * sum;
   group.wendland_volume = group.mass / group.rest_density * sum / lattice_sum(group.spacing, sigma, wendland);
 }
-
-}  // namespace
 
 double alpha_at(const AlphaSchedule& schedule, double time) {
   const auto& keys = schedule.keys();
@@ -214,6 +214,7 @@ void Oracle::follow_alpha() {
 
 Step Oracle::step() {
   if (steps_ == 0) settle();
+  flow_out();
   follow_alpha();
   Step step;
   step.updated_groups = update_references();
@@ -223,6 +224,7 @@ Step Oracle::step() {
   step.time_step = time_step(step.max_velocity);
   match_shapes(true);
   conduct(step.time_step);
+  drive(step.time_step);
   step.volume_iterations = move(step.time_step);
   flow(step.time_step);
   for (Obstacle& obstacle : obstacles_) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mallow/collider.h"
+#include "mallow/emitter.h"
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 #include "mallow/vec3.h"
@@ -93,6 +94,7 @@ struct Step {
 /// Acceleration of a particle by the user, from time, id, position and velocity.
 using Force = std::function<Vec(double, std::size_t, const Vec&, const Vec&)>;
 
+void set_mass_and_rest_density(Group& group, double sigma);
 Vec pushed_along(const Particle::Wall& wall, double alpha, double all, const Vec& by_neighbors,
                  const Vec& weight);
 
@@ -107,6 +109,10 @@ class Oracle {
                 std::size_t group);
   void add_collider(const Collider& collider) { obstacles_.push_back({collider, Vec::Zero()}); }
   void pin(const Aabb& box, const Vec& velocity);
+  /// A strand of a group of its own; its layers are these points across the flow, each layer turned by `turn`
+  /// against the one before [rad]. Without jitter, keyframes and an end: such are not known.
+  void add_emitter(const Emitter& emitter, const std::vector<Vec>& section, double turn,
+                   const Material& material);
   void set_force(Force force) { force_ = std::move(force); }
   /// A particle has these of its own; alpha below 0: its group's.
   void paint(std::size_t id, double alpha, double stiffness) {
@@ -144,6 +150,21 @@ class Oracle {
     double flow = 0;         ///< at 0 K [W]
   };
 
+  struct Strand {
+    Emitter emitter;
+    std::vector<Vec> section;
+    double turn = 0;
+    std::size_t group = 0;
+    std::size_t least_held = 0;                       ///< layers
+    std::size_t layers = 0;                           ///< that there were
+    double offset = 0;                                ///< how far the first has come [m]
+    std::vector<std::vector<std::size_t>> held = {};  ///< ids of each layer
+  };
+
+  void add_layers(Strand& strand, std::size_t count, const Vec& velocity);
+  void flow_out();
+  Vec velocity_of(const Strand& strand, double speed) const;
+  void drive(double dt);
   void rebuild_regions(std::size_t group);
   void flow(double dt);
   bool reframe_is_due(std::size_t group) const;
@@ -193,6 +214,7 @@ class Oracle {
   std::vector<Group> groups_;
   std::vector<Particle> particles_;
   std::vector<Obstacle> obstacles_;
+  std::vector<Strand> strands_;
   std::vector<HeatLattice> lattices_;
   Force force_;
   double dt0_ = 0;         ///< Δt0 [s]

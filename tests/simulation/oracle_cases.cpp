@@ -198,6 +198,7 @@ const std::vector<Case>& oracle_cases() {
       for (Blob& b : one.blobs) b.material.deformation_damping = 0.0f;
     for (Case& one : cases_of_damping()) all.push_back(std::move(one));
     for (Case& one : cases_of_matter()) all.push_back(std::move(one));
+    for (Case& one : cases_of_strands()) all.push_back(std::move(one));
     for (Case& one : cases_of_heat()) all.push_back(std::move(one));
     for (Case& one : all) one.walls = one.name.starts_with("walled") || one.name.starts_with("full_walled");
     return all;
@@ -279,6 +280,22 @@ std::vector<Case> ablations(const Case& whole) {
     each_without_heat(whole.blobs[b].material, [&](const char* what, const auto& take_away) {
       without(what, [&](Case& less) { take_away(less.blobs[b].material); });
     });
+  for (std::size_t n = 0; n < whole.nozzles.size(); ++n) {
+    without("nozzle", [&](Case& less) { less.nozzles.erase(less.nozzles.begin() + static_cast<long>(n)); });
+    const Nozzle& nozzle = whole.nozzles[n];
+    if (nozzle.turn != 0) without("turned layers", [&](Case& less) { less.nozzles[n].turn = 0; });
+    if (!nozzle.emitter.velocity.isZero())
+      without("motion of the nozzle", [&](Case& less) { less.nozzles[n].emitter.velocity.setZero(); });
+    if (nozzle.emitter.start) without("its start", [&](Case& less) { less.nozzles[n].emitter.start = {}; });
+    if (nozzle.emitter.speed.keys().size() > 1)
+      without("keys of its speed",
+              [&](Case& less) { less.nozzles[n].emitter.speed = less.nozzles[n].emitter.speed.at(0); });
+    if (nozzle.material.plastic_yield)
+      without("yield of the strand", [&](Case& less) {
+        less.nozzles[n].material.plastic_yield = {};
+        less.nozzles[n].material.update_threshold = 1e6f;
+      });
+  }
   if (whole.wind) without("wind", [](Case& less) { less.wind = false; });
   if (whole.flows)
     without("yield", [](Case& less) {
@@ -373,19 +390,25 @@ oracle::Oracle oracle_of(const Case& scene) {
   }
   for (const Collider& collider : scene.colliders) oracle.add_collider(collider);
   for (const Pinned& pin : scene.pins) oracle.pin(pin.box, pin.velocity.cast<double>());
+  for (const Nozzle& nozzle : scene.nozzles) {
+    std::vector<oracle::Vec> section;
+    for (const Vec3& x : nozzle.section) section.push_back(x.cast<double>());
+    oracle.add_emitter(nozzle.emitter, section, nozzle.turn, nozzle.material);
+  }
   if (scene.wind) oracle.set_force(wind<double>);
   return oracle;
 }
 
 double largest_deviation(const Case& scene, const std::vector<oracle::Vec>& a,
                          const std::vector<oracle::Vec>& b) {
+  std::vector<float> spacings;
+  for (const Blob& blob : scene.blobs) spacings.insert(spacings.end(), points_of(blob).size(), blob.spacing);
+  if (!scene.nozzles.empty())
+    spacings.resize(std::max(spacings.size(), a.size()), scene.nozzles.front().emitter.spacing);
   double largest = 0;
-  std::size_t id = 0;
-  for (const Blob& blob : scene.blobs) {
-    for (std::size_t k = 0; k < points_of(blob).size(); ++k, ++id) {
-      const double deviation = (a[id] - b[id]).norm() / blob.spacing;
-      largest = std::isfinite(deviation) ? std::max(largest, deviation) : INFINITY;
-    }
+  for (std::size_t id = 0; id < std::min({spacings.size(), a.size(), b.size()}); ++id) {
+    const double deviation = (a[id] - b[id]).norm() / spacings[id];
+    largest = std::isfinite(deviation) ? std::max(largest, deviation) : INFINITY;
   }
   return largest;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mallow/collider.h"
+#include "mallow/emitter.h"
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 #include "mallow/vec3.h"
@@ -33,6 +34,13 @@ struct Pinned {
   Vec3 velocity{0, 0, 0};
 };
 
+struct Nozzle {
+  Emitter emitter;
+  Material material;
+  std::vector<Vec3> section;  ///< what its layers are, in this order
+  double turn = 0;            ///< of a layer against the one before [rad]
+};
+
 /// A scene that the oracle and the engine both run. Everything in it must matter: see ablations().
 struct Case {
   std::string name;
@@ -40,6 +48,7 @@ struct Case {
   std::vector<Collider> colliders = {};
   SolverConfig solver;
   std::vector<Pinned> pins = {};
+  std::vector<Nozzle> nozzles = {};
   bool wind = false;        ///< a user force that depends on time, place, velocity and id
   bool limited = false;     ///< some step must be shorter than Δt0
   int updates = 0;          ///< updates of reference shapes that must happen, at least
@@ -54,6 +63,8 @@ const std::vector<Case>& oracle_cases();
 std::vector<Case> cases_of_damping();
 /// Volume to a tolerance, yield that differs within a body.
 std::vector<Case> cases_of_matter();
+/// Strands that leave nozzles.
+std::vector<Case> cases_of_strands();
 /// Heat, and what follows it.
 std::vector<Case> cases_of_heat();
 
@@ -80,7 +91,7 @@ Eigen::Matrix<Scalar, 3, 1> wind(double time, std::size_t id, const Eigen::Matri
 
 oracle::Oracle oracle_of(const Case& scene);
 
-/// The largest distance of a particle from its twin, in spacings of its body.
+/// The largest distance of a particle from its twin, in spacings of its body; of those that both have.
 double largest_deviation(const Case& scene, const std::vector<oracle::Vec>& a,
                          const std::vector<oracle::Vec>& b);
 

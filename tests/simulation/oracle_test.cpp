@@ -43,6 +43,8 @@ Simulation engine_of(const Case& scene, bool as_bodies = false) {
   }
   for (const Collider& collider : scene.colliders) engine.add_collider(collider);
   for (const Pinned& pin : scene.pins) engine.pin(pin.box, pin.velocity);
+  for (const Nozzle& nozzle : scene.nozzles)
+    engine.add_emitter(nozzle.emitter, engine.add_material(nozzle.material));
   if (scene.wind) {
     engine.set_force([](const ForceInput& input, VectorSpan accelerations) {
       for (std::size_t row = 0; row < input.ids.size(); ++row) {
@@ -81,6 +83,7 @@ void expect_match(const Case& scene, Simulation& engine) {
         << "step " << c;
     ASSERT_EQ(report.volume_iterations, expected.volume_iterations) << "step " << c;
   }
+  ASSERT_EQ(oracle.particles().size(), engine.ids().size());
   const double deviation = largest_deviation(scene, oracle.positions(), positions_of(engine));
   testing::Test::RecordProperty("deviation_in_spacings", std::to_string(deviation));
   EXPECT_LE(deviation, scene.tolerance) << "in units of h";
