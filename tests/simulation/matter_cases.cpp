@@ -93,14 +93,12 @@ std::vector<Case> cases_of_matter() {
        .colliders = {k_slope},
        .solver = units(),
        .updates = 1,
-       .flows = true,
-       .tolerance = 1e-3},
+       .flows = true},
       {.name = "painted_yield_creeps_on_ball",
        .blobs = {painted(creeping, 2.0f)},
        .colliders = {k_ball},
        .solver = full(units(2.9f), 2),
-       .flows = true,
-       .tolerance = 1e-3},
+       .flows = true},
   };
 }
 
