@@ -32,6 +32,7 @@ struct Particle {
   bool pinned = false;
   Vec pin_velocity{0, 0, 0};  ///< [m/s]
   double own_alpha = -1;      ///< in place of its group's where it is not below 0
+  double own_yield = -1;      ///< likewise, the strain from which it flows
   double stiffness = 1;       ///< factor on the elastic modulus
 
   std::vector<std::size_t> neighbors = {};  ///< within the support radius, the particle itself left out
@@ -43,6 +44,7 @@ struct Particle {
   Vec contact_acceleration{0, 0, 0};        ///< by colliders [m/s²]
 
   Vec reference{0, 0, 0};  ///< x̄ [m]
+  Vec led{0, 0, 0};        ///< where its shape is matched, x or x + τ v [m]
   double weight = 0;       ///< w = m/|N| [kg]
   Region region = {};
   Vec goal{0, 0, 0};  ///< g [m]
@@ -76,6 +78,10 @@ struct Group {
   /// A group that is fluid for ever has no reference shape.
   bool keeps_reference() const { return material.alpha.lowest() < 1; }
 };
+
+inline double yield_of(const Particle& p, const Group& group) {
+  return p.own_yield < 0 ? group.material.plastic_yield.value_or(0.0f) : p.own_yield;
+}
 
 inline double alpha_of(const Particle& p, const Group& group) {
   return p.own_alpha < 0 ? group.alpha : p.own_alpha;

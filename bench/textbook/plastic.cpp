@@ -48,7 +48,6 @@ bool any_part_ways(const Group& group, const std::vector<Particle>& particles, d
 }  // namespace
 
 void flow(const Group& group, double time_step, std::vector<Particle>& particles) {
-  const double yield = *group.material.plastic_yield;
   const double share =
       group.material.plastic_creep ? 1 - std::exp(-*group.material.plastic_creep * time_step) : 1;
   for (const std::size_t id : group.members) {
@@ -57,7 +56,7 @@ void flow(const Group& group, double time_step, std::vector<Particle>& particles
     const Matrix e = elastic_strain(region);
     if (Eigen::SelfAdjointEigenSolver<Matrix>(e).eigenvalues().minCoeff() <= 0) continue;
     const Matrix strain = e / std::cbrt(e.determinant()) - Matrix::Identity();
-    const double size = strain.norm();
+    const double size = strain.norm(), yield = yield_of(particles[id], group);
     if (size <= yield) continue;
     const double y = std::min((1 - yield / size) * share, 0.5 / size);
     Matrix g = Matrix::Identity() + y * strain;
@@ -83,7 +82,7 @@ bool has_flowed_too_far(const Group& group, const std::vector<Particle>& particl
 }
 
 bool reframe(const Group& group, bool waits, std::vector<Particle>& particles) {
-  match_shape(group, particles);
+  match_shape(group, 0, particles);
   std::vector<Matrix> stretches;
   std::size_t strained = 0;
   for (const std::size_t id : group.members) {
@@ -93,7 +92,7 @@ bool reframe(const Group& group, bool waits, std::vector<Particle>& particles) {
     const Eigen::SelfAdjointEigenSolver<Matrix> solver(elastic_strain(region));
     const Vec found = solver.eigenvalues();
     const double size = found.minCoeff() > 0 ? std::clamp(std::cbrt(found.prod()), 0.3, 1.25) : 1;
-    strained += (found / size - Vec::Ones()).norm() > std::max(0.25, 2.0 * *group.material.plastic_yield);
+    strained += (found / size - Vec::Ones()).norm() > std::max(0.25, 2 * yield_of(particles[id], group));
     const Vec clipped = size * (found / size).cwiseMax(0.8).cwiseMin(1.25);
     const Matrix axes = region.rotation * solver.eigenvectors();
     stretches.back() = axes * clipped.cwiseInverse().asDiagonal() * axes.transpose();

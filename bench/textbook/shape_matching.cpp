@@ -23,13 +23,12 @@ Matrix polar_rotation(const Matrix& a, const Matrix& last, double silence) {
 /// Writes c_j and R_j.
 void match_region(const std::vector<Particle>& particles, double region_radius, Region& region) {
   region.center = Vec::Zero();
-  for (const std::size_t i : region.particles) region.center += particles[i].weight * particles[i].position;
+  for (const std::size_t i : region.particles) region.center += particles[i].weight * particles[i].led;
   region.center /= region.weight;
   region.moment = Matrix::Zero();
   for (const std::size_t id : region.particles) {
     const Particle& i = particles[id];
-    region.moment +=
-        i.weight * (i.position - region.center) * (i.reference - region.reference_center).transpose();
+    region.moment += i.weight * (i.led - region.center) * (i.reference - region.reference_center).transpose();
   }
   region.rotation = polar_rotation(region.moment * region.stretch.transpose(), region.rotation,
                                    1e-12 * region.weight * region_radius * region_radius);
@@ -100,7 +99,9 @@ void rest_anew(const Group& group, double mean, std::vector<Particle>& particles
   list_regions(group, particles);
 }
 
-void match_shape(const Group& group, std::vector<Particle>& particles) {
+void match_shape(const Group& group, double lead, std::vector<Particle>& particles) {
+  for (const std::size_t id : group.members)
+    particles[id].led = particles[id].position + lead * particles[id].velocity;
   for (const std::size_t j : group.members) match_region(particles, group.region_radius, particles[j].region);
   for (const std::size_t id : group.members) {
     Particle& i = particles[id];
@@ -111,7 +112,7 @@ void match_shape(const Group& group, std::vector<Particle>& particles) {
       const Vec goal =
           region.rotation * region.stretch * (i.reference - region.reference_center) + region.center;
       sum += goal;
-      pull += (1 - alpha_of(particles[j], group)) * particles[j].stiffness * (goal - i.position);
+      pull += (1 - alpha_of(particles[j], group)) * particles[j].stiffness * (goal - i.led);
     }
     i.goal = sum / static_cast<double>(i.region.particles.size());
     i.pull = pull / static_cast<double>(i.region.particles.size());

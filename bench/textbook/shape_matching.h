@@ -13,7 +13,7 @@ void take_reference(const Group& group, std::vector<Particle>& particles);
 /// nearest that holds, as its region is turned, or beside one that rests beside such a one.
 void rest_anew(const Group& group, double mean, std::vector<Particle>& particles);
 /// Reference shape, positions, last rotations -> centres and rotations of the regions, goal positions
-/// and pulls.
-void match_shape(const Group& group, std::vector<Particle>& particles);
+/// and pulls. Where they are `lead` [s] later, if they go on as they do. [model 2, section 4 B]
+void match_shape(const Group& group, double lead, std::vector<Particle>& particles);
 
 }  // namespace mallow::textbook

@@ -168,18 +168,27 @@ void sum_accelerations(const SolverConfig& config, const std::vector<Group>& gro
   }
 }
 
-void correct_volume(const SolverConfig& config, const std::vector<Group>& groups, double time_step,
-                    const std::vector<double>& share, const std::vector<Vec>& contacted,
-                    std::vector<Particle>& particles) {
-  const Kernels kernels(*config.support_radius);
-  const auto gradient = [&](const Particle& i, const Particle& j) {
-    const Vec d = i.position - j.position;
-    return Vec(kernels.wendland_gradient(d.norm()) * d);
-  };
+namespace {
+
+Vec wendland_slope(const Kernels& kernels, const Particle& i, const Particle& j) {
+  const Vec d = i.position - j.position;
+  return kernels.wendland_gradient(d.norm()) * d;
+}
+
+std::vector<VolumeGroup> volume_groups(const std::vector<Group>& groups, const Kernels& kernels) {
   std::vector<VolumeGroup> of_groups;
   for (const Group& group : groups) of_groups.push_back(volume_group(group, kernels));
-  const auto volume = [&](const Particle& p) { return of_groups[p.group].volume; };
-  std::vector<double> multipliers;
+  return of_groups;
+}
+
+}  // namespace
+
+Compression find_compression(const SolverConfig& config, const std::vector<Group>& groups, double time_step,
+                             const std::vector<double>& share, const std::vector<Vec>& contacted,
+                             const std::vector<Particle>& particles) {
+  const Kernels kernels(*config.support_radius);
+  const std::vector<VolumeGroup> of_groups = volume_groups(groups, kernels);
+  Compression found;
   for (std::size_t k = 0; k < particles.size(); ++k) {
     const Particle& i = particles[k];
     const Group& group = groups[i.group];
@@ -187,23 +196,32 @@ void correct_volume(const SolverConfig& config, const std::vector<Group>& groups
     Vec sum = Vec::Zero();
     for (const std::size_t id : i.neighbors) {
       const Particle& j = particles[id];
-      const Vec g = volume(j) * gradient(i, j);
+      const Vec g = of_groups[j.group].volume * wendland_slope(kernels, i, j);
       rate += (contacted[k] - contacted[id]).dot(g);
       sum += g;
       if (!j.pinned) others += g.squaredNorm() / groups[j.group].mass;
     }
     const double response =
         std::max(of_groups[i.group].least_response, sum.squaredNorm() / group.mass + others);
-    const double s = std::max(0.0, i.density / group.rest_density - 1 + time_step * rate);
-    multipliers.push_back(i.pinned ? 0 : 0.6 * share[i.group] * s / (time_step * response));
+    const double s = i.pinned ? 0 : std::max(0.0, i.density / group.rest_density - 1 + time_step * rate);
+    found.mean += s / static_cast<double>(particles.size());
+    found.multipliers.push_back(0.6 * share[i.group] * s / (time_step * response));
   }
+  return found;
+}
+
+void correct_volume(const SolverConfig& config, const std::vector<Group>& groups,
+                    const std::vector<double>& multipliers, std::vector<Particle>& particles) {
+  const Kernels kernels(*config.support_radius);
+  const std::vector<VolumeGroup> of_groups = volume_groups(groups, kernels);
   for (std::size_t k = 0; k < particles.size(); ++k) {
     Particle& i = particles[k];
     if (i.pinned) continue;
     for (const std::size_t id : i.neighbors) {
       const Particle& j = particles[id];
       i.velocity -=
-          (multipliers[k] * volume(j) + multipliers[id] * volume(i)) * gradient(i, j) / groups[i.group].mass;
+          (multipliers[k] * of_groups[j.group].volume + multipliers[id] * of_groups[i.group].volume) *
+          wendland_slope(kernels, i, j) / groups[i.group].mass;
     }
   }
 }

@@ -18,11 +18,18 @@ void sum_densities(const SolverConfig& config, const std::vector<Group>& groups,
 void sum_accelerations(const SolverConfig& config, const std::vector<Group>& groups,
                        std::vector<Particle>& particles);
 
-/// D of every particle [1/(m² kg)], and one iteration that keeps densities: velocities v', and w, what
-/// contact makes of them -> v'. share: of the compression, by group. [model 2, section 2]
-void correct_volume(const SolverConfig& config, const std::vector<Group>& groups, double time_step,
-                    const std::vector<double>& share, const std::vector<Vec>& contacted,
-                    std::vector<Particle>& particles);
+/// λ of every particle, and the mean compression that asks for them: of velocities w, what contact makes of
+/// v'. share: of the compression, by group. [model 2, section 2]
+struct Compression {
+  std::vector<double> multipliers;
+  double mean = 0;
+};
+Compression find_compression(const SolverConfig& config, const std::vector<Group>& groups, double time_step,
+                             const std::vector<double>& share, const std::vector<Vec>& contacted,
+                             const std::vector<Particle>& particles);
+/// One iteration that keeps densities: λ -> v'.
+void correct_volume(const SolverConfig& config, const std::vector<Group>& groups,
+                    const std::vector<double>& multipliers, std::vector<Particle>& particles);
 
 /// Σ W over an infinite cubic lattice, the point itself included [1/m³].
 double lattice_sum(double spacing, double support_radius);

@@ -1,5 +1,7 @@
 #include "textbook/textbook.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -160,10 +162,10 @@ Textbook::Step Textbook::step() {
   choose_time_step(step);
   for (const Group& group : groups_) {
     if (!group.keeps_reference()) continue;
-    match_shape(group, particles_);
+    match_shape(group, double{group.material.damping_time}, particles_);
     if (group.material.plastic_yield && group.alpha < 1) flow(group, step.time_step, particles_);
   }
-  move_particles(step.time_step);
+  step.volume_iterations = move_particles(step.time_step);
   for (Obstacle& obstacle : obstacles_) {
     obstacle.moved += step.time_step * obstacle.collider.velocity.cast<double>();
   }
@@ -211,7 +213,7 @@ int Textbook::update_references() {
 
 /// Velocities are those of half a step ago; what the old shape pulled since then goes into them.
 void Textbook::kick_by_pull(const Group& group, double share) {
-  match_shape(group, particles_);
+  match_shape(group, 0, particles_);
   for (const std::size_t id : group.members) {
     Particle& p = particles_[id];
     if (!p.pinned) p.velocity += share * (time_ - last_start_) * stiffness(group) * p.pull;
@@ -271,6 +273,19 @@ double Textbook::mean_external_acceleration(const Group& group) const {
   return count > 0 ? sum / count : 0;
 }
 
+/// Of the two springs together, 2 x Δt² + a Δt (Δt + 2 τ) = 3.4, less what drags beside damping.
+double Textbook::damped_limit(const Group& group, double pressure, double drag) const {
+  const double a = group.most_elasticity * stiffness(group);
+  const double tau = group.material.damping_time, rate = group.material.deformation_damping.value_or(0.0f);
+  const auto root = [&](double most) {
+    const double b = tau * a, c = 2 * pressure + a;
+    return (std::sqrt(b * b + c * most) - b) / c;
+  };
+  const double step = std::min(longest_step_, root(3.4));
+  const double taken = 1 - std::exp(-rate * step) + std::min(1.0, drag * step);
+  return root(tau * a > 0 || rate > 0 ? 3.4 * (1 - taken / 2) : 3.4);
+}
+
 // Section 3 of the model [TK eq. 12].
 double Textbook::limited_time_step(double max_velocity) const {
   const double sigma = *config_.support_radius;
@@ -278,15 +293,14 @@ double Textbook::limited_time_step(double max_velocity) const {
   if (!config_.acoustic_limit) return time_step;
   for (const Group& group : groups_) {
     time_step = std::min(time_step, sigma * sigma * group.rest_density / (25 * group.viscosity));
-    // x of pressure and a of shape matching as they act: x <= 1.4, 2 x + a <= 3.4, and x calmed by viscosity.
+    // x of pressure as it acts: x <= 1.4, with shape matching 3.4, and x calmed by viscosity.
     const bool alone = groups_.size() == 1;
     const double push = alone ? group.most_alpha : group.contact_share, drag = alone ? group.most_alpha : 1;
     const double x = push * group.pressure_coefficient / (sigma * sigma);
     if (x == 0) continue;
     const double y = 800 * drag * group.viscosity / group.rest_density / (sigma * sigma);
-    const double a = group.most_elasticity * stiffness(group);
     time_step = std::min({time_step, (y + std::sqrt(y * y + 0.2 * x)) / (2 * x), std::sqrt(1.4 / x),
-                          std::sqrt(3.4 / (2 * x + a))});
+                          damped_limit(group, x, 25 * y / 800)});
   }
   return time_step;
 }
@@ -331,27 +345,65 @@ Vec Textbook::contacted(const Particle& p, const Vec& before, double time_step) 
   return velocity;
 }
 
+/// Velocities go towards the motion of the group as a rigid whole. [model 2, section 4 B]
+void Textbook::damp(const Group& group, double time_step) {
+  const auto is_elastic = [&](std::size_t id) { return alpha_of(particles_[id], group) < 1; };
+  if (group.material.deformation_damping == 0.0f || std::ranges::none_of(group.members, is_elastic)) return;
+  const auto n = static_cast<double>(group.members.size());
+  Vec center = Vec::Zero(), velocity = Vec::Zero(), spin = Vec::Zero();
+  for (const std::size_t id : group.members) {
+    center += particles_[id].position / n;
+    velocity += particles_[id].velocity / n;
+  }
+  Matrix inertia = Matrix::Zero();
+  for (const std::size_t id : group.members) {
+    const Vec arm = particles_[id].position - center;
+    spin += arm.cross(particles_[id].velocity - velocity);
+    inertia += arm.squaredNorm() * Matrix::Identity() - arm * arm.transpose();
+  }
+  const Vec turning = inertia.ldlt().solve(spin);
+  const auto rigid = [&](const Particle& p) { return Vec(velocity + turning.cross(p.position - center)); };
+  double squares = 0;
+  for (const std::size_t id : group.members)
+    squares += (particles_[id].velocity - rigid(particles_[id])).squaredNorm() / n;
+  // Left out: what hardly moves comes to rest.
+  const double calm = 0.02 * group.spacing / base_step_;
+  const double rate = group.material.deformation_damping ? double{*group.material.deformation_damping}
+                                                         : 0.3 / (base_step_ * (1 + squares / (calm * calm)));
+  std::vector<Vec> changes;
+  for (const std::size_t id : group.members)
+    changes.emplace_back((1 - std::exp(-rate * time_step)) *
+                         (rigid(particles_[id]) - particles_[id].velocity));
+  for (std::size_t k = 0; k < changes.size(); ++k) particles_[group.members[k]].velocity += changes[k];
+}
+
 // Section 2 of the second chapter.
-void Textbook::keep_volume(double time_step, const std::vector<Vec>& before) {
+int Textbook::keep_volume(double time_step, const std::vector<Vec>& before) {
   std::vector<double> share;
   for (const Group& group : groups_) {
-    const double pull = group.most_elasticity * stiffness(group) * time_step * time_step;
+    const double tau = group.material.damping_time, rate = group.material.deformation_damping.value_or(0.0f);
+    const double pull = group.most_elasticity * stiffness(group) * time_step * (time_step + 2 * tau);
+    const double carried = 2.8 * (1 + std::exp(-rate * time_step)) / 2;
     const double wide = std::min(1.0, 2.5 * group.spacing / double{*config_.support_radius});
-    share.push_back(wide * wide * wide * std::clamp((2.8 - pull) / 2, 0.0, 1.0));
+    share.push_back(wide * wide * wide * std::clamp((carried - pull) / 2, 0.0, 1.0));
   }
   std::vector<Vec> w(particles_.size());
   for (int iteration = 0; iteration < config_.volume_iterations; ++iteration) {
     for (std::size_t id = 0; id < w.size(); ++id) w[id] = contacted(particles_[id], before[id], time_step);
-    correct_volume(config_, groups_, time_step, share, w, particles_);
+    const Compression found = find_compression(config_, groups_, time_step, share, w, particles_);
+    if (found.mean <= double{config_.volume_tolerance}) return iteration;
+    correct_volume(config_, groups_, found.multipliers, particles_);
   }
+  return config_.volume_iterations.value_or(0);
 }
 
 // Sections 4 and 5 of the model [TK eq. 10, 11, 13].
-void Textbook::move_particles(double time_step) {
+int Textbook::move_particles(double time_step) {
   // From the middle of the last step to the middle of this one.
   const double last_step = time_ - last_start_;
   const double pull_time = steps_ > 0 ? (last_step + time_step) / 2 : time_step;
   std::vector<Vec> before = velocities();
+  for (const Group& group : groups_) damp(group, time_step);
   for (Particle& p : particles_) {
     const Group& group = groups_[p.group];
     if (p.pinned) {
@@ -361,7 +413,7 @@ void Textbook::move_particles(double time_step) {
     p.velocity += time_step * (p.external_acceleration + p.blended_acceleration);
     if (group.keeps_reference()) p.velocity += pull_time * stiffness(group) * p.pull;
   }
-  keep_volume(time_step, before);
+  const int iterations = keep_volume(time_step, before);
   for (std::size_t id = 0; id < particles_.size(); ++id) {
     Particle& p = particles_[id];
     const Vec velocity = contacted(p, before[id], time_step);
@@ -369,6 +421,7 @@ void Textbook::move_particles(double time_step) {
     p.velocity = velocity;
     p.position += time_step * velocity;
   }
+  return iterations;
 }
 
 std::vector<Vec> Textbook::positions() const {

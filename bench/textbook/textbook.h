@@ -29,11 +29,14 @@ class Textbook {
   void pin(const Aabb& box, const Vec3& velocity = {0, 0, 0});
   /// A particle has these of its own; alpha below 0: its group's.
   void paint(std::size_t id, double alpha, double stiffness);
+  /// The same of the strain from which it flows.
+  void paint_yield(std::size_t id, double yield) { particles_.at(id).own_yield = yield; }
 
   struct Step {
     double time_step = 0;        ///< Δt taken [s]
     double max_velocity = 0;     ///< V of eq. 12 [m/s]; 0 where no SPH acts
     int updated_references = 0;  ///< groups whose reference shape was updated at the start of this step
+    int volume_iterations = 0;   ///< that it took
   };
   /// One step of algorithm 3.3 of the paper. Throws StepError and keeps positions and velocities where Δt
   /// would fall below Δt0/1000 or a velocity is not finite.
@@ -65,8 +68,10 @@ class Textbook {
   double limited_time_step(double max_velocity) const;
   void choose_time_step(Step& step) const;
   Vec contacted(const Particle& p, const Vec& before, double time_step) const;
-  void keep_volume(double time_step, const std::vector<Vec>& before);
-  void move_particles(double time_step);
+  double damped_limit(const Group& group, double pressure, double drag) const;
+  void damp(const Group& group, double time_step);
+  int keep_volume(double time_step, const std::vector<Vec>& before);
+  int move_particles(double time_step);
 
   SolverConfig config_;
   std::vector<Particle> particles_;

@@ -61,13 +61,23 @@ bool is_always_fluid(const Group& group) {
   return std::all_of(keys.begin(), keys.end(), [](const ScheduleKey& key) { return key.value == 1; });
 }
 
+bool yields(const Material& material) {
+  return material.plastic_yield || material.plastic_yield_by_temperature;
+}
+bool flows(const Group& group) {
+  return yields(group.material) && group.least_alpha < 1;
+}
+
 // What changes its alpha and is once held by nothing.
 bool melts(const Group& group) {
-  const auto& keys = group.material.alpha.keys();
+  const Schedule alpha = group.material.alpha_by_temperature.value_or(group.material.alpha);
+  const auto& keys = alpha.keys();
   const auto less = [](const auto& a, const auto& b) { return a.value < b.value; };
   const auto [least, most] = std::minmax_element(keys.begin(), keys.end(), less);
   return most->value > 0.9f && least->value < most->value;
 }
+
+}  // namespace
 
 void set_mass_and_rest_density(Group& group, double sigma) {
   const double sum = lattice_sum(group.spacing, sigma);
@@ -78,8 +88,6 @@ void set_mass_and_rest_density(Group& group, double sigma) {
   group.rest_density = material.rest_density ? *material.rest_density : group.mass * sum;
   group.wendland_volume = group.mass / group.rest_density * sum / lattice_sum(group.spacing, sigma, wendland);
 }
-
-}  // namespace
 
 double alpha_at(const AlphaSchedule& schedule, double time) {
   const auto& keys = schedule.keys();
@@ -123,6 +131,7 @@ void Oracle::add_body(const std::vector<Vec>& positions, const std::vector<Vec>&
   set_mass_and_rest_density(groups_[group], *config_.support_radius);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     particles_.push_back({.group = group, .x = positions[i], .v = velocities[i]});
+    particles_.back().temperature = groups_[group].material.temperature.value_or(0.0f);
   }
   rebuild_regions(group);
 }
@@ -179,13 +188,19 @@ void Oracle::settle() {
 }
 
 void Oracle::follow_alpha() {
+  follow_temperatures();
   for (Group& group : groups_) {
     group.alpha = alpha_at(group.material.alpha, time_);
     group.most_alpha = group.most_elasticity = 0;
+    group.least_alpha = 1;
+    const bool thins = group.material.temperature && group.material.viscosity_by_temperature;
+    if (thins) group.viscosity = 0;
     for (const Particle& p : particles_) {
       if (&groups_[p.group] != &group) continue;
       group.most_alpha = std::max(group.most_alpha, alpha_of(p));
+      group.least_alpha = std::min(group.least_alpha, alpha_of(p));
       group.most_elasticity = std::max(group.most_elasticity, (1 - alpha_of(p)) * p.stiffness);
+      if (thins) group.viscosity = std::max(group.viscosity, viscosity_of(p));
     }
     const std::optional<float>& given = group.material.pressure_coefficient;
     group.contact_share = given ? 1 : std::max(group.most_alpha, 0.2);
@@ -199,6 +214,7 @@ void Oracle::follow_alpha() {
 
 Step Oracle::step() {
   if (steps_ == 0) settle();
+  flow_out();
   follow_alpha();
   Step step;
   step.updated_groups = update_references();
@@ -206,8 +222,10 @@ Step Oracle::step() {
   sum_accelerations();
   step.max_velocity = sph_acts() ? max_velocity() : 0;
   step.time_step = time_step(step.max_velocity);
-  match_shapes();
-  move(step.time_step);
+  match_shapes(true);
+  conduct(step.time_step);
+  drive(step.time_step);
+  step.volume_iterations = move(step.time_step);
   flow(step.time_step);
   for (Obstacle& obstacle : obstacles_) {
     obstacle.moved += step.time_step * obstacle.collider.velocity.cast<double>();
@@ -276,7 +294,7 @@ void Oracle::rest_anew(std::size_t group, double mean) {
 
 // Velocities are those of half a step ago: what the old shape pulled since then is part of them.
 void Oracle::kick_by_pull(std::size_t group, double share) {
-  match_shapes();
+  match_shapes(false);
   for (Particle& p : particles_)
     if (p.group == group && !p.pinned)
       p.v += share * (time_ - last_start_) * stiffness(groups_[group]) * p.pull;
@@ -327,6 +345,10 @@ double Oracle::alpha_of(const Particle& p) const {
   return p.own_alpha < 0 ? groups_[p.group].alpha : p.own_alpha;
 }
 
+double Oracle::yield_of(const Particle& p) const {
+  return p.own_yield < 0 ? groups_[p.group].material.plastic_yield.value_or(0.0f) : p.own_yield;
+}
+
 bool Oracle::is_painted() const {
   return std::any_of(particles_.begin(), particles_.end(),
                      [](const Particle& p) { return p.own_alpha >= 0 || p.stiffness != 1; });
@@ -366,7 +388,7 @@ std::vector<std::size_t> Oracle::update_references() {
     }
     const double threshold = groups_[g].update_threshold * (1 - groups_[g].most_alpha);
     const Material& material = groups_[g].material;
-    const bool follows = !material.plastic_yield || material.update_threshold || melts(groups_[g]);
+    const bool follows = !yields(material) || material.update_threshold || melts(groups_[g]);
     if (is_always_fluid(groups_[g]) || !follows || judged_acceleration(g) <= threshold) {
       if ((far || reframe_is_due(g)) && reframe(g, !far)) updated.push_back(g);
       continue;
@@ -474,7 +496,7 @@ Vec Oracle::pair_acceleration(const Particle& i, const Particle& j) const {
   const Vec d = i.x - j.x;
   const Group& group_i = groups_[i.group];
   const Group& group_j = groups_[j.group];
-  const double mu = (group_i.viscosity + group_j.viscosity) / 2;
+  const double mu = (viscosity_of(i) + viscosity_of(j)) / 2;
   const double volume = group_j.mass / j.density;
   // In the viscous term densities are at least those at rest.
   const double thick =
@@ -512,7 +534,7 @@ void Oracle::sum_accelerations() {
 
 // Section 3.
 bool Oracle::sph_acts() const {
-  return groups_.size() > 1 || groups_.front().most_alpha > 0 || volume_iterations() > 0;
+  return groups_.size() > 1 || groups_.front().most_alpha > 0 || volume_iterations() > 0 || carries_heat();
 }
 
 double Oracle::max_velocity() const {
@@ -523,6 +545,18 @@ double Oracle::max_velocity() const {
     if (!p.pinned) max = std::max(max, (p.v + longest_ * ((whole ? p.sph : p.blended) + p.external)).norm());
   }
   return max;
+}
+
+// Of the two springs together: 2 a Δt² + pull Δt (Δt + 2 τ) = 3.4, less what drags beside damping.
+double Oracle::damped_limit(const Group& group, double a, double drag, double pull) const {
+  const double tau = group.material.damping_time, rate = group.material.deformation_damping.value_or(0.0f);
+  const auto root = [&](double most) {
+    const double b = tau * pull, c = 2 * a + pull;
+    return (std::sqrt(b * b + c * most) - b) / c;
+  };
+  const double step = std::min(longest_, root(3.4));
+  const double taken = 1 - std::exp(-rate * step) + std::min(1.0, 25 * drag * step);
+  return root(tau * pull > 0 || rate > 0 ? 3.4 * (1 - taken / 2) : 3.4);
 }
 
 double Oracle::time_step(double max_velocity) const {
@@ -540,17 +574,21 @@ double Oracle::time_step(double max_velocity) const {
       const double pull = group.most_elasticity * stiffness(group);
       if (a > 0)
         dt = std::min({dt, (b + std::sqrt(b * b + 0.2 * a)) / (2 * a), std::sqrt(1.4 / a),
-                       std::sqrt(3.4 / (2 * a + pull))});
+                       damped_limit(group, a, b / 800, pull)});
     }
   }
   if (!(dt >= longest / 1000)) throw std::runtime_error("the time step would fall below a thousandth");
   return dt;
 }
 
-// Section 2. Reads x̄, x and the last rotations; writes rotations and goals.
-void Oracle::match_shapes() {
+// Section 2. Reads x̄, x and the last rotations; writes rotations and goals. Where `leads`, both stages are on
+// x + τ v. [section 4 B of the second chapter]
+void Oracle::match_shapes(bool leads) {
   const auto weight = [&](const Particle& p) {
     return groups_[p.group].mass / static_cast<double>(p.region.size());
+  };
+  const auto place = [&](const Particle& p) {
+    return Vec(p.x + (leads ? double{groups_[p.group].material.damping_time} : 0.0) * p.v);
   };
   std::vector<Vec> centers(particles_.size());
   std::vector<Vec> reference_centers(particles_.size());
@@ -561,14 +599,14 @@ void Oracle::match_shapes() {
     Vec c_ref = Vec::Zero();
     for (std::size_t i : j.region) {
       w += weight(particles_[i]);
-      c += weight(particles_[i]) * particles_[i].x;
+      c += weight(particles_[i]) * place(particles_[i]);
       c_ref += weight(particles_[i]) * particles_[i].reference;
     }
     c /= w;
     c_ref /= w;
     Matrix a = Matrix::Zero();
     for (std::size_t i : j.region) {
-      a += weight(particles_[i]) * (particles_[i].x - c) * (particles_[i].reference - c_ref).transpose();
+      a += weight(particles_[i]) * (place(particles_[i]) - c) * (particles_[i].reference - c_ref).transpose();
     }
     const double radius = groups_[j.group].material.region_radius.value_or(*config_.support_radius);
     j.rotation = polar_rotation(a * j.stretch.transpose(), j.rotation, w * radius * radius);
@@ -588,7 +626,7 @@ void Oracle::match_shapes() {
       const Vec goal =
           particles_[j].rotation * particles_[j].stretch * (i.reference - reference_centers[j]) + centers[j];
       i.goal += goal / count;
-      i.pull += (1 - alpha_of(particles_[j])) * particles_[j].stiffness * (goal - i.x) / count;
+      i.pull += (1 - alpha_of(particles_[j])) * particles_[j].stiffness * (goal - place(i)) / count;
     }
   }
 }
@@ -619,11 +657,11 @@ Matrix elastic_strain(const Particle& j) {
 void Oracle::flow(double dt) {
   for (Particle& j : particles_) {
     const Material& material = groups_[j.group].material;
-    if (!material.plastic_yield || groups_[j.group].alpha == 1 || is_thin(j) || is_single_layer(j)) continue;
+    if (!flows(groups_[j.group]) || is_thin(j) || is_single_layer(j)) continue;
     const Matrix e = elastic_strain(j);
     if (Eigen::SelfAdjointEigenSolver<Matrix>(e).eigenvalues().minCoeff() <= 0) continue;
     const Matrix strain = e / std::cbrt(e.determinant()) - Matrix::Identity();
-    const double yield = *material.plastic_yield;
+    const double yield = yield_of(j);
     if (strain.norm() <= yield) continue;
     const double share = material.plastic_creep ? 1 - std::exp(-*material.plastic_creep * dt) : 1;
     const double y = std::min((1 - yield / strain.norm()) * share, 0.5 / strain.norm());
@@ -636,7 +674,7 @@ void Oracle::flow(double dt) {
 
 bool Oracle::reframe_is_due(std::size_t group) const {
   const Group& g = groups_[group];
-  if (!g.material.plastic_yield || g.alpha == 1) return false;
+  if (!flows(g)) return false;
   const double radius = g.material.region_radius.value_or(*config_.support_radius);
   for (const Particle& i : particles_) {
     if (i.group != group) continue;
@@ -655,7 +693,7 @@ bool Oracle::reframe_is_due(std::size_t group) const {
 /// Half of it has.
 bool Oracle::has_flowed_too_far(std::size_t group) const {
   const Group& g = groups_[group];
-  if (!g.material.plastic_yield || g.alpha == 1) return false;
+  if (!flows(g)) return false;
   int all = 0, far = 0;
   for (const Particle& i : particles_) {
     if (i.group != group) continue;
@@ -667,8 +705,7 @@ bool Oracle::has_flowed_too_far(std::size_t group) const {
 
 // Elastic strain stays; all else is as after an update. None where it waits for a blow to end.
 bool Oracle::reframe(std::size_t group, bool waits) {
-  match_shapes();
-  const double much = std::max(0.25, 2.0 * *groups_[group].material.plastic_yield);
+  match_shapes(false);
   int all = 0, strained = 0;
   std::vector<Matrix> stretches;
   for (const Particle& j : particles_) {
@@ -678,7 +715,7 @@ bool Oracle::reframe(std::size_t group, bool waits) {
     const Eigen::SelfAdjointEigenSolver<Matrix> solver(elastic_strain(j));
     const Vec found = solver.eigenvalues();
     const double size = found.minCoeff() > 0 ? std::clamp(std::cbrt(found.prod()), 0.3, 1.25) : 1;
-    strained += (found / size - Vec::Ones()).norm() > much;
+    strained += (found / size - Vec::Ones()).norm() > std::max(0.25, 2 * yield_of(j));
     const Vec clipped = size * (found / size).cwiseMax(0.8).cwiseMin(1.25);
     const Matrix axes = j.rotation * solver.eigenvectors();
     stretches.back() = axes * clipped.cwiseInverse().asDiagonal() * axes.transpose();
@@ -734,13 +771,14 @@ void Oracle::rub(const Vec& before, Particle& p) {
 }
 
 // Section 4.
-void Oracle::move(double dt) {
+int Oracle::move(double dt) {
   // The pull's: from the middle of the last step to the middle of this one.
   const double pull_time = steps_ > 0 ? (time_ - last_start_ + dt) / 2 : dt;
   std::vector<Vec> before;
+  for (const Particle& p : particles_) before.push_back(p.v);
+  damp(dt);
   for (Particle& p : particles_) {
     const Group& group = groups_[p.group];
-    before.push_back(p.v);
     p.contact = Vec::Zero();
     if (p.pinned) {
       p.v = p.pin_velocity;
@@ -751,7 +789,7 @@ void Oracle::move(double dt) {
     for (Particle::Wall& wall : p.walls) wall.push = dt * alpha_of(p) * pressure / p.density * wall.gradient;
     if (!is_always_fluid(group)) p.v += pull_time * stiffness(group) * p.pull;
   }
-  keep_volume(dt, before);
+  const int iterations = keep_volume(dt, before);
   for (std::size_t id = 0; id < particles_.size(); ++id) {
     Particle& p = particles_[id];
     const Vec free = p.v;
@@ -761,6 +799,7 @@ void Oracle::move(double dt) {
     p.contact = (p.v - free) / dt;
     p.x += dt * p.v;
   }
+  return iterations;
 }
 
 }  // namespace mallow::oracle

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mallow/collider.h"
+#include "mallow/emitter.h"
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 #include "mallow/vec3.h"
@@ -25,8 +26,10 @@ struct Particle {
   Vec v{0, 0, 0};
   bool pinned = false;
   Vec pin_velocity{0, 0, 0};
-  double own_alpha = -1;  ///< in place of its group's where it is not below 0
-  double stiffness = 1;   ///< factor on the elastic modulus
+  double own_alpha = -1;   ///< in place of its group's where it is not below 0
+  double own_yield = -1;   ///< likewise
+  double stiffness = 1;    ///< factor on the elastic modulus
+  double temperature = 0;  ///< T [K]
 
   Vec reference{0, 0, 0};                ///< x̄
   std::vector<std::size_t> region = {};  ///< N, the particle itself included
@@ -65,14 +68,15 @@ struct Group {
   double spacing = 0;
   double mass = 0;
   double rest_density = 0;
-  double wendland_volume = 0;                  ///< m/ρ0, such that its lattice is as dense by that kernel
-  double update_threshold = 0;                 ///< γ_u
-  double viscosity = 0;                        ///< μ
-  double alpha = 0;                            ///< of the last step
-  double most_alpha = 0, most_elasticity = 0;  ///< of its particles
-  double pressure_coefficient = 0;             ///< k of the last step
-  double contact_share = 1;                    ///< of its pressure that acts between groups
-  double cohesion = 0;                         ///< share of its negative pressure
+  double wendland_volume = 0;              ///< m/ρ0, such that its lattice is as dense by that kernel
+  double update_threshold = 0;             ///< γ_u
+  double viscosity = 0;                    ///< μ; where it follows temperatures, of the thickest particle
+  double alpha = 0;                        ///< of the last step
+  double least_alpha = 0, most_alpha = 0;  ///< of its particles
+  double most_elasticity = 0;              ///< likewise, (1 − α) stiffness
+  double pressure_coefficient = 0;         ///< k of the last step
+  double contact_share = 1;                ///< of its pressure that acts between groups
+  double cohesion = 0;                     ///< share of its negative pressure
   /// Mean |a_ext| over the unpinned, from the start to the end of every step.
   struct External {
     double start, end, mean;
@@ -84,11 +88,13 @@ struct Step {
   double time_step = 0;     ///< Δt [s]
   double max_velocity = 0;  ///< V of eq. 12; 0 where no SPH acts
   std::vector<std::size_t> updated_groups;
+  int volume_iterations = 0;  ///< that it took
 };
 
 /// Acceleration of a particle by the user, from time, id, position and velocity.
 using Force = std::function<Vec(double, std::size_t, const Vec&, const Vec&)>;
 
+void set_mass_and_rest_density(Group& group, double sigma);
 Vec pushed_along(const Particle::Wall& wall, double alpha, double all, const Vec& by_neighbors,
                  const Vec& weight);
 
@@ -103,12 +109,19 @@ class Oracle {
                 std::size_t group);
   void add_collider(const Collider& collider) { obstacles_.push_back({collider, Vec::Zero()}); }
   void pin(const Aabb& box, const Vec& velocity);
+  /// A strand of a group of its own; its layers are these points across the flow, each layer turned by `turn`
+  /// against the one before [rad]. Without jitter, keyframes and an end: such are not known.
+  void add_emitter(const Emitter& emitter, const std::vector<Vec>& section, double turn,
+                   const Material& material);
   void set_force(Force force) { force_ = std::move(force); }
   /// A particle has these of its own; alpha below 0: its group's.
   void paint(std::size_t id, double alpha, double stiffness) {
     particles_[id].own_alpha = alpha;
     particles_[id].stiffness = stiffness;
   }
+  /// The same of the strain from which it flows [1], and of its temperature at the start [K].
+  void paint_yield(std::size_t id, double yield) { particles_[id].own_yield = yield; }
+  void warm(std::size_t id, double temperature) { particles_[id].temperature = temperature; }
   /// Moves the particles away from their reference shape.
   void set_positions(const std::vector<Vec>& positions);
 
@@ -125,7 +138,33 @@ class Oracle {
     Collider collider;
     Vec moved;  ///< since it was added
   };
+  /// What makes sums over pairs of a lattice the Laplacian; by spacing.
+  struct HeatLattice {
+    double factor = 0, open = 0, exposure = 0, resistance = 0;
+    /// What pairs of a particle of a density over that at rest count.
+    double counts(double density) const;
+  };
+  /// What a particle exchanges with what is no particle.
+  struct Bath {
+    double conductance = 0;  ///< [W/K]
+    double flow = 0;         ///< at 0 K [W]
+  };
 
+  struct Strand {
+    Emitter emitter;
+    std::vector<Vec> section;
+    double turn = 0;
+    std::size_t group = 0;
+    std::size_t least_held = 0;                       ///< layers
+    std::size_t layers = 0;                           ///< that there were
+    double offset = 0;                                ///< how far the first has come [m]
+    std::vector<std::vector<std::size_t>> held = {};  ///< ids of each layer
+  };
+
+  void add_layers(Strand& strand, std::size_t count, const Vec& velocity);
+  void flow_out();
+  Vec velocity_of(const Strand& strand, double speed) const;
+  void drive(double dt);
   void rebuild_regions(std::size_t group);
   void flow(double dt);
   bool reframe_is_due(std::size_t group) const;
@@ -141,6 +180,14 @@ class Oracle {
   bool counts_steps() const { return config_.update_interval && config_.time_step_factor == 1; }
   double passed_periods(double time) const;
   double alpha_of(const Particle& p) const;
+  double yield_of(const Particle& p) const;
+  double viscosity_of(const Particle& p) const;
+  bool carries_heat() const;
+  void follow_temperatures();
+  HeatLattice heat_lattice(const Group& group) const;
+  static double heated(const Material& material, double temperature, double gained);
+  Bath bath_of(const Particle& p, const HeatLattice& lattice) const;
+  void conduct(double dt);
   bool is_painted() const;
   double stiffness(const Group& group) const;
   bool check_is_due() const;
@@ -153,17 +200,22 @@ class Oracle {
   bool sph_acts() const;
   int volume_iterations() const;
   double max_velocity() const;
+  double damped_limit(const Group& group, double a, double drag, double pull) const;
   double time_step(double max_velocity) const;
-  void match_shapes();
+  void match_shapes(bool leads);
+  double damping_rate(const Group& group, double deformation_speed) const;
+  void damp(double dt);
   static void rub(const Vec& before, Particle& p);
   void touch(const Obstacle& obstacle, const Particle& particle, const Vec& before, double dt, Vec& v) const;
-  void keep_volume(double dt, const std::vector<Vec>& before);
-  void move(double dt);
+  int keep_volume(double dt, const std::vector<Vec>& before);
+  int move(double dt);
 
   SolverConfig config_;
   std::vector<Group> groups_;
   std::vector<Particle> particles_;
   std::vector<Obstacle> obstacles_;
+  std::vector<Strand> strands_;
+  std::vector<HeatLattice> lattices_;
   Force force_;
   double dt0_ = 0;         ///< Δt0 [s]
   double longest_ = 0;     ///< longest step [s]

@@ -36,13 +36,14 @@ double half_space_slope(double d, double sigma) {
 
 // Left out: 2 where something flows.
 int Oracle::volume_iterations() const {
-  const bool flows = std::ranges::any_of(
-      groups_, [](const Group& group) { return group.material.plastic_yield.has_value(); });
+  const bool flows = std::ranges::any_of(groups_, [](const Group& group) {
+    return group.material.plastic_yield || group.material.plastic_yield_by_temperature;
+  });
   return config_.volume_iterations.value_or(flows ? 2 : 0);
 }
 
-// Reads x, ρ, v' and walls; writes v'.
-void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
+// Reads x, ρ, v' and walls; writes v'. Returns how many iterations it took.
+int Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
   const double sigma = *config_.support_radius;
   const std::size_t n = particles_.size();
   const auto volume = [&](const Particle& p) { return groups_[p.group].wendland_volume; };
@@ -53,6 +54,7 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
   std::vector<Vec> w(n);
   std::vector<double> lambda(n);
   for (int iteration = 0; iteration < volume_iterations(); ++iteration) {
+    double compression = 0;
     for (std::size_t i = 0; i < n; ++i) {
       w[i] = particles_[i].v;
       for (const Obstacle& obstacle : obstacles_)
@@ -78,12 +80,18 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       others /= std::max(0.5, 1 - i.wall_share);
       const double response = std::max(floor, gradient.squaredNorm() / mass(i) + others);
       const double s = std::max(0.0, i.density / group.rest_density - 1 + dt * rate);
+      if (!i.pinned) compression += s / static_cast<double>(n);
+      const double tau = group.material.damping_time;
+      const double carried =
+          2.8 * (1 + std::exp(-double{group.material.deformation_damping.value_or(0.0f)} * dt)) / 2;
       const double wide = std::min(1.0, 2.5 * group.spacing / sigma);
       const double share =
           wide * wide * wide *
-          std::clamp((2.8 - group.most_elasticity * stiffness(group) * dt * dt) / 2, 0.0, 1.0);
+          std::clamp((carried - group.most_elasticity * stiffness(group) * dt * (dt + 2 * tau)) / 2, 0.0,
+                     1.0);
       lambda[k] = i.pinned ? 0 : 0.6 * share * s / (dt * response);
     }
+    if (compression <= double{config_.volume_tolerance}) return iteration;
     for (std::size_t k = 0; k < n; ++k) {
       Particle& i = particles_[k];
       if (i.pinned) continue;
@@ -102,6 +110,7 @@ void Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       }
     }
   }
+  return volume_iterations();
 }
 
 }  // namespace mallow::oracle

@@ -6,58 +6,10 @@
 
 #include "oracle/points.h"
 #include "paper_settings.h"
+#include "simulation/oracle_case_parts.h"
 
 namespace mallow {
 namespace {
-
-/// The paper's free units, small: Δt0 0.15, h about 1, |g| 0.4, and the paper's settings; checks often enough
-/// to fire within 40 steps.
-SolverConfig units(float support_radius = 2.2f) {
-  return with_paper_settings(SolverConfig{.support_radius = support_radius,
-                                          .gravity = {0, 0, -0.4f},
-                                          .update_interval = 10,
-                                          .wall_pressure = false});
-}
-
-SolverConfig walled(float support_radius = 2.2f) {
-  SolverConfig solver = units(support_radius);
-  solver.wall_pressure = true;
-  return solver;
-}
-
-SolverConfig printed() {
-  SolverConfig solver = units();
-  solver.formulation = Formulation::printed;
-  return solver;
-}
-
-SolverConfig without_acoustic_limit() {
-  SolverConfig solver = units();
-  solver.acoustic_limit = false;
-  return solver;
-}
-
-SolverConfig with_offset(float contact_offset) {
-  SolverConfig solver = units();
-  solver.contact_offset = contact_offset;
-  return solver;
-}
-
-Material stuff(AlphaSchedule alpha) {
-  return {.alpha = std::move(alpha), .update_threshold = 1.0f};
-}
-/// As stiff as pascals say.
-Material firm(float alpha, float youngs_modulus) {
-  return {.alpha = alpha, .update_threshold = 1.0f, .youngs_modulus = youngs_modulus};
-}
-/// Flows where it is strained.
-Material dough(AlphaSchedule alpha, float yield, std::optional<float> creep = {}) {
-  return {.alpha = std::move(alpha), .plastic_yield = yield, .plastic_creep = creep};
-}
-/// Keeps its first reference shape.
-Material lasting(AlphaSchedule alpha) {
-  return {.alpha = std::move(alpha), .update_threshold = 1e6f};
-}
 
 /// Nothing given but what has no default: metres, and a gravity that is to be felt.
 SolverConfig left_out(float update_period) {
@@ -67,29 +19,10 @@ SolverConfig turned(SolverConfig solver, float time_step_factor) {
   solver.time_step_factor = time_step_factor;
   return solver;
 }
-/// Nothing is pressed together.
-SolverConfig full(SolverConfig solver, int iterations) {
-  solver.volume_iterations = iterations;
-  return solver;
-}
 /// Weightless: seconds follow from the fastest body.
 SolverConfig adrift() {
   return {.support_radius = 2.2f, .gravity = {0, 0, 0}};
 }
-
-const Plane k_tilted{{0.3f, -0.2f, 1.0f}, 0.1f};
-const Collider k_slope{.shape = k_tilted, .restitution = 0.6f, .friction = 0.3f};
-const Collider k_ball{.shape = Sphere{{0.4f, -0.3f, -3.0f}, 3.0f}, .friction = 0.3f};
-const Collider k_bowl{.shape = Sphere{{0, 0, 6}, 6.2f, true}, .friction = 0.2f};
-const Collider k_step{.shape = Box{{-9, -9, -2}, {0.3f, 9, 0.2f}}, .friction = 0.3f};
-const Collider k_tank{.shape = Box{{-3.7f, -9, 0}, {9, 9, 20}, true}, .friction = 0.1f};
-const Collider k_union{
-    .shape = Union{{Sphere{{-2, 0, -1}, 2.0f}, Box{{0.5f, -2, -2}, {5, 2, 0.6f}}, Plane{{0, 0, 1}, -0.6f}}},
-    .friction = 0.3f};
-
-}  // namespace
-
-namespace {
 
 std::vector<Case> paper_cases() {
   // clang-format off
@@ -261,10 +194,46 @@ const std::vector<Case>& oracle_cases() {
     std::vector<Case> all = paper_cases();
     for (Case& one : cases_with_defaults()) all.push_back(std::move(one));
     for (Case& one : cases_that_keep_volume()) all.push_back(std::move(one));
+    for (Case& one : all)
+      for (Blob& b : one.blobs) b.material.deformation_damping = 0.0f;
+    for (Case& one : cases_of_damping()) all.push_back(std::move(one));
+    for (Case& one : cases_of_matter()) all.push_back(std::move(one));
+    for (Case& one : cases_of_strands()) all.push_back(std::move(one));
+    for (Case& one : cases_of_heat()) all.push_back(std::move(one));
+    for (Case& one : all) one.walls = one.name.starts_with("walled") || one.name.starts_with("full_walled");
     return all;
   }();
   return cases;
 }
+
+namespace {
+
+/// What temperatures do to a material.
+void each_without_heat(const Material& material,
+                       const std::function<void(const char*, std::function<void(Material&)>)>& without) {
+  if (!material.temperature) return;
+  const double start = double{*material.temperature};
+  if (material.conductivity > 0) without("conduction", [](Material& less) { less.conductivity = 0; });
+  if (material.heat_transfer > 0) without("air", [](Material& less) { less.heat_transfer = 0; });
+  if (material.latent_heat > 0) without("latent heat", [](Material& less) { less.latent_heat = 0; });
+  if (material.alpha_by_temperature)
+    without("alpha by temperature", [=](Material& less) {
+      less.alpha = less.alpha_by_temperature->at(start);
+      less.alpha_by_temperature = {};
+    });
+  if (material.viscosity_by_temperature)
+    without("viscosity by temperature", [=](Material& less) {
+      less.viscosity = less.viscosity_by_temperature->at(start);
+      less.viscosity_by_temperature = {};
+    });
+  if (material.plastic_yield_by_temperature)
+    without("yield by temperature", [=](Material& less) {
+      less.plastic_yield = less.plastic_yield_by_temperature->at(start);
+      less.plastic_yield_by_temperature = {};
+    });
+}
+
+}  // namespace
 
 std::vector<Case> ablations(const Case& whole) {
   std::vector<Case> lesser;
@@ -284,6 +253,10 @@ std::vector<Case> ablations(const Case& whole) {
       without("bounce", [&](Case& less) { less.colliders[c].restitution = 0; });
     if (!whole.colliders[c].velocity.isZero())
       without("motion", [&](Case& less) { less.colliders[c].velocity.setZero(); });
+    if (whole.colliders[c].temperature)
+      without("heat of collider " + number, [&](Case& less) { less.colliders[c].temperature = {}; });
+    if (whole.colliders[c].heat_transfer)
+      without("a film on collider " + number, [&](Case& less) { less.colliders[c].heat_transfer = {}; });
     const auto* shapes = std::get_if<Union>(&whole.colliders[c].shape);
     for (std::size_t p = 0; shapes && p < shapes->parts.size(); ++p) {
       without("part " + std::to_string(p), [&](Case& less) {
@@ -296,10 +269,38 @@ std::vector<Case> ablations(const Case& whole) {
     without("pin " + std::to_string(p),
             [&](Case& less) { less.pins.erase(less.pins.begin() + static_cast<long>(p)); });
   }
+  for (std::size_t b = 0; b < whole.blobs.size(); ++b) {
+    const Material& material = whole.blobs[b].material;
+    if (material.damping_time > 0)
+      without("damping time", [&](Case& less) { less.blobs[b].material.damping_time = 0; });
+    if (material.deformation_damping != 0.0f)
+      without("deformation damping", [&](Case& less) { less.blobs[b].material.deformation_damping = 0.0f; });
+  }
+  for (std::size_t b = 0; b < whole.blobs.size(); ++b)
+    each_without_heat(whole.blobs[b].material, [&](const char* what, const auto& take_away) {
+      without(what, [&](Case& less) { take_away(less.blobs[b].material); });
+    });
+  for (std::size_t n = 0; n < whole.nozzles.size(); ++n) {
+    without("nozzle", [&](Case& less) { less.nozzles.erase(less.nozzles.begin() + static_cast<long>(n)); });
+    const Nozzle& nozzle = whole.nozzles[n];
+    if (nozzle.turn != 0) without("turned layers", [&](Case& less) { less.nozzles[n].turn = 0; });
+    if (!nozzle.emitter.velocity.isZero())
+      without("motion of the nozzle", [&](Case& less) { less.nozzles[n].emitter.velocity.setZero(); });
+    if (nozzle.emitter.start) without("its start", [&](Case& less) { less.nozzles[n].emitter.start = {}; });
+    if (nozzle.emitter.speed.keys().size() > 1)
+      without("keys of its speed",
+              [&](Case& less) { less.nozzles[n].emitter.speed = less.nozzles[n].emitter.speed.at(0); });
+    if (nozzle.material.plastic_yield)
+      without("yield of the strand", [&](Case& less) {
+        less.nozzles[n].material.plastic_yield = {};
+        less.nozzles[n].material.update_threshold = 1e6f;
+      });
+  }
   if (whole.wind) without("wind", [](Case& less) { less.wind = false; });
   if (whole.flows)
     without("yield", [](Case& less) {
       for (Blob& b : less.blobs) b.material.plastic_yield = b.material.plastic_creep = {};
+      for (Blob& b : less.blobs) b.material.plastic_yield_by_temperature = {};
       for (Blob& b : less.blobs) b.material.update_threshold = 1e6f;
     });
   if (whole.updates > 0 && !whole.flows)
@@ -308,11 +309,17 @@ std::vector<Case> ablations(const Case& whole) {
     });
   for (std::size_t b = 0; b < whole.blobs.size(); ++b)
     if (whole.blobs[b].painted) without("paint", [&](Case& less) { less.blobs[b].painted = false; });
-  const bool sph_acts = whole.blobs.front().painted ||
+  for (std::size_t b = 0; b < whole.blobs.size(); ++b)
+    if (whole.blobs[b].paints_yield)
+      without("painted yield", [&](Case& less) { less.blobs[b].paints_yield = false; });
+  const bool sph_acts = whole.blobs.front().painted || whole.blobs.front().material.alpha_by_temperature ||
                         whole.blobs.front().material.alpha.keys().back().value > 0 ||
                         std::any_of(whole.blobs.begin() + 1, whole.blobs.end(),
                                     [](const Blob& b) { return !b.joins_the_one_before; });
   const bool full = whole.solver.volume_iterations > 0;
+  if (whole.walls) without("walls", [](Case& less) { less.solver.wall_pressure = false; });
+  if (whole.solver.volume_tolerance > 0)
+    without("tolerance", [](Case& less) { less.solver.volume_tolerance = 0; });
   if (full) without("volume iterations", [](Case& less) { less.solver.volume_iterations = 0; });
   if (sph_acts && whole.blobs.front().material.pressure_coefficient.value_or(1) > 0)
     without("pressure", [](Case& less) {
@@ -321,6 +328,7 @@ std::vector<Case> ablations(const Case& whole) {
   if (sph_acts)
     without("viscosity", [](Case& less) {
       for (Blob& b : less.blobs) b.material.viscosity = 0;
+      for (Blob& b : less.blobs) b.material.viscosity_by_temperature = {};
     });
   for (std::size_t b = 0; b < whole.blobs.size(); ++b) {
     if (whole.blobs[b].material.cohesion > 0)
@@ -342,7 +350,6 @@ namespace {
 /// From `first` to `last` along an axis.
 std::vector<float> graded(const Blob& blob, int axis, float first, float last) {
   std::vector<float> values;
-  if (!blob.painted) return values;
   const std::vector<Vec3> points = points_of(blob);
   const auto along = [&](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
   const auto [low, high] = std::minmax_element(points.begin(), points.end(), along);
@@ -354,11 +361,15 @@ std::vector<float> graded(const Blob& blob, int axis, float first, float last) {
 }  // namespace
 
 std::vector<float> alphas_of(const Blob& blob) {
-  return graded(blob, 0, 0.0f, 1.0f);
+  return blob.painted ? graded(blob, 0, 0.0f, 1.0f) : std::vector<float>{};
 }
 
 std::vector<float> stiffnesses_of(const Blob& blob) {
-  return graded(blob, 1, 0.4f, 1.6f);
+  return blob.painted ? graded(blob, 1, 0.4f, 1.6f) : std::vector<float>{};
+}
+
+std::vector<float> yields_of(const Blob& blob) {
+  return blob.paints_yield ? graded(blob, 1, 0.01f, 0.3f) : std::vector<float>{};
 }
 
 oracle::Oracle oracle_of(const Case& scene) {
@@ -374,22 +385,30 @@ oracle::Oracle oracle_of(const Case& scene) {
     const std::vector<float> alphas = alphas_of(blob), stiffnesses = stiffnesses_of(blob);
     for (std::size_t k = 0; k < alphas.size(); ++k)
       oracle.paint(first + k, double{alphas[k]}, double{stiffnesses[k]});
+    const std::vector<float> yields = yields_of(blob);
+    for (std::size_t k = 0; k < yields.size(); ++k) oracle.paint_yield(first + k, double{yields[k]});
   }
   for (const Collider& collider : scene.colliders) oracle.add_collider(collider);
   for (const Pinned& pin : scene.pins) oracle.pin(pin.box, pin.velocity.cast<double>());
+  for (const Nozzle& nozzle : scene.nozzles) {
+    std::vector<oracle::Vec> section;
+    for (const Vec3& x : nozzle.section) section.push_back(x.cast<double>());
+    oracle.add_emitter(nozzle.emitter, section, nozzle.turn, nozzle.material);
+  }
   if (scene.wind) oracle.set_force(wind<double>);
   return oracle;
 }
 
 double largest_deviation(const Case& scene, const std::vector<oracle::Vec>& a,
                          const std::vector<oracle::Vec>& b) {
+  std::vector<float> spacings;
+  for (const Blob& blob : scene.blobs) spacings.insert(spacings.end(), points_of(blob).size(), blob.spacing);
+  if (!scene.nozzles.empty())
+    spacings.resize(std::max(spacings.size(), a.size()), scene.nozzles.front().emitter.spacing);
   double largest = 0;
-  std::size_t id = 0;
-  for (const Blob& blob : scene.blobs) {
-    for (std::size_t k = 0; k < points_of(blob).size(); ++k, ++id) {
-      const double deviation = (a[id] - b[id]).norm() / blob.spacing;
-      largest = std::isfinite(deviation) ? std::max(largest, deviation) : INFINITY;
-    }
+  for (std::size_t id = 0; id < std::min({spacings.size(), a.size(), b.size()}); ++id) {
+    const double deviation = (a[id] - b[id]).norm() / spacings[id];
+    largest = std::isfinite(deviation) ? std::max(largest, deviation) : INFINITY;
   }
   return largest;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mallow/collider.h"
+#include "mallow/emitter.h"
 #include "mallow/material.h"
 #include "mallow/solver_config.h"
 #include "mallow/vec3.h"
@@ -25,11 +26,19 @@ struct Blob {
   float jitter = 0.2f;
   bool joins_the_one_before = false;  ///< into one group with it
   bool painted = false;               ///< see alphas_of() and stiffnesses_of()
+  bool paints_yield = false;          ///< see yields_of()
 };
 
 struct Pinned {
   Aabb box;
   Vec3 velocity{0, 0, 0};
+};
+
+struct Nozzle {
+  Emitter emitter;
+  Material material;
+  std::vector<Vec3> section;  ///< what its layers are, in this order
+  double turn = 0;            ///< of a layer against the one before [rad]
 };
 
 /// A scene that the oracle and the engine both run. Everything in it must matter: see ablations().
@@ -39,19 +48,29 @@ struct Case {
   std::vector<Collider> colliders = {};
   SolverConfig solver;
   std::vector<Pinned> pins = {};
+  std::vector<Nozzle> nozzles = {};
   bool wind = false;        ///< a user force that depends on time, place, velocity and id
   bool limited = false;     ///< some step must be shorter than Δt0
   int updates = 0;          ///< updates of reference shapes that must happen, at least
   bool flows = false;       ///< what flows must matter
+  bool walls = false;       ///< that walls press as if they were filled must matter
   double tolerance = 1e-4;  ///< what single precision may do to a position in 40 steps, in units of h
 };
 std::ostream& operator<<(std::ostream& out, const Case& c);
 
 const std::vector<Case>& oracle_cases();
+/// Of them, those of the second chapter's damping: all others are undamped.
+std::vector<Case> cases_of_damping();
+/// Volume to a tolerance, yield that differs within a body.
+std::vector<Case> cases_of_matter();
+/// Strands that leave nozzles.
+std::vector<Case> cases_of_strands();
+/// Heat, and what follows it.
+std::vector<Case> cases_of_heat();
 
 /// The case without one of the things that it claims to test: a collider, a part of a union, friction,
-/// bounce, motion, the pins, the wind, pressure, viscosity, cohesion, the updates. What is left out is
-/// appended to the name.
+/// bounce, motion, the pins, damping, the wind, pressure, viscosity, cohesion, the updates. What is left out
+/// is appended to the name.
 std::vector<Case> ablations(const Case& whole);
 
 /// The points of a blob; the same for all who run the case.
@@ -59,6 +78,8 @@ std::vector<Vec3> points_of(const Blob& blob);
 /// From 0 to 1 along x, and from 0.4 to 1.6 along y, of a blob that is painted; else none.
 std::vector<float> alphas_of(const Blob& blob);
 std::vector<float> stiffnesses_of(const Blob& blob);
+/// From 0.01 to 0.3 along y, of a blob that paints its yield; else none.
+std::vector<float> yields_of(const Blob& blob);
 /// A gust that turns, tears and drags; the same formula for both precisions.
 template <class Scalar>
 Eigen::Matrix<Scalar, 3, 1> wind(double time, std::size_t id, const Eigen::Matrix<Scalar, 3, 1>& x,
@@ -70,7 +91,7 @@ Eigen::Matrix<Scalar, 3, 1> wind(double time, std::size_t id, const Eigen::Matri
 
 oracle::Oracle oracle_of(const Case& scene);
 
-/// The largest distance of a particle from its twin, in spacings of its body.
+/// The largest distance of a particle from its twin, in spacings of its body; of those that both have.
 double largest_deviation(const Case& scene, const std::vector<oracle::Vec>& a,
                          const std::vector<oracle::Vec>& b);
 

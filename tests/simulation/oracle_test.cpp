@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "mallow/simulation.h"
@@ -18,14 +19,9 @@ constexpr int k_steps = 40;
 /// What everything in a case must do to some position at least, in units of h.
 constexpr double k_significant = 0.05;
 
-Material undamped(Material material) {
-  material.deformation_damping = 0.0f;
-  return material;
-}
-
 /// as_bodies: what joins the one before is a body of its own that merges with it.
 Simulation engine_of(const Case& scene, bool as_bodies = false) {
-  // The oracle knows the paper's rules: bodies press on each other by SPH, and nothing is damped.
+  // The oracle knows the paper's rules: bodies press on each other by SPH.
   SolverConfig solver = scene.solver;
   solver.contact = BodyContact::pressure;
   Simulation engine(solver);
@@ -35,10 +31,11 @@ Simulation engine_of(const Case& scene, bool as_bodies = false) {
                       .spacing = blob.spacing,
                       .velocity = blob.velocity,
                       .alpha = alphas_of(blob),
+                      .plastic_yield = yields_of(blob),
                       .stiffness = stiffnesses_of(blob),
                       .merges = as_bodies};
     if (!blob.joins_the_one_before)
-      last = engine.add_body(points, undamped(blob.material));
+      last = engine.add_body(points, blob.material);
     else if (as_bodies)
       engine.add_body(points, engine.material(last));
     else
@@ -46,6 +43,8 @@ Simulation engine_of(const Case& scene, bool as_bodies = false) {
   }
   for (const Collider& collider : scene.colliders) engine.add_collider(collider);
   for (const Pinned& pin : scene.pins) engine.pin(pin.box, pin.velocity);
+  for (const Nozzle& nozzle : scene.nozzles)
+    engine.add_emitter(nozzle.emitter, engine.add_material(nozzle.material));
   if (scene.wind) {
     engine.set_force([](const ForceInput& input, VectorSpan accelerations) {
       for (std::size_t row = 0; row < input.ids.size(); ++row) {
@@ -63,6 +62,17 @@ std::vector<Vec> positions_of(const Simulation& engine) {
   return positions;
 }
 
+/// The largest difference of a temperature from its twin's [K].
+double largest_warming(const Oracle& oracle, const Simulation& engine) {
+  double largest = 0;
+  const std::span<const float> temperatures = engine.temperatures();
+  const std::span<const ParticleId> ids = engine.ids();
+  for (std::size_t row = 0; row < temperatures.size(); ++row)
+    largest =
+        std::max(largest, std::abs(oracle.particles()[ids[row]].temperature - double{temperatures[row]}));
+  return largest;
+}
+
 void expect_match(const Case& scene, Simulation& engine) {
   Oracle oracle = oracle_of(scene);
   for (int c = 0; c < k_steps; ++c) {
@@ -71,9 +81,15 @@ void expect_match(const Case& scene, Simulation& engine) {
     ASSERT_NEAR(report.time_step / expected.time_step, 1, 1e-4) << "step " << c;
     ASSERT_EQ(static_cast<std::size_t>(report.updated_references), expected.updated_groups.size())
         << "step " << c;
+    ASSERT_EQ(report.volume_iterations, expected.volume_iterations) << "step " << c;
   }
-  EXPECT_LE(largest_deviation(scene, oracle.positions(), positions_of(engine)), scene.tolerance)
-      << "in units of h";
+  ASSERT_EQ(oracle.particles().size(), engine.ids().size());
+  const double deviation = largest_deviation(scene, oracle.positions(), positions_of(engine));
+  testing::Test::RecordProperty("deviation_in_spacings", std::to_string(deviation));
+  EXPECT_LE(deviation, scene.tolerance) << "in units of h";
+  const double warming = largest_warming(oracle, engine);
+  testing::Test::RecordProperty("temperature_off", std::to_string(warming));
+  EXPECT_LE(warming, 1e-3) << "K";
 }
 
 class oracle_case : public testing::TestWithParam<Case> {};
