@@ -5,6 +5,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "program/large_pieces.h"
+
 namespace mallow::program {
 namespace {
 
@@ -81,17 +83,23 @@ void add_colliders(const Room& room, double last, Aabb& box) {
     });
 }
 
-/// The particles of a frame without those far from all others.
-Aabb most_of(const ParticleFrame& frame) {
+/// The bounds of positions, of which there is one at least.
+Aabb bounds_of(const std::vector<Vec3>& positions) {
+  Aabb box{positions.at(0), positions.at(0)};
+  for (const Vec3& x : positions) extend(box, {x, x});
+  return box;
+}
+
+/// The bounds of positions without those far from all others.
+Aabb most_of(const std::vector<Vec3>& positions) {
   constexpr std::size_t k_rare = 100;  // one in so many may be far away
-  Aabb box{frame.positions.at(0), frame.positions.at(0)};
-  for (const Vec3& x : frame.positions) extend(box, {x, x});
-  const std::size_t rare = frame.positions.size() / k_rare;
+  const Aabb box = bounds_of(positions);
+  const std::size_t rare = positions.size() / k_rare;
   if (rare == 0) return box;
   Aabb most;
-  std::vector<float> values(frame.positions.size());
+  std::vector<float> values(positions.size());
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    std::ranges::transform(frame.positions, values.begin(), [&](const Vec3& x) { return x[axis]; });
+    std::ranges::transform(positions, values.begin(), [&](const Vec3& x) { return x[axis]; });
     const auto low = values.begin() + static_cast<std::ptrdiff_t>(rare);
     const auto high = values.end() - 1 - static_cast<std::ptrdiff_t>(rare);
     std::nth_element(values.begin(), low, values.end());
@@ -103,6 +111,15 @@ Aabb most_of(const ParticleFrame& frame) {
   return {box.min.cwiseMax(most.min - reach), box.max.cwiseMin(most.max + reach)};
 }
 
+/// What drops and crumbs reach that are not far from the large pieces.
+void add_near(const std::vector<Vec3>& drops, Aabb& box) {
+  constexpr float k_near = 0.25f;  // of the longest side
+  const Vec3 reach = Vec3::Constant(k_near * longest_side(box));
+  const Aabb near{box.min - reach, box.max + reach};
+  for (const Vec3& x : drops)
+    if ((x.array() >= near.min.array()).all() && (x.array() <= near.max.array()).all()) extend(box, {x, x});
+}
+
 }  // namespace
 
 std::vector<Collider> visible_colliders(const Scene& scene) {
@@ -112,19 +129,36 @@ std::vector<Collider> visible_colliders(const Scene& scene) {
   return colliders;
 }
 
-void FilmBounds::add(const ParticleFrame& frame) {
-  if (frame.positions.empty()) return;
-  const Aabb box = most_of(frame);
-  if (!box_) box_ = box;
-  extend(*box_, box);
-  last_time_ = std::max(last_time_, frame.time);
+void FilmBounds::Reach::add(const Aabb& frame, std::size_t count) {
+  if (!box) box = frame;
+  extend(*box, frame);
+  particles = std::max(particles, count);
 }
 
-Aabb FilmBounds::box(const Scene& scene, float spacing) const {
-  if (!box_) return {{-1, -1, -1}, {1, 1, 1}};
+void FilmBounds::add(const ParticleFrame& frame) {
+  const std::size_t count = frame.positions.size();
+  if (count == 0) return;
+  last_time_ = std::max(last_time_, frame.time);
+  all_.add(most_of(frame.positions), count);
+  const std::vector<bool> large = in_large_pieces(frame, spacings_);
+  std::vector<Vec3> pieces, drops;
+  for (std::size_t i = 0; i < count; ++i) (large[i] ? pieces : drops).push_back(frame.positions[i]);
+  if (2 * pieces.size() < count) return;  // it has come apart
+  Aabb box = most_of(pieces);
+  add_near(drops, box);
+  whole_.add(box, count);
+}
+
+const std::optional<Aabb>& FilmBounds::reached() const {
+  // What drips from a nozzle holds together only as long as it is little: it is seen wherever it goes.
+  return 10 * whole_.particles >= 9 * all_.particles ? whole_.box : all_.box;
+}
+
+Aabb FilmBounds::box(const Scene& scene) const {
+  if (!reached()) return {{-1, -1, -1}, {1, 1, 1}};
   // The surface is half a spacing and a little outside of the particles.
-  const Vec3 skin = Vec3::Constant(0.75f * spacing);
-  Aabb box{box_->min - skin, box_->max + skin};
+  const Vec3 skin = Vec3::Constant(spacings_.empty() ? 0 : 0.75f * *std::ranges::min_element(spacings_));
+  Aabb box{reached()->min - skin, reached()->max + skin};
   const Room room(scene);
   float lowest = -std::numeric_limits<float>::infinity();
   for (const Plane& plane : room.grounds) {
@@ -140,9 +174,9 @@ Aabb FilmBounds::box(const Scene& scene, float spacing) const {
 }
 
 Aabb bounds_now(const Scene& scene, Simulation& simulation) {
-  float spacing = std::numeric_limits<float>::infinity();
-  for (const BodyInfo& body : simulation.info().bodies) spacing = std::min(spacing, body.spacing);
-  Aabb box = FilmBounds(snapshot(simulation)).box(scene, std::isfinite(spacing) ? spacing : 0.0f);
+  std::vector<float> spacings;
+  for (const BodyInfo& body : simulation.info().bodies) spacings.push_back(body.spacing);
+  Aabb box = FilmBounds(spacings, snapshot(simulation)).box(scene);
   const Vec3 middle = 0.5f * (box.min + box.max);
   for (const Plane& plane : Room(scene).grounds)
     if (const Vec3 foot(middle.x(), middle.y(), ground_height(plane, middle)); foot.z() < middle.z())
