@@ -80,7 +80,7 @@ TEST(film_bounds, give_a_picture_that_what_the_film_shows_fills_and_never_leaves
       frames[2].positions[7] = {90, 0, 1};  // flies off alone
       for (const ParticleFrame& frame : frames) bounds.add(frame);
       const render::Camera camera =
-          render::frame_camera(bounds.box(scene), scene.render, visible_colliders(scene));
+          render::frame_camera(bounds.boxes(scene), scene.render, visible_colliders(scene));
       const render::Viewport view(camera, scene.render.width, scene.render.height);
       frames[2].positions[7] = frames[2].positions[8];
       Eigen::Array2f lowest(1e9f, 1e9f), highest = -lowest;
@@ -124,8 +124,8 @@ TEST(film_bounds, of_a_splash_crop_drops_alone_and_show_water_a_quarter_wide_in_
     simulation.advance(1.0 / 30);
     bounds.add(frames.emplace_back(snapshot(simulation)));
   }
-  const render::Viewport view(render::frame_camera(bounds.box(scene), scene.render, visible_colliders(scene)),
-                              960, 540);
+  const render::Viewport view(
+      render::frame_camera(bounds.boxes(scene), scene.render, visible_colliders(scene)), 960, 540);
   std::size_t wide = 0;
   for (const ParticleFrame& frame : frames) {
     const std::vector<bool> large = in_large_pieces(frame, k_spacings);

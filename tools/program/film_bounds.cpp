@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <type_traits>
 
 #include "program/large_pieces.h"
@@ -64,8 +65,8 @@ Aabb swept(const Shape& shape, const Collider& collider, double last) {
   return box;
 }
 
-/// What is seen of the colliders with what is in the box.
-void add_colliders(const Room& room, double last, Aabb& box) {
+/// Adds what is seen of the colliders with what is in the box.
+void add_colliders(const Room& room, double last, const Aabb& box, std::vector<Aabb>& boxes) {
   // A collider far larger than what moves is a part of the room and does not have to be seen whole, one that
   // is moved through keyframes and is no larger is a tool, and is.
   const float size = longest_side(box);
@@ -79,8 +80,15 @@ void add_colliders(const Room& room, double last, Aabb& box) {
       const Aabb whole = swept(shape, collider, last);
       const Aabb& seen = is_tool ? far : near;
       const auto clamped = [&](const Vec3& x) -> Vec3 { return x.cwiseMax(seen.min).cwiseMin(seen.max); };
-      extend(box, {clamped(whole.min), clamped(whole.max)});
+      boxes.push_back({clamped(whole.min), clamped(whole.max)});
     });
+}
+
+/// A box around boxes, of which there is one at least.
+Aabb around(std::span<const Aabb> boxes) {
+  Aabb box = boxes.front();
+  for (const Aabb& other : boxes) extend(box, other);
+  return box;
 }
 
 /// The bounds of positions, of which there is one at least.
@@ -130,8 +138,7 @@ std::vector<Collider> visible_colliders(const Scene& scene) {
 }
 
 void FilmBounds::Reach::add(const Aabb& frame, std::size_t count) {
-  if (!box) box = frame;
-  extend(*box, frame);
+  boxes.push_back(frame);
   particles = std::max(particles, count);
 }
 
@@ -149,28 +156,39 @@ void FilmBounds::add(const ParticleFrame& frame) {
   whole_.add(box, count);
 }
 
-const std::optional<Aabb>& FilmBounds::reached() const {
+const std::vector<Aabb>& FilmBounds::reached() const {
   // What drips from a nozzle holds together only as long as it is little: it is seen wherever it goes.
-  return 10 * whole_.particles >= 9 * all_.particles ? whole_.box : all_.box;
+  return 10 * whole_.particles >= 9 * all_.particles ? whole_.boxes : all_.boxes;
 }
 
-Aabb FilmBounds::box(const Scene& scene) const {
-  if (!reached()) return {{-1, -1, -1}, {1, 1, 1}};
+std::vector<Aabb> FilmBounds::boxes(const Scene& scene) const {
+  std::vector<Aabb> boxes = reached();
+  if (boxes.empty()) return {{{-1, -1, -1}, {1, 1, 1}}};
   // The surface is half a spacing and a little outside of the particles.
   const Vec3 skin = Vec3::Constant(spacings_.empty() ? 0 : 0.75f * *std::ranges::min_element(spacings_));
-  Aabb box{reached()->min - skin, reached()->max + skin};
+  for (Aabb& box : boxes) box = {box.min - skin, box.max + skin};
+  Aabb all = around(boxes);
   const Room room(scene);
   float lowest = -std::numeric_limits<float>::infinity();
   for (const Plane& plane : room.grounds) {
-    const Vec3 middle = 0.5f * (box.min + box.max);
+    const Vec3 middle = 0.5f * (all.min + all.max);
     const Vec3 foot(middle.x(), middle.y(), ground_height(plane, middle));
-    lowest = std::max(lowest, std::min(foot.z(), box.min.z()));
+    lowest = std::max(lowest, std::min(foot.z(), all.min.z()));
     // How high something hangs is seen where the ground is near.
-    if (box.min.z() - foot.z() < 2 * longest_side(box)) extend(box, {foot, foot});
+    if (all.min.z() - foot.z() >= 2 * longest_side(all)) continue;
+    boxes.push_back({foot, foot});
+    extend(all, boxes.back());
   }
-  add_colliders(room, last_time_, box);
-  box.min.z() = std::max(box.min.z(), lowest);
-  return box;
+  add_colliders(room, last_time_, all, boxes);
+  for (Aabb& box : boxes) {
+    box.min.z() = std::max(box.min.z(), lowest);
+    box.max.z() = std::max(box.max.z(), lowest);
+  }
+  return boxes;
+}
+
+Aabb FilmBounds::box(const Scene& scene) const {
+  return around(boxes(scene));
 }
 
 Aabb bounds_now(const Scene& scene, Simulation& simulation) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,17 +19,20 @@ class FilmBounds {
   explicit FilmBounds(std::span<const float> spacings) : spacings_(spacings.begin(), spacings.end()) {}
   FilmBounds(std::span<const float> spacings, const ParticleFrame& only) : FilmBounds(spacings) { add(only); }
   void add(const ParticleFrame& frame);
+  /// What a frame each reaches, and what is seen beside it: together smaller than one box around all of it.
   /// Something around 0 where no frame had any particles.
+  std::vector<Aabb> boxes(const Scene& scene) const;
+  /// One around them.
   Aabb box(const Scene& scene) const;
 
  private:
   /// What frames reach, and the most particles that one of them has.
   struct Reach {
-    std::optional<Aabb> box = {};
+    std::vector<Aabb> boxes = {};
     std::size_t particles = 0;
     void add(const Aabb& frame, std::size_t count);
   };
-  const std::optional<Aabb>& reached() const;
+  const std::vector<Aabb>& reached() const;
 
   std::vector<float> spacings_;
   Reach whole_;           ///< of frames that hold together, without drops

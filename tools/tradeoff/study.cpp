@@ -47,7 +47,8 @@ bool parts_again(const std::vector<double>& differences) {
 PixelOf camera_of(const Scene& scene, const Motion& motion) {
   program::FilmBounds film(motion.spacings);
   for (const MotionMoment& moment : motion.moments) film.add(moment.particles);
-  const auto camera = render::frame_camera(film.box(scene), scene.render, program::visible_colliders(scene));
+  const auto camera =
+      render::frame_camera(film.boxes(scene), scene.render, program::visible_colliders(scene));
   return [viewport = render::Viewport(camera, scene.render.width, scene.render.height)](
              const Vec3& x) -> std::optional<Eigen::Vector2d> {
     const auto pixel = viewport.pixel(x);
