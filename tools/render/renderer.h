@@ -30,13 +30,13 @@ struct Camera {
   float field_of_view = 35.0f;  ///< vertical, degrees, in [1, 120]
 };
 
-/// A camera that has all of `boxes`, of which there is one at least, in view with a margin, a little from
-/// above: between the +x and the -y side, or from the corner that has the most planes of `colliders` facing
-/// it. A target that the config gives is kept; so is an eye, and then nothing is promised about the margin.
-Camera frame_camera(std::span<const Aabb> boxes, const RenderConfig& config,
-                    std::span<const Collider> colliders = {});
-/// Of one box.
+/// A camera that has all of `scene_bounds` in view with a margin, a little from above: between the +x and the
+/// -y side, or from the corner that has the most planes of `colliders` facing it. A target that the config
+/// gives is kept; so is an eye, and then nothing is promised about the margin.
 Camera frame_camera(const Aabb& scene_bounds, const RenderConfig& config,
+                    std::span<const Collider> colliders = {});
+/// The same for several boxes, at least one, which may leave out corners of the one around them.
+Camera frame_camera(std::span<const Aabb> boxes, const RenderConfig& config,
                     std::span<const Collider> colliders = {});
 
 /// Draws frames of one scene. The picture depends on the input and the machine, never on the number of
