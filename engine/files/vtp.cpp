@@ -3,7 +3,9 @@
 
 #include "files/byte_reader.h"
 #include "files/byte_writer.h"
+#include "files/mesh_materials.h"
 #include "files/valid_columns.h"
+#include "mallow/errors.h"
 #include "mallow/files.h"
 
 /// VTK's XML files: VTK User's Guide, "VTK XML Formats". Arrays stand behind the XML as raw bytes, each with
@@ -22,7 +24,8 @@ constexpr ArrayType k_uint32 = {"UInt32", 4};
 
 /// The two halves of a file of polygons or points.
 struct PolyData {
-  std::string xml;
+  std::string fields;  ///< of the whole, in XML
+  std::string xml;     ///< of the piece
   std::string bytes;
 
   /// Begins an array; the caller appends its numbers to `bytes`.
@@ -58,6 +61,33 @@ struct PolyData {
     for (std::size_t i = 0; i < count; ++i)
       append_little_endian(bytes, static_cast<std::int32_t>(first + i * stride));
   }
+  /// A text for each body; each ends with a zero.
+  void add_texts(const char* name, const std::vector<std::string>& texts) {
+    fields += std::string("<Array type=\"String\" Name=\"") + name + "\" NumberOfTuples=\"" +
+              std::to_string(texts.size()) + "\" format=\"appended\" offset=\"" +
+              std::to_string(bytes.size()) + "\"/>\n";
+    std::string all;
+    for (const std::string& text : texts) (all += text) += '\0';
+    append_little_endian(bytes, std::uint64_t{all.size()});
+    bytes += all;
+  }
+  /// What bodies and their materials are called, by the numbers that points have; nothing where there are
+  /// none. Throws ConfigError where a point's body has no name.
+  void add_names(std::span<const MeshBody> bodies, const std::vector<std::uint32_t>& of_points) {
+    if (bodies.empty()) return;
+    require_bodies(bodies);
+    for (const std::uint32_t body : of_points)
+      if (body >= bodies.size())
+        throw ConfigError("bodies", std::to_string(bodies.size()) + " are not allowed: number " +
+                                        std::to_string(body) + " needs one too");
+    const NamedBodies named = name_bodies(bodies, [](const std::string& name) { return name; });
+    std::vector<std::string> materials;
+    for (const std::size_t material : named.material_of) materials.push_back(named.materials[material].title);
+    fields += "<FieldData>\n";
+    add_texts("BodyNames", named.titles);
+    add_texts("MaterialNames", materials);
+    fields += "</FieldData>\n";
+  }
   void add_points(const std::vector<Vec3>& positions) {
     xml += "<Points>\n";
     add_vectors("Points", positions);
@@ -71,10 +101,11 @@ void write_poly_data(const std::filesystem::path& file, const PolyData& data, st
   std::string content =
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
-      "<PolyData>\n<Piece NumberOfPoints=\"" +
-      std::to_string(points) + "\" NumberOfVerts=\"" + std::to_string(vertices) +
-      "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" + std::to_string(polygons) + "\">\n" +
-      data.xml + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
+      "<PolyData>\n" +
+      data.fields + "<Piece NumberOfPoints=\"" + std::to_string(points) + "\" NumberOfVerts=\"" +
+      std::to_string(vertices) + "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
+      std::to_string(polygons) + "\">\n" + data.xml +
+      "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
   content += data.bytes;
   content += "\n</AppendedData>\n</VTKFile>\n";
   require_readable_size(file, content.size());
@@ -108,9 +139,10 @@ std::string escaped(const std::string& text) {
 
 }  // namespace
 
-void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh) {
+void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh, std::span<const MeshBody> bodies) {
   require_valid(mesh);
   PolyData data;
+  data.add_names(bodies, mesh.material_ids);
   data.xml += "<PointData>\n";
   if (!mesh.normals.empty()) data.add_vectors("Normals", mesh.normals);
   if (!mesh.velocities.empty()) data.add_vectors("Velocity", mesh.velocities);
@@ -127,10 +159,12 @@ void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh) {
   write_poly_data(file, data, mesh.vertices.size(), 0, mesh.triangles.size());
 }
 
-void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame& frame) {
+void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame& frame,
+                         std::span<const MeshBody> bodies) {
   require_valid(frame);
   const std::size_t count = frame.positions.size();
   PolyData data;
+  data.add_names(bodies, frame.bodies);
   data.xml += "<PointData>\n";
   data.add_vectors("Velocity", frame.velocities);
   data.add_bodies("Group", frame.bodies);

@@ -113,6 +113,30 @@ Grid::Ptr to_grid(const SurfaceField& field) {
   return grid;
 }
 
+/// The body that a surface is of; none where it is of several, joined, or of no particles.
+const SurfacePart* part_of(const Surfacer& surfacer, std::size_t surface) {
+  const auto parts = surfacer.parts();
+  const auto part = std::ranges::find(parts, surface, &SurfacePart::body);
+  return part == parts.end() ? nullptr : &*part;
+}
+
+/// Names and numbers are what programs tell grids apart by, so a name that two bodies share is none.
+std::string grid_name(const Surfacer& surfacer, std::size_t surface) {
+  const SurfacePart* const part = part_of(surfacer, surface);
+  if (part != nullptr && !part->name.empty() &&
+      std::ranges::count(surfacer.parts(), part->name, &SurfacePart::name) == 1)
+    return part->name;
+  return surfacer.surface_count() == 1 ? "surface" : "surface_" + std::to_string(surface);
+}
+
+void say_body(const Surfacer& surfacer, std::size_t surface, Grid& grid) {
+  const SurfacePart* const part = part_of(surfacer, surface);
+  if (part == nullptr) return;
+  grid.insertMeta("body", openvdb::Int64Metadata(part->body));
+  if (!part->name.empty()) grid.insertMeta("body_name", openvdb::StringMetadata(part->name));
+  grid.insertMeta("material_id", openvdb::Int64Metadata(static_cast<std::int64_t>(part->material)));
+}
+
 }  // namespace
 
 Grid::Ptr level_set(const Surfacer& surfacer, std::size_t surface) {
@@ -123,14 +147,22 @@ Grid::Ptr level_set(const Surfacer& surfacer, std::size_t surface) {
   return run_with_threads(SurfacerAccess::threads(surfacer), [&] {
     openvdb::initialize();
     const auto grid = to_grid(fields[surface]);
-    grid->setName(fields.size() == 1 ? "surface" : "surface_" + std::to_string(surface));
+    grid->setName(grid_name(surfacer, surface));
+    say_body(surfacer, surface, *grid);
     return grid;
   });
 }
 
-std::string level_set_vdb(const Surfacer& surfacer) {
+std::string level_set_vdb(const Surfacer& surfacer, std::span<const std::string> materials) {
   openvdb::GridPtrVec grids;
-  for (std::size_t s = 0; s < surfacer.surface_count(); ++s) grids.push_back(level_set(surfacer, s));
+  for (std::size_t s = 0; s < surfacer.surface_count(); ++s) {
+    const Grid::Ptr grid = level_set(surfacer, s);
+    grids.push_back(grid);
+    const SurfacePart* const part = part_of(surfacer, s);
+    if (part == nullptr) continue;
+    if (const auto id = static_cast<std::size_t>(part->material); id < materials.size())
+      grid->insertMeta("material", openvdb::StringMetadata(materials[id]));
+  }
   return run_with_threads(SurfacerAccess::threads(surfacer), [&] {
     openvdb::initialize();
     std::ostringstream bytes(std::ios::binary);

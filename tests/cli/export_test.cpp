@@ -96,7 +96,7 @@ box = { count = [3, 3, 3], spacing = 1.0, corner = [5.0, 5.0, 0.6] }
 TEST_F(cli_export, groups_and_materials_have_the_names_and_looks_of_the_scene) {
   write("cube.toml", read_text(scene_) + k_second_body);
   ASSERT_EQ(run({"--out", at("out"), "--frames", "0"}).exit_code, 0);
-  const Outcome outcome = run_mallow({"export", at("out"), "--surface", "glb,obj,usda"});
+  const Outcome outcome = run_mallow({"export", at("out"), "--surface", "glb,obj,usda,vtp,vdb"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto expect_texts = [&](const std::string& file, const std::vector<const char*>& texts) {
     const std::string content = read_text(folder_ / "out/export/surface" / file);
@@ -119,6 +119,12 @@ TEST_F(cli_export, groups_and_materials_have_the_names_and_looks_of_the_scene) {
                {"def GeomSubset \"cube\"", "def GeomSubset \"_2nd\"", "displayName = \"2nd\"",
                 "def Material \"paste\"", "def Material \"blue__clay_\"",
                 "displayName = \"blue \\\"clay\\\"\"", "color3f inputs:diffuseColor = (0.25, 0.5, 0.125)"});
+  // Of names in VTP tells vtk_file_test, of grids openvdb_test: text in both kinds of file.
+  const std::string zero(1, '\0');
+  const std::string vtp = read_text(at("out/export/surface/frame_000000.vtp"));
+  EXPECT_NE(vtp.find("cube" + zero + "2nd" + zero), std::string::npos);
+  EXPECT_NE(vtp.find("paste" + zero + "blue \"clay\"" + zero), std::string::npos);
+  expect_texts("frame_000000.vdb", {"cube", "2nd", "body_name", "paste", "blue \"clay\""});
 }
 
 TEST_F(cli_export, a_thousand_bodies_are_told_apart_in_frames_surfaces_and_pictures) {

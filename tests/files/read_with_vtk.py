@@ -37,13 +37,16 @@ vtkOutputWindow.SetInstance(messages)
 reader.SetFileName(sys.argv[1])
 reader.Update()
 data = poly_data(reader.GetOutput())
-found = {"messages": messages.GetOutput(), "points": [], "arrays": {}, "cells": []}
+found = {"messages": messages.GetOutput(), "points": [], "arrays": {}, "fields": {}, "cells": []}
 if data is not None:
     if data.GetNumberOfPoints():
         found["points"] = rows(data.GetPoints().GetData())
     for i in range(data.GetPointData().GetNumberOfArrays()):
         array = data.GetPointData().GetArray(i)
         found["arrays"][array.GetName()] = rows(array)
+    for i in range(data.GetFieldData().GetNumberOfArrays()):
+        array = data.GetFieldData().GetAbstractArray(i)
+        found["fields"][array.GetName()] = [array.GetValue(k) for k in range(array.GetNumberOfValues())]
     for i in range(data.GetNumberOfCells()):
         ids = data.GetCell(i).GetPointIds()
         found["cells"].append([ids.GetId(k) for k in range(ids.GetNumberOfIds())])

@@ -62,6 +62,51 @@ TEST(vtk_file, vtk_reads_the_particles_that_were_written_as_vtp) {
   EXPECT_EQ(read.at("arrays").at("Id"), (Rows{{0}, {1}, {2}}));
 }
 
+TEST(vtk_file, vtk_reads_what_bodies_and_their_materials_are_called) {
+  const TemporaryFolder folder;
+  const std::vector<MeshBody> bodies = {
+      {{}, "a \"cube\" & <more>", "clay"}, {{}, "", ""}, {{}, "k\u00e4se", "clay"}};
+  const nlohmann::json names = {"a \"cube\" & <more>", "group 1", "k\u00e4se"};
+  const nlohmann::json materials = {"clay", "material 1", "clay"};
+  Mesh mesh = full_tetrahedron();
+  mesh.material_ids = {0, 1, 2, 0};
+  write_mesh_vtp(folder / "a.vtp", mesh, bodies);
+  ParticleFrame frame = three_particles();
+  frame.bodies = {2, 0, 1};
+  write_particles_vtp(folder / "p.vtp", frame, bodies);
+  for (const char* name : {"a.vtp", "p.vtp"}) {
+    READ_WITH_VTK(read, folder / name);
+    EXPECT_EQ(read.at("fields").at("BodyNames"), names);
+    EXPECT_EQ(read.at("fields").at("MaterialNames"), materials);
+    const bool is_mesh = name[0] == 'a';
+    EXPECT_EQ(as_floats(read.at("points")), rows(is_mesh ? mesh.vertices : frame.positions));
+    EXPECT_EQ(read.at("arrays").at(is_mesh ? "Material" : "Group"),
+              column(is_mesh ? mesh.material_ids : frame.bodies));
+  }
+}
+
+/// The names stand behind the XML, in the order of bodies and each with a zero, also where no VTK is there to
+/// read them.
+TEST(vtk_file, names_of_bodies_are_text_in_the_file_and_none_may_be_missing) {
+  const TemporaryFolder folder;
+  Mesh mesh = full_tetrahedron();
+  mesh.material_ids = {0, 1, 1, 0};
+  const std::vector<MeshBody> bodies = {{{}, "cube", "clay"}, {{}, "ball", "jelly"}};
+  write_mesh_vtp(folder / "a.vtp", mesh, bodies);
+  const std::string content = content_of(folder / "a.vtp");
+  using namespace std::string_literals;
+  for (const std::string& text :
+       {"<FieldData>\n<Array type=\"String\" Name=\"BodyNames\" NumberOfTuples=\"2\" format=\"appended\" "
+        "offset=\"0\"/>\n"s,
+        "\n_\x0A\0\0\0\0\0\0\0cube\0ball\0"s, "\x0B\0\0\0\0\0\0\0clay\0jelly\0"s})
+    EXPECT_NE(content.find(text), std::string::npos) << text;
+  write_mesh_vtp(folder / "none.vtp", mesh);
+  EXPECT_EQ(content_of(folder / "none.vtp").find("FieldData"), std::string::npos);
+  mesh.material_ids[2] = 2;
+  EXPECT_THROW(write_mesh_vtp(folder / "b.vtp", mesh, bodies), ConfigError);
+  EXPECT_EQ(folder.entries(), 2u);
+}
+
 TEST(vtk_file, vtk_reads_vtp_files_of_nothing_and_of_bare_triangles) {
   const TemporaryFolder folder;
   write_mesh_vtp(folder / "bare.vtp", tetrahedron());

@@ -1,5 +1,6 @@
 #include "mallow/openvdb.h"
 
+#include <openvdb/io/Stream.h>
 #include <openvdb/tools/Composite.h>
 #include <openvdb/tools/Diagnostics.h>
 #include <openvdb/tools/LevelSetFilter.h>
@@ -8,6 +9,8 @@
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>
+#include <sstream>
+#include <string_view>
 
 #include "mallow/level_set.h"
 #include "meshes.h"
@@ -167,6 +170,66 @@ TEST(openvdb, grids_are_named_by_their_surface_and_there_are_no_others) {
   expect_words(config_error([&] { level_set(surfacer, 2); }), {"surface: 2 is not allowed", "has 2"});
   surfacer.draw({points, {}, {{.spacing = 1}}});
   EXPECT_EQ(level_set(surfacer)->getName(), "surface");
+}
+
+/// Three balls, each a body of its own.
+struct ThreeBalls {
+  std::vector<Vec3> points;
+  std::vector<SurfaceBody> bodies;
+
+  ThreeBalls(std::string_view first, std::string_view second, std::string_view third) {
+    for (const std::string_view name : {first, second, third}) {
+      const std::size_t begin = points.size();
+      const auto body = static_cast<std::uint32_t>(bodies.size());
+      for (const Vec3& x : shaken_ball({9 * static_cast<float>(body), 0, 0}, 2)) points.push_back(x);
+      bodies.push_back({.spacing = 1,
+                        .body = body,
+                        .rows = Simulation::Rows{begin, points.size()},
+                        .name = name,
+                        .material = MaterialId{body % 2}});
+    }
+  }
+  SurfaceParticles particles() const { return {points, {}, bodies}; }
+};
+
+TEST(openvdb, grids_have_the_names_of_bodies_that_are_like_no_other) {
+  const auto names_of = [](const ThreeBalls& balls) {
+    Surfacer surfacer({});
+    surfacer.draw(balls.particles());
+    std::vector<std::string> names;
+    for (std::size_t s = 0; s < surfacer.surface_count(); ++s)
+      names.push_back(level_set(surfacer, s)->getName());
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names_of({"dough", "knife", "2nd plate"}), (Names{"dough", "knife", "2nd plate"}));
+  EXPECT_EQ(names_of({"dough", "", "dough"}), (Names{"surface_0", "surface_1", "surface_2"}));
+}
+
+TEST(openvdb, files_say_of_each_grid_which_body_and_material_it_is_of) {
+  const ThreeBalls balls("dough", "", "dough");
+  Surfacer surfacer({});
+  surfacer.draw(balls.particles());
+  const std::vector<std::string> materials = {"clay", "jelly"};
+  std::istringstream bytes(level_set_vdb(surfacer, materials), std::ios::binary);
+  const auto grids = openvdb::io::Stream(bytes).getGrids();
+  ASSERT_EQ(grids->size(), 3u);
+  for (std::uint32_t b = 0; b < 3; ++b) {
+    const openvdb::GridBase& grid = *(*grids)[b];
+    EXPECT_EQ(grid.metaValue<std::int64_t>("body"), b);
+    EXPECT_EQ(grid.metaValue<std::int64_t>("material_id"), b % 2);
+    EXPECT_EQ(grid.metaValue<std::string>("material"), materials[b % 2]);
+    ASSERT_EQ(grid["body_name"] != nullptr, b != 1) << b;
+    if (b != 1) {
+      EXPECT_EQ(grid.metaValue<std::string>("body_name"), "dough");
+    }
+  }
+
+  Surfacer joined({.joined = true});
+  joined.draw(balls.particles());
+  const auto grid = level_set(joined);
+  EXPECT_EQ(grid->getName(), "surface");
+  EXPECT_FALSE((*grid)["body"]);
 }
 
 }  // namespace openvdb_test

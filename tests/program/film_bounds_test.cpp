@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
+#include "program/large_pieces.h"
 #include "render/renderer.h"
 #include "render/viewport.h"
 
@@ -20,9 +23,11 @@ Scene scene_of(const std::string& more) {
       "scene.toml");
 }
 
+constexpr std::array k_spacings = {0.01f};
+
 Aabb bounds_of(const std::string& more) {
   const Scene scene = scene_of(more);
-  return FilmBounds(snapshot(build(scene, 1))).box(scene, 0.01f);
+  return FilmBounds(k_spacings, snapshot(build(scene, 1))).box(scene);
 }
 
 bool holds(const Aabb& box, const Vec3& x) {
@@ -70,12 +75,12 @@ TEST(film_bounds, give_a_picture_that_what_the_film_shows_fills_and_never_leaves
                          "0.4], inside = true }\n"}) {
     const Scene scene = scene_of(more);
     for (const float spread : {1.0f, 3.0f, 8.0f}) {
-      FilmBounds bounds;
+      FilmBounds bounds(std::array{spread * 0.1f / 9});  // it does not come apart
       std::vector<ParticleFrame> frames = puddle(spread);
       frames[2].positions[7] = {90, 0, 1};  // flies off alone
       for (const ParticleFrame& frame : frames) bounds.add(frame);
       const render::Camera camera =
-          render::frame_camera(bounds.box(scene, 0.01f), scene.render, visible_colliders(scene));
+          render::frame_camera(bounds.boxes(scene), scene.render, visible_colliders(scene));
       const render::Viewport view(camera, scene.render.width, scene.render.height);
       frames[2].positions[7] = frames[2].positions[8];
       Eigen::Array2f lowest(1e9f, 1e9f), highest = -lowest;
@@ -89,6 +94,101 @@ TEST(film_bounds, give_a_picture_that_what_the_film_shows_fills_and_never_leaves
       EXPECT_GT(((highest - lowest) / sides).maxCoeff(), 0.4f) << "too small, spread " << spread;
     }
   }
+}
+
+/// Where particles are seen: a part of the picture from 0 to 1 along each of its sides.
+struct Seen {
+  Eigen::Array2f lowest = Eigen::Array2f::Constant(1e9f), highest = -lowest;
+  bool whole = true;  ///< whether all of them are in the picture
+  void add(const render::Viewport& view, const Vec3& x) {
+    const auto pixel = view.pixel(x);
+    whole = whole && pixel && (*pixel).x() >= 0 && (*pixel).y() >= 0 && (*pixel).x() <= view.width &&
+            (*pixel).y() <= view.height;
+    if (!pixel) return;
+    const Eigen::Array2f at = pixel->array() / Eigen::Array2f(view.width, view.height);
+    lowest = lowest.min(at.max(0).min(1));
+    highest = highest.max(at.max(0).min(1));
+  }
+  float width() const { return highest.x() - lowest.x(); }
+};
+
+TEST(film_bounds, of_a_splash_crop_drops_alone_and_show_water_a_quarter_wide_in_most_frames) {
+  const Scene scene = parse_scene(
+      "[solver]\ngravity = [0, 0, -9.81]\n[[body]]\nmaterial = \"water\"\nbox = { count = [10, 10, 10], "
+      "spacing = 0.01, corner = [-0.05, -0.05, 0.3] }\n[[collider]]\nplane = {}\n",
+      "scene.toml");
+  Simulation simulation = build(scene, 1);
+  std::vector<ParticleFrame> frames{snapshot(simulation)};
+  FilmBounds bounds(k_spacings, frames.front());
+  while (frames.size() < 26) {
+    simulation.advance(1.0 / 30);
+    bounds.add(frames.emplace_back(snapshot(simulation)));
+  }
+  const render::Viewport view(
+      render::frame_camera(bounds.boxes(scene), scene.render, visible_colliders(scene)), 960, 540);
+  std::size_t wide = 0;
+  for (const ParticleFrame& frame : frames) {
+    const std::vector<bool> large = in_large_pieces(frame, k_spacings);
+    Seen all, pieces;
+    for (std::size_t i = 0; i < frame.positions.size(); ++i) {
+      all.add(view, frame.positions[i]);
+      if (large[i]) pieces.add(view, frame.positions[i]);
+    }
+    EXPECT_TRUE(pieces.whole) << frame.time;
+    EXPECT_GT(all.width(), 0.07f) << frame.time;
+    wide += all.width() > 0.25f ? 1 : 0;
+  }
+  EXPECT_GT(2 * wide, frames.size()) << wide;
+}
+
+TEST(film_bounds, of_what_drips_hold_the_drops_that_all_of_it_became) {
+  FilmBounds bounds(k_spacings);
+  ParticleFrame frame;
+  for (int drop = 0; drop < 40; ++drop) {
+    frame.positions.push_back({0.05f * static_cast<float>(drop), 0, 0});
+    frame.bodies.push_back(0);
+    bounds.add(frame);
+  }
+  const Scene scene = scene_of(k_cube);
+  EXPECT_TRUE(holds(bounds.box(scene), {1.95f, 0, 0}));
+}
+
+/// So many particles in a row, from a place on.
+void add_row(float x, int count, std::uint32_t body, ParticleFrame& frame) {
+  for (int i = 0; i < count; ++i) {
+    frame.positions.push_back({x + 0.011f * static_cast<float>(i), -0.3f, 0.2f});
+    frame.bodies.push_back(body);
+  }
+}
+
+TEST(large_pieces, are_those_with_a_twentieth_of_their_body) {
+  ParticleFrame frame;
+  add_row(0, 89, 0, frame);    // x up to 0.97
+  add_row(1.1f, 4, 0, frame);  // 4 of 100: a drop
+  add_row(-1, 7, 0, frame);    // large
+  add_row(1.2f, 3, 1, frame);  // all of another body
+  add_row(9, 1, 2, frame);     // of a body whose spacing is not known
+  add_row(90, 99, 2, frame);
+  const std::vector<bool> large = in_large_pieces(frame, std::array{0.01f, 0.01f});
+  for (std::size_t i = 0; i < frame.positions.size(); ++i) EXPECT_EQ(large[i], i < 89 || i >= 93) << i;
+  EXPECT_TRUE(in_large_pieces({}, {}).empty());
+}
+
+/// A blob joined by nothing but diagonals, and to within one and a half spacings.
+TEST(large_pieces, hang_together_along_every_direction) {
+  for (int dx = -1; dx <= 1; ++dx)
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dz = -1; dz <= 1; ++dz) {
+        if (dx == 0 && dy == 0 && dz == 0) continue;
+        const Vec3 way =
+            Vec3(static_cast<float>(dx), static_cast<float>(dy), static_cast<float>(dz)).normalized();
+        ParticleFrame frame;
+        for (int i = 0; i < 60; ++i)
+          frame.positions.push_back(Vec3(3, -5, 0) + 0.0149f * static_cast<float>(i) * way);
+        frame.bodies.assign(60, 0);
+        const std::vector<bool> large = in_large_pieces(frame, k_spacings);
+        EXPECT_EQ(std::ranges::count(large, true), 60) << way.transpose();
+      }
 }
 
 }  // namespace film_bounds_test

@@ -175,18 +175,6 @@ TEST(kept_surfaces, consecutive_meshes_of_bodies_at_rest_are_the_same_bits) {
   EXPECT_EQ(same, 3) << "the cubes do not come to rest";
 }
 
-/// Distance of a point from the plane of the nearest vertex.
-float height_above(const Mesh& mesh, const Vec3& x) {
-  float nearest = 1e9f, height = 0;
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const Vec3 d = x - mesh.vertices[v];
-    if (d.squaredNorm() >= nearest) continue;
-    nearest = d.squaredNorm();
-    height = d.dot(mesh.normals[v]);
-  }
-  return std::abs(height);
-}
-
 /// Two balls of one body.
 struct TwoBalls {
   std::vector<Vec3> points = ball(0);

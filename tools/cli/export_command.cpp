@@ -171,7 +171,8 @@ void add_export_command(CLI::App& app) {
       "an OBJ and an animation have none.\n"
       "Temperatures [K] where the scene has heat: temperature in csv, Temperature in vtp.\n"
       "Bodies of particles, counted from 0 as in report.json: Group in vtp, body in csv.\n"
-      "Groups and materials have the names of the scene in obj (materials.mtl), glb and usda.\n"
+      "Groups and materials have the names of the scene in obj (materials.mtl), glb, usda, vtp (field arrays)\n"
+      "and vdb (names and metadata of grids).\n"
       "surface.pvd plays the frames at their simulated times; surface.usda plays them as the film does: a\n"
       "time code is a frame, and velocities are per second of the film.");
   add_frame_options(*command, options->frames);

@@ -128,7 +128,7 @@ class FrameWriter {
   }
   void write_particles(const ParticleFrame& frame, const std::string& format, const fs::path& file) const {
     if (format == "vdb") write_particles_vdb(file, frame, voxel_size_, run_.threads);
-    if (format == "vtp") write_particles_vtp(file, frame);
+    if (format == "vtp") write_particles_vtp(file, frame, bodies_);
     if (format == "csv") write_state_csv(file, frame);
   }
   /// mesh: as the cache has it
@@ -136,15 +136,22 @@ class FrameWriter {
     if (format == "obj")
       write_mesh_obj(file, mesh, {.up = usd_.up, .bodies = bodies_, .material_library = k_materials});
     if (format == "glb") write_mesh_glb(file, mesh, bodies_);
-    if (format == "vtp") write_mesh_vtp(file, turned(mesh));
+    if (format == "vtp") write_mesh_vtp(file, turned(mesh), bodies_);
     if (format == "usda") write_mesh_usda(file, mesh, bodies_, usd_, number);
   }
   /// Level sets are no part of a cache: they are drawn again, with the run's settings.
   void write_level_set(const ParticleFrame& frame, const fs::path& file) {
     SurfaceParticles particles = surface_particles(frame, run_.spacings);
     particles.velocities = {};
+    const std::vector<std::size_t> materials = body_materials(run_.scene);
+    for (SurfaceBody& body : particles.bodies) {
+      body.name = bodies_.at(body.body).name;
+      body.material = static_cast<MaterialId>(materials.at(body.body));
+    }
     surfacer_.draw(particles);
-    write_whole(file, level_set_vdb(surfacer_));
+    std::vector<std::string> names;
+    for (const SceneMaterial& material : run_.scene.materials) names.push_back(material.name);
+    write_whole(file, level_set_vdb(surfacer_, names));
   }
 
  private:

@@ -47,16 +47,12 @@ class FrameReader {
   std::future<Frame> coming_;
 };
 
-/// The camera has what the film shows in view, by up to so many of its frames.
-program::Stills stills_of(const Scene& scene, const program::Cache& cache, const PictureRun& run,
-                          const std::vector<int>& frames) {
+/// The camera has what the run shows in view, by up to so many of its frames, whichever pictures are taken.
+program::Stills stills_of(const Scene& scene, const program::Cache& cache, const PictureRun& run) {
   constexpr std::size_t k_looks = 32;
-  if (scene.render.eye || frames.empty()) {
-    const int first = cache.particle_frames().front();
-    return {scene, read_particles(cache.particles_file(first)), run.spacings, run.threads};
-  }
-  program::FilmBounds bounds;
-  const std::size_t looks = std::min(k_looks, frames.size());
+  const std::vector<int> frames = cache.particle_frames();
+  const std::size_t looks = scene.render.eye ? 1 : std::min(k_looks, frames.size());
+  program::FilmBounds bounds(run.spacings);
   for (std::size_t k = 0; k < looks; ++k)
     bounds.add(
         read_particles(cache.particles_file(frames[looks > 1 ? k * (frames.size() - 1) / (looks - 1) : 0])));
@@ -66,7 +62,7 @@ program::Stills stills_of(const Scene& scene, const program::Cache& cache, const
 /// Ready for pictures of any of `frames`.
 program::Stills prepare(const Scene& scene, const program::Cache& cache, const PictureRun& run,
                         const std::vector<int>& frames) {
-  program::Stills stills = stills_of(scene, cache, run, frames);
+  program::Stills stills = stills_of(scene, cache, run);
   stills.set_frame_time(run.frame_time);
   std::filesystem::create_directories(cache.images_folder());
   cache.remove_images_but(frames);

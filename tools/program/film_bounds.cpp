@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <type_traits>
+
+#include "program/large_pieces.h"
 
 namespace mallow::program {
 namespace {
@@ -62,8 +65,8 @@ Aabb swept(const Shape& shape, const Collider& collider, double last) {
   return box;
 }
 
-/// What is seen of the colliders with what is in the box.
-void add_colliders(const Room& room, double last, Aabb& box) {
+/// Adds what is seen of the colliders with what is in the box.
+void add_colliders(const Room& room, double last, const Aabb& box, std::vector<Aabb>& boxes) {
   // A collider far larger than what moves is a part of the room and does not have to be seen whole, one that
   // is moved through keyframes and is no larger is a tool, and is.
   const float size = longest_side(box);
@@ -77,21 +80,34 @@ void add_colliders(const Room& room, double last, Aabb& box) {
       const Aabb whole = swept(shape, collider, last);
       const Aabb& seen = is_tool ? far : near;
       const auto clamped = [&](const Vec3& x) -> Vec3 { return x.cwiseMax(seen.min).cwiseMin(seen.max); };
-      extend(box, {clamped(whole.min), clamped(whole.max)});
+      boxes.push_back({clamped(whole.min), clamped(whole.max)});
     });
 }
 
-/// The particles of a frame without those far from all others.
-Aabb most_of(const ParticleFrame& frame) {
+/// A box around boxes, of which there is one at least.
+Aabb around(std::span<const Aabb> boxes) {
+  Aabb box = boxes.front();
+  for (const Aabb& other : boxes) extend(box, other);
+  return box;
+}
+
+/// The bounds of positions, of which there is one at least.
+Aabb bounds_of(const std::vector<Vec3>& positions) {
+  Aabb box{positions.at(0), positions.at(0)};
+  for (const Vec3& x : positions) extend(box, {x, x});
+  return box;
+}
+
+/// The bounds of positions without those far from all others.
+Aabb most_of(const std::vector<Vec3>& positions) {
   constexpr std::size_t k_rare = 100;  // one in so many may be far away
-  Aabb box{frame.positions.at(0), frame.positions.at(0)};
-  for (const Vec3& x : frame.positions) extend(box, {x, x});
-  const std::size_t rare = frame.positions.size() / k_rare;
+  const Aabb box = bounds_of(positions);
+  const std::size_t rare = positions.size() / k_rare;
   if (rare == 0) return box;
   Aabb most;
-  std::vector<float> values(frame.positions.size());
+  std::vector<float> values(positions.size());
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    std::ranges::transform(frame.positions, values.begin(), [&](const Vec3& x) { return x[axis]; });
+    std::ranges::transform(positions, values.begin(), [&](const Vec3& x) { return x[axis]; });
     const auto low = values.begin() + static_cast<std::ptrdiff_t>(rare);
     const auto high = values.end() - 1 - static_cast<std::ptrdiff_t>(rare);
     std::nth_element(values.begin(), low, values.end());
@@ -103,6 +119,15 @@ Aabb most_of(const ParticleFrame& frame) {
   return {box.min.cwiseMax(most.min - reach), box.max.cwiseMin(most.max + reach)};
 }
 
+/// What drops and crumbs reach that are not far from the large pieces.
+void add_near(const std::vector<Vec3>& drops, Aabb& box) {
+  constexpr float k_near = 0.25f;  // of the longest side
+  const Vec3 reach = Vec3::Constant(k_near * longest_side(box));
+  const Aabb near{box.min - reach, box.max + reach};
+  for (const Vec3& x : drops)
+    if ((x.array() >= near.min.array()).all() && (x.array() <= near.max.array()).all()) extend(box, {x, x});
+}
+
 }  // namespace
 
 std::vector<Collider> visible_colliders(const Scene& scene) {
@@ -112,37 +137,64 @@ std::vector<Collider> visible_colliders(const Scene& scene) {
   return colliders;
 }
 
-void FilmBounds::add(const ParticleFrame& frame) {
-  if (frame.positions.empty()) return;
-  const Aabb box = most_of(frame);
-  if (!box_) box_ = box;
-  extend(*box_, box);
-  last_time_ = std::max(last_time_, frame.time);
+void FilmBounds::Reach::add(const Aabb& frame, std::size_t count) {
+  boxes.push_back(frame);
+  particles = std::max(particles, count);
 }
 
-Aabb FilmBounds::box(const Scene& scene, float spacing) const {
-  if (!box_) return {{-1, -1, -1}, {1, 1, 1}};
+void FilmBounds::add(const ParticleFrame& frame) {
+  const std::size_t count = frame.positions.size();
+  if (count == 0) return;
+  last_time_ = std::max(last_time_, frame.time);
+  all_.add(most_of(frame.positions), count);
+  const std::vector<bool> large = in_large_pieces(frame, spacings_);
+  std::vector<Vec3> pieces, drops;
+  for (std::size_t i = 0; i < count; ++i) (large[i] ? pieces : drops).push_back(frame.positions[i]);
+  if (2 * pieces.size() < count) return;  // it has come apart
+  Aabb box = most_of(pieces);
+  add_near(drops, box);
+  whole_.add(box, count);
+}
+
+const std::vector<Aabb>& FilmBounds::reached() const {
+  // What drips from a nozzle holds together only as long as it is little: it is seen wherever it goes.
+  return 10 * whole_.particles >= 9 * all_.particles ? whole_.boxes : all_.boxes;
+}
+
+std::vector<Aabb> FilmBounds::boxes(const Scene& scene) const {
+  std::vector<Aabb> boxes = reached();
+  if (boxes.empty()) return {{{-1, -1, -1}, {1, 1, 1}}};
   // The surface is half a spacing and a little outside of the particles.
-  const Vec3 skin = Vec3::Constant(0.75f * spacing);
-  Aabb box{box_->min - skin, box_->max + skin};
+  const Vec3 skin = Vec3::Constant(spacings_.empty() ? 0 : 0.75f * *std::ranges::min_element(spacings_));
+  for (Aabb& box : boxes) box = {box.min - skin, box.max + skin};
+  Aabb all = around(boxes);
   const Room room(scene);
   float lowest = -std::numeric_limits<float>::infinity();
   for (const Plane& plane : room.grounds) {
-    const Vec3 middle = 0.5f * (box.min + box.max);
+    const Vec3 middle = 0.5f * (all.min + all.max);
     const Vec3 foot(middle.x(), middle.y(), ground_height(plane, middle));
-    lowest = std::max(lowest, std::min(foot.z(), box.min.z()));
+    lowest = std::max(lowest, std::min(foot.z(), all.min.z()));
     // How high something hangs is seen where the ground is near.
-    if (box.min.z() - foot.z() < 2 * longest_side(box)) extend(box, {foot, foot});
+    if (all.min.z() - foot.z() >= 2 * longest_side(all)) continue;
+    boxes.push_back({foot, foot});
+    extend(all, boxes.back());
   }
-  add_colliders(room, last_time_, box);
-  box.min.z() = std::max(box.min.z(), lowest);
-  return box;
+  add_colliders(room, last_time_, all, boxes);
+  for (Aabb& box : boxes) {
+    box.min.z() = std::max(box.min.z(), lowest);
+    box.max.z() = std::max(box.max.z(), lowest);
+  }
+  return boxes;
+}
+
+Aabb FilmBounds::box(const Scene& scene) const {
+  return around(boxes(scene));
 }
 
 Aabb bounds_now(const Scene& scene, Simulation& simulation) {
-  float spacing = std::numeric_limits<float>::infinity();
-  for (const BodyInfo& body : simulation.info().bodies) spacing = std::min(spacing, body.spacing);
-  Aabb box = FilmBounds(snapshot(simulation)).box(scene, std::isfinite(spacing) ? spacing : 0.0f);
+  std::vector<float> spacings;
+  for (const BodyInfo& body : simulation.info().bodies) spacings.push_back(body.spacing);
+  Aabb box = FilmBounds(spacings, snapshot(simulation)).box(scene);
   const Vec3 middle = 0.5f * (box.min + box.max);
   for (const Plane& plane : Room(scene).grounds)
     if (const Vec3 foot(middle.x(), middle.y(), ground_height(plane, middle)); foot.z() < middle.z())

@@ -1,25 +1,42 @@
 #pragma once
 
-#include <optional>
+#include <cstddef>
+#include <span>
+#include <vector>
 
 #include "mallow/files.h"
 #include "mallow/scene.h"
 
 namespace mallow::program {
 
-/// What the camera has to have in view through a film: what particles reach in its frames, but for the few
-/// that fly off alone, the ground near below, and the visible colliders near by, where their keyframes take
-/// them too.
+/// What the camera has to have in view through a film: what particles reach in its frames, but for drops that
+/// fly off, the ground near below, and the visible colliders near by, where their keyframes take them too. A
+/// splash is seen as far as most of it holds together: pieces of less than a twentieth of their body leave
+/// the picture, as all do once they are what most of the frame is.
 class FilmBounds {
  public:
-  FilmBounds() = default;
-  explicit FilmBounds(const ParticleFrame& only) { add(only); }
+  /// spacings: of the particles of each body [m]; a body without one does not come apart.
+  explicit FilmBounds(std::span<const float> spacings) : spacings_(spacings.begin(), spacings.end()) {}
+  FilmBounds(std::span<const float> spacings, const ParticleFrame& only) : FilmBounds(spacings) { add(only); }
   void add(const ParticleFrame& frame);
-  /// spacing: of particles, at least [m]. Something around 0 where no frame had any particles.
-  Aabb box(const Scene& scene, float spacing) const;
+  /// What a frame each reaches, and what is seen beside it: together smaller than one box around all of it.
+  /// Something around 0 where no frame had any particles.
+  std::vector<Aabb> boxes(const Scene& scene) const;
+  /// One around them.
+  Aabb box(const Scene& scene) const;
 
  private:
-  std::optional<Aabb> box_;
+  /// What frames reach, and the most particles that one of them has.
+  struct Reach {
+    std::vector<Aabb> boxes = {};
+    std::size_t particles = 0;
+    void add(const Aabb& frame, std::size_t count);
+  };
+  const std::vector<Aabb>& reached() const;
+
+  std::vector<float> spacings_;
+  Reach whole_;           ///< of frames that hold together, without drops
+  Reach all_;             ///< of all frames
   double last_time_ = 0;  ///< [s]
 };
 

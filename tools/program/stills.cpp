@@ -35,11 +35,11 @@ Stills::Stills(const Scene& scene, const FilmBounds& film, std::span<const float
       renderer_(of_scene(scene), threads),
       palette_(body_appearances(scene)),
       ball_radius_(0.5f * *std::min_element(spacings.begin(), spacings.end())) {
-  camera_ = render::frame_camera(film.box(scene, 2 * ball_radius_), scene.render, visible_colliders(scene));
+  camera_ = render::frame_camera(film.boxes(scene), scene.render, visible_colliders(scene));
 }
 
 Stills::Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads)
-    : Stills(scene, FilmBounds(first), spacings, threads) {}
+    : Stills(scene, FilmBounds(spacings, first), spacings, threads) {}
 
 render::Image Stills::take(const ParticleFrame& frame, const Mesh& surface) {
   const std::vector<Collider> colliders = colliders_at(scene_, frame.time);

@@ -72,7 +72,15 @@ Vec3 view_side(std::span<const Collider> colliders) {
 
 }  // namespace
 
-Camera frame_camera(const Aabb& bounds, const RenderConfig& config, std::span<const Collider> colliders) {
+Camera frame_camera(const Aabb& scene_bounds, const RenderConfig& config,
+                    std::span<const Collider> colliders) {
+  return frame_camera(std::span(&scene_bounds, 1), config, colliders);
+}
+
+Camera frame_camera(std::span<const Aabb> boxes, const RenderConfig& config,
+                    std::span<const Collider> colliders) {
+  Aabb bounds = boxes.front();
+  for (const Aabb& box : boxes) bounds = {bounds.min.cwiseMin(box.min), bounds.max.cwiseMax(box.max)};
   Camera camera;
   camera.field_of_view = config.field_of_view;
   const Vec3 middle = (bounds.min + bounds.max) / 2;
@@ -90,13 +98,14 @@ Camera frame_camera(const Aabb& bounds, const RenderConfig& config, std::span<co
   const float slope_y = k_fill * view.up.norm();
   Sides horizontal, vertical;
   const float half_diagonal = std::max((bounds.max - bounds.min).norm() / 2, 1e-3f);
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3 offset;
-    for (int axis = 0; axis < 3; ++axis)
-      offset[axis] = (corner >> axis & 1 ? bounds.max : bounds.min)[axis] - origin[axis];
-    horizontal.add(offset.dot(view.right.normalized()), offset.dot(forward), slope_x);
-    vertical.add(offset.dot(view.up.normalized()), offset.dot(forward), slope_y);
-  }
+  for (const Aabb& box : boxes)
+    for (int corner = 0; corner < 8; ++corner) {
+      Vec3 offset;
+      for (int axis = 0; axis < 3; ++axis)
+        offset[axis] = (corner >> axis & 1 ? box.max : box.min)[axis] - origin[axis];
+      horizontal.add(offset.dot(view.right.normalized()), offset.dot(forward), slope_x);
+      vertical.add(offset.dot(view.up.normalized()), offset.dot(forward), slope_y);
+    }
   if (config.target) {
     const float distance = std::max({horizontal.above / slope_x, horizontal.below / slope_x,
                                      vertical.above / slope_y, vertical.below / slope_y, half_diagonal});

@@ -35,6 +35,9 @@ struct Camera {
 /// gives is kept; so is an eye, and then nothing is promised about the margin.
 Camera frame_camera(const Aabb& scene_bounds, const RenderConfig& config,
                     std::span<const Collider> colliders = {});
+/// The same for several boxes, at least one, which may leave out corners of the one around them.
+Camera frame_camera(std::span<const Aabb> boxes, const RenderConfig& config,
+                    std::span<const Collider> colliders = {});
 
 /// Draws frames of one scene. The picture depends on the input and the machine, never on the number of
 /// threads. Lengths of the look (softness of the fade, translucency) follow from the camera, so keep it for a

@@ -45,11 +45,10 @@ bool parts_again(const std::vector<double>& differences) {
 
 /// The pixels of the scene's camera.
 PixelOf camera_of(const Scene& scene, const Motion& motion) {
-  program::FilmBounds film;
+  program::FilmBounds film(motion.spacings);
   for (const MotionMoment& moment : motion.moments) film.add(moment.particles);
-  const float h = motion.spacings.empty() ? 1 : *std::ranges::min_element(motion.spacings);
   const auto camera =
-      render::frame_camera(film.box(scene, h), scene.render, program::visible_colliders(scene));
+      render::frame_camera(film.boxes(scene), scene.render, program::visible_colliders(scene));
   return [viewport = render::Viewport(camera, scene.render.width, scene.render.height)](
              const Vec3& x) -> std::optional<Eigen::Vector2d> {
     const auto pixel = viewport.pixel(x);

@@ -213,12 +213,17 @@ MALLOW_EXPORT void write_mesh_usda(const std::filesystem::path& file, const Mesh
                                    std::optional<int> frame = {});
 
 /// VTK's XML PolyData, triangles with the point arrays Normals, Velocity and Material where the mesh has
-/// them. Material and Group are UInt8 where all are below 256, UInt32 where not.
-MALLOW_EXPORT void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh);
+/// them. Material and Group are UInt8 where all are below 256, UInt32 where not. bodies: field arrays of
+/// text, BodyNames and MaterialNames, say of each by its number, which is what Material and Group hold, what
+/// it and its material are called; none: no such arrays. Throws ConfigError where there are bodies, and too
+/// few of them.
+MALLOW_EXPORT void write_mesh_vtp(const std::filesystem::path& file, const Mesh& mesh,
+                                  std::span<const MeshBody> bodies = {});
 
 /// VTK's XML PolyData, vertices with the point arrays Velocity, Group, which is the body, and Id, and Alpha
-/// and Temperature where the frame has them.
-MALLOW_EXPORT void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame& frame);
+/// and Temperature where the frame has them; bodies as in write_mesh_vtp().
+MALLOW_EXPORT void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame& frame,
+                                       std::span<const MeshBody> bodies = {});
 /// OpenVDB points, see points_vdb() in mallow/level_set.h for the attributes and for what is thrown.
 /// voxel_size: [m], > 0; twice the spacing gives about 8 points a voxel.
 MALLOW_EXPORT void write_particles_vdb(const std::filesystem::path& file, const ParticleFrame& frame,

@@ -35,9 +35,11 @@ MALLOW_EXPORT ImplicitShape mesh_shape(const Mesh& mesh, int voxels = k_mesh_vox
 MALLOW_EXPORT DistanceField mesh_collider(const Mesh& mesh, int voxels = k_mesh_collider_voxels,
                                           bool inside = false, int threads = 0);
 
-/// The level sets of the frame drawn last as the content of a VDB file: grids "surface", or "surface_0" and
-/// on where there are several surfaces; see level_set() in mallow/openvdb.h.
-MALLOW_EXPORT std::string level_set_vdb(const Surfacer& surfacer);
+/// The level sets of the frame drawn last as the content of a VDB file, grids as level_set() in
+/// mallow/openvdb.h gives them. materials: what materials are called, by MaterialId; grids whose material has
+/// a name there say it in the metadata `material`.
+MALLOW_EXPORT std::string level_set_vdb(const Surfacer& surfacer,
+                                        std::span<const std::string> materials = {});
 
 /// Points as the content of a VDB file: a PointDataGrid "particles" with the attributes v [m/s] (the name
 /// that Houdini knows velocity by), group, which is the body, and id. positions: [m]; ids are their indices.

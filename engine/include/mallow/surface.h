@@ -97,7 +97,9 @@ struct SurfacePart {
 /// Draws the surfaces of one frame after another, and keeps its memory from frame to frame. A mesh is closed,
 /// manifold and oriented; its vertices have normals, material ids, which are bodies, and, where particles
 /// have them, velocities. Same particles, same bits, for any number of threads. Surfaces whose particles are
-/// bit by bit those of the frame before, as of bodies that sleep, are not drawn again but kept.
+/// bit by bit those of the frame before, as of bodies that sleep, are not drawn again but kept. Of bodies
+/// whose surfaces are joined nothing is kept once a particle of any moves, and nothing of all where voxels
+/// are a count (SurfaceConfig::voxels) and the box changes.
 class MALLOW_EXPORT Surfacer {
  public:
   /// threads, executor: as in SolverConfig. Throws ConfigError where a value is out of range.

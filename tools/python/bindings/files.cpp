@@ -79,7 +79,12 @@ void bind_particles(py::module_& module) {
   };
   writer("write_particles", &write_particles);
   writer("write_state_csv", &write_state_csv);
-  writer("write_particles_vtp", &write_particles_vtp);
+  module.def(
+      "write_particles_vtp",
+      [](const Path& file, const ParticleFrame& frame, const Bodies& bodies) {
+        write_particles_vtp(file, frame, bodies);
+      },
+      py::arg("file"), py::arg("frame"), py::arg("bodies") = Bodies{}, doc("write_particles_vtp"));
   module.def("read_particles", &read_particles, py::arg("file"), doc("read_particles"));
   module.def("write_particles_vdb", &write_particles_vdb, py::arg("file"), py::arg("frame"),
              py::arg("voxel_size"), py::arg("threads") = 0, doc("write_particles_vdb"));
@@ -109,8 +114,10 @@ void bind_mesh_files(py::module_& module) {
       py::arg("mesh"), doc("write_mesh_ply"));
   module.def(
       "write_mesh_vtp",
-      [](const Path& file, const MeshObject& mesh) { write_mesh_vtp(file, mesh.checked()); }, py::arg("file"),
-      py::arg("mesh"), doc("write_mesh_vtp"));
+      [](const Path& file, const MeshObject& mesh, const Bodies& bodies) {
+        write_mesh_vtp(file, mesh.checked(), bodies);
+      },
+      py::arg("file"), py::arg("mesh"), py::arg("bodies") = Bodies{}, doc("write_mesh_vtp"));
   module.def(
       "write_mesh_obj",
       [](const Path& file, const MeshObject& mesh, UpAxis up, const Bodies& bodies,

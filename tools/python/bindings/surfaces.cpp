@@ -139,11 +139,11 @@ void bind_surfacer(py::module_& module) {
           doc("Surfacer.surface_count"))
       .def(
           "level_set_vdb",
-          [](SurfacerCell& self) {
+          [](SurfacerCell& self, const std::vector<std::string>& materials) {
             const Use use = self.use(true);
-            return py::bytes(level_set_vdb(self.surfacer));
+            return py::bytes(level_set_vdb(self.surfacer, materials));
           },
-          doc("level_set_vdb"))
+          py::arg("materials") = std::vector<std::string>{}, doc("level_set_vdb"))
       .def(
           "bytes",
           [](SurfacerCell& self) {
@@ -152,8 +152,11 @@ void bind_surfacer(py::module_& module) {
           },
           doc("Surfacer.bytes"));
   module.def(
-      "level_set_vdb", [](const py::object& surfacer) { return surfacer.attr("level_set_vdb")(); },
-      py::arg("surfacer"), doc("level_set_vdb"));
+      "level_set_vdb",
+      [](const py::object& surfacer, const std::vector<std::string>& materials) {
+        return surfacer.attr("level_set_vdb")(materials);
+      },
+      py::arg("surfacer"), py::arg("materials") = std::vector<std::string>{}, doc("level_set_vdb"));
   module.def(
       "surface",
       [](const std::vector<Vec3> positions, float spacing, const SurfaceConfig config, int threads) {
