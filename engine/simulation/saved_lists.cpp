@@ -254,13 +254,14 @@ void pass_events(Archive& archive, State& state) {
     archive(contact.apart);
   });
   // A step that failed leaves those of bodies that it joined.
-  pass_list(archive, state.next_events, 18, [&](auto& event) {
+  pass_list(archive, state.next_events, 26, [&](auto& event) {
     auto kind = static_cast<std::uint8_t>(event.kind);
     std::optional<std::uint64_t> other = std::nullopt;
     if (event.other) other = static_cast<std::uint64_t>(*event.other);
     archive(kind);
     pass_id(archive, event.body);
     archive(event.parts);
+    archive(event.crumbs);
     archive(other);
     if constexpr (!Archive::k_packs) {
       if (kind > static_cast<std::uint8_t>(BodyEvent::Kind::merged))

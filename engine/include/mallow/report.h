@@ -73,6 +73,7 @@ struct BodyEvent {
   /// Of torn and merged: those that it has now. Particles are in one part where they share a region of shape
   /// matching, directly or through others; parts of fewer than four particles are crumbs and not counted.
   std::size_t parts = 0;
+  std::size_t crumbs = 0;  ///< likewise: those crumbs
   /// Of a contact between bodies: greater than `body`. Of merged: the body that has become part of `body` and
   /// is no more, see Body::merges; none where parts of one body merged.
   std::optional<BodyId> other = {};

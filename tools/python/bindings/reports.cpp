@@ -107,6 +107,7 @@ void bind_events(py::module_& module) {
   event.field("kind", &BodyEvent::kind)
       .field("body", &BodyEvent::body)
       .field("parts", &BodyEvent::parts)
+      .field("crumbs", &BodyEvent::crumbs)
       .field("other", &BodyEvent::other)
       .field("collider", &BodyEvent::collider)
       .field("position", &BodyEvent::position)
