@@ -63,6 +63,7 @@ std::vector<Call> calls_with_bodies() {
   add_stale(calls, "bounds", [](Simulation& s, BodyId id) { s.bounds(id); });
   add_stale(calls, "motion", [](Simulation& s, BodyId id) { s.motion(id); });
   add_stale(calls, "energy", [](Simulation& s, BodyId id) { s.energy(id); });
+  add_stale(calls, "volume", [](Simulation& s, BodyId id) { s.volume(id); });
   add_stale(calls, "wake", [](Simulation& s, BodyId id) { s.wake(id); });
   add_stale(calls, "is_awake", [](Simulation& s, BodyId id) { s.is_awake(id); });
   add_stale(calls, "enable", [](Simulation& s, BodyId id) { s.enable(id, false); });

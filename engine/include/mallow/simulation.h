@@ -423,6 +423,13 @@ class MALLOW_EXPORT Simulation {
   /// Those of one body, pinned particles left out; as costly, for its particles. Throws ConfigError where
   /// there is none of this id.
   Energy energy(BodyId body) const;
+  /// The space that a body takes up [m³]. Where SPH ran in the last step, of its particles by their
+  /// densities, mass over density, one that is less dense than at rest as at rest: how it is compressed, not
+  /// how it is stretched. Else, where shapes are matched, of its particles at rest times the mean determinant
+  /// of the affine maps that take regions from their rest shapes to where they are: a reference shape that
+  /// has given way to a compressed one knows of that no more. Else of its particles at rest. Summed in
+  /// double, as slow as energy(), and throws as that does.
+  double volume(BodyId body) const;
 
   /// 64 bits of positions and velocities in id order, time and step: equal states have equal hashes.
   std::uint64_t state_hash() const;
