@@ -46,6 +46,13 @@ int update_references(Simulation::State& state);
 void sort_fluids(Simulation::State& state);
 /// What moves beside them, or has changed, wakes bodies -> those that move in this step.
 void wake_bodies(Simulation::State& state);
+/// A body sleeps that is slower than this [m/s] for so long [s], with all that it touches; 0: it never does.
+double sleep_speed(const Simulation::State& state, const BodyState& body);
+double sleep_time(const Simulation::State& state, const BodyState& body);
+/// Bodies that have fallen asleep in this step go on giving colliders what they gave them in it.
+void keep_loads(Simulation::State& state, double time_step);
+/// The loads of a step begin with those of what sleeps.
+void add_resting_loads(Simulation::State& state, double time_step);
 /// speeds -> bodies that have been slow for long, with all that they touch, sleep: their velocities are 0.
 void rest_bodies(Simulation::State& state, float time_step);
 /// positions, colliders -> what walls hold of the volume around the particles of fluids. [model 2, section 2]

@@ -69,6 +69,11 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   archive(body.hit_impulse);
   archive(body.island);
   archive(body.slow_time);
+  pass_list(archive, body.resting, 56, [&](auto& resting) {
+    archive(resting.collider);
+    archive.array(resting.load.impulse.data(), 3);
+    archive.array(resting.load.torque.data(), 3);
+  });
   archive(body.begin);
   archive(body.end);
   archive(body.spacing);
@@ -108,6 +113,9 @@ void require_valid(const UnpackingArchive& archive, const Simulation::State& sta
   require(!body.hit_impulse || *body.hit_impulse >= 0, "the impulse that it tells of must be 0 or above");
   require(std::isfinite(body.slow_time) && body.slow_time >= 0,
           "the time that it has been slow must be finite and 0 or above");
+  for (const BodyState::RestingLoad& resting : body.resting)
+    require(resting.load.impulse.allFinite() && resting.load.torque.allFinite(),
+            "what it gives colliders while it sleeps must be finite");
   for (const float value : {body.spacing, body.mass, body.rest_density})
     require(std::isfinite(value) && value > 0,
             "spacing, particle mass and rest density must be finite and above 0");

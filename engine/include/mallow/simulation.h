@@ -338,8 +338,9 @@ class MALLOW_EXPORT Simulation {
   /// Of each of colliders().
   std::vector<ColliderId> collider_ids() const;
   const Collider& collider(ColliderId id) const;  ///< throws ConfigError where there is none
-  /// What particles gave a collider in the last step; zeros before the first. Its measure_load must be set:
-  /// else ConfigError. Summed in double, in an order that does not depend on the number of threads.
+  /// What particles gave a collider in the last step; zeros before the first. What sleeps goes on pushing as
+  /// it did in the step after which it fell asleep. Its measure_load must be set: else ConfigError. Summed in
+  /// double, in an order that does not depend on the number of threads.
   ColliderLoad load(ColliderId id) const;
 
   /// The particle of each row; sorting moves rows, never ids.

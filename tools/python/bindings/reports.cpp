@@ -138,6 +138,8 @@ void bind_infos(py::module_& module) {
       .field("average_neighbors", &BodyInfo::average_neighbors)
       .field("regions", &BodyInfo::regions)
       .field("shape_matching", &BodyInfo::shape_matching)
+      .field("sleep_speed", &BodyInfo::sleep_speed)
+      .field("sleep_time", &BodyInfo::sleep_time)
       .done();
   Struct<SimulationInfo>(module, "SimulationInfo", Change::frozen)
       .field("particles", &SimulationInfo::particles)
