@@ -286,6 +286,20 @@ const Emitter& Simulation::emitter(EmitterId id) const {
   return state_->emitters[place_of(*state_, id)].settings;
 }
 
+std::vector<EmitterId> Simulation::emitter_ids() const {
+  std::vector<EmitterId> ids;
+  for (const EmitterState& emitter : state_->emitters) ids.push_back(emitter.id);
+  return ids;
+}
+
+std::vector<ParticleId> Simulation::held(EmitterId id) const {
+  std::vector<ParticleId> ids;
+  for (const std::vector<ParticleId>& layer : state_->emitters[place_of(*state_, id)].held)
+    std::ranges::copy_if(layer, std::back_inserter(ids),
+                         [&](ParticleId held) { return state_->store.slots.find(held).has_value(); });
+  return ids;
+}
+
 void Simulation::set_flow(EmitterId id, const Schedule& speed, const Vec3& velocity) {
   state_->refuse_in_callback();
   EmitterState& emitter = state_->emitters[place_of(*state_, id)];

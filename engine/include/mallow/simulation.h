@@ -186,6 +186,11 @@ class MALLOW_EXPORT Simulation {
   BodyId body(EmitterId emitter) const;
   /// As it is now, where it has moved.
   const Emitter& emitter(EmitterId emitter) const;
+  /// Those that there are, in the order in which they were added.
+  std::vector<EmitterId> emitter_ids() const;
+  /// Particles of the layers that have not passed the nozzle, the next to leave first. Throws ConfigError
+  /// where there is none of this id.
+  std::vector<ParticleId> held(EmitterId emitter) const;
   /// How fast the strand leaves it, and how fast the nozzle itself moves, from now on [m/s]. It has no
   /// keyframes then.
   void set_flow(EmitterId emitter, const Schedule& speed, const Vec3& velocity = {0, 0, 0});
