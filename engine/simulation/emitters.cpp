@@ -201,14 +201,26 @@ std::size_t place_of(const Simulation::State& s, EmitterId id) {
   throw ConfigError("emitter", "there is no emitter " + std::to_string(number) + ", or no longer");
 }
 
-void check_emitter(const Emitter& emitter) {
+void check_speed(const Simulation::State& s, const Emitter& emitter, Checks& checks) {
+  const double own = emitter.velocity.cast<double>().norm();
+  check_speed(s, "emitter.speed", static_cast<double>(emitter.speed.highest()) + own, checks);
+}
+
+void check_emitter(const Simulation::State& s, const Emitter& emitter) {
   Checks checks;
   check(emitter, checks);
   check_poses("emitter", emitter.pose, emitter.keyframes, checks);
+  check_speed(s, emitter, checks);
   checks.finish();
 }
 
 }  // namespace
+
+void check_emitters(const Simulation::State& s) {
+  Checks checks;
+  for (const EmitterState& emitter : s.emitters) check_speed(s, emitter.settings, checks);
+  checks.finish();
+}
 
 void flow(Simulation::State& s) {
   // Whoever removes its body, or lets go what it holds, takes an emitter with it.
@@ -258,7 +270,7 @@ void move_emitters(Simulation::State& s, double end, double time_step) {
 EmitterId Simulation::add_emitter(const Emitter& settings, MaterialId material, std::string name) {
   state_->refuse_in_callback();
   State& s = *state_;
-  check_emitter(settings);
+  check_emitter(s, settings);
   EmitterState emitter{.id = EmitterId{s.emitter_count}, .settings = settings};
   if (!settings.keyframes.empty()) {
     emitter.settings.pose = pose_at(settings.keyframes, s.time);
@@ -307,7 +319,7 @@ void Simulation::set_flow(EmitterId id, const Schedule& speed, const Vec3& veloc
   settings.speed = speed;
   settings.velocity = velocity;
   settings.keyframes.clear();
-  check_emitter(settings);
+  check_emitter(*state_, settings);
   emitter.settings = settings;
 }
 

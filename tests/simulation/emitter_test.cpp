@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <vector>
 
 #include "mallow/errors.h"
 #include "mallow/simulation.h"
+#include "refusal.h"
 
 namespace mallow {
 namespace emitter_test {
@@ -314,6 +317,13 @@ TEST(emitter, is_refused_where_it_is_wrong) {
       {[](Emitter& e) { e.spacing = 0; }, "emitter.spacing"},
       {[](Emitter& e) { e.radius = 1e6f; }, "emitter.spacing: makes layers of over a million"},
       {[](Emitter& e) { e.pose.rotation.setZero(); }, "emitter.pose.rotation"},
+      {[](Emitter& e) {
+         e.radius = {};
+         e.points = {{0, 0, 0}, {1, 0, 5}, {2, 0, 0}, {1.06f, 0.03f, 0}};
+       },
+       "emitter.points: points 1 (1 0 5) and 3 (1.06 0.03    0) are 0.0670"},
+      {[](Emitter& e) { e.speed = 1e30f; },
+       "emitter.speed: 1e+30 m/s is not allowed: no step carries more than"},
       {[](Emitter& e) { e.jitter = 1; }, "emitter.jitter"},
       {[](Emitter& e) { e.most_particles = 0; }, "emitter.most_particles"},
   };
