@@ -130,8 +130,9 @@ TEST_F(cli_checkpoint, run_of_so_many_steps_goes_on_to_the_same_state) {
   ASSERT_EQ(running.wait().exit_code, 128 + SIGINT);
   ASSERT_EQ(resume("out", {"--state-out", at("state.csv")}).exit_code, 0);
   EXPECT_EQ(read_text(at("state.csv")), read_text(at("whole.csv")));
-  EXPECT_EQ(names_in(at("out")), (std::vector<std::string>{".mallow-run", "checkpoint", "particles",
-                                                           "report.json", "scene.toml", "summary.html"}));
+  EXPECT_EQ(names_in(at("out")),
+            (std::vector<std::string>{".mallow-run", "checkpoint", "checkpoint.previous", "particles",
+                                      "report.json", "scene.toml", "summary.html"}));
 }
 
 TEST_F(cli_checkpoint, are_written_every_so_many_frames_and_a_run_can_be_made_longer) {

@@ -173,7 +173,8 @@ material = "paste"
 radius = 1.5
 spacing = 1.0
 speed = 1.0
-pose = { translation = [0, 0, 10], rotation = [1, 0, 0, 0] }
+translate = [0, 0, 10]
+rotate = [180, 0, 0]
 )");
   ASSERT_EQ(run_mallow({"run", at("nozzle.toml"), "--frames", "4", "--series", at("a.csv")}).exit_code, 0);
   const auto series = columns(read_text(at("a.csv")));
