@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
+#include <vector>
 
 #include "config/field_checks.h"
 #include "config/field_tables.h"
@@ -186,6 +188,34 @@ void check_elasticity(const SolverConfig& config, const Material& material, cons
   checks.problem("body.stiffness", text.str());
 }
 
+namespace {
+
+/// Points of a nozzle at least a tenth of the spacing apart, as particles are.
+void check_apart(const Emitter& emitter, Checks& checks) {
+  const std::vector<Vec3>& points = emitter.points;
+  // Less what rounding takes: where they come into the world they are looked at again.
+  const double least = 0.1 * (1 - 1e-5) * static_cast<double>(emitter.spacing);
+  std::vector<std::size_t> by_x(points.size());
+  std::iota(by_x.begin(), by_x.end(), std::size_t{0});
+  std::ranges::stable_sort(by_x, {}, [&](std::size_t k) { return points[k].x(); });
+  for (std::size_t a = 0; a < by_x.size(); ++a)
+    for (std::size_t b = a + 1; b < by_x.size(); ++b) {
+      const Vec3 from = points[by_x[b]] - points[by_x[a]];
+      if (!(static_cast<double>(from.x()) < least)) break;
+      const double distance = std::hypot(static_cast<double>(from.x()), static_cast<double>(from.y()));
+      if (!(distance < least)) continue;
+      const auto [first, second] = std::minmax(by_x[a], by_x[b]);
+      std::ostringstream text;
+      text << "points " << first << " (" << points[first].transpose() << ") and " << second << " ("
+           << points[second].transpose() << ") are " << distance
+           << " m apart across the flow, at least a tenth of the spacing ("
+           << 0.1 * static_cast<double>(emitter.spacing) << " m) is needed";
+      return checks.problem("emitter.points", text.str());
+    }
+}
+
+}  // namespace
+
 void check(const Emitter& emitter, Checks& checks) {
   check_fields("emitter.", emitter, checks);
   const bool corners = emitter.width || emitter.height;
@@ -218,6 +248,7 @@ void check(const Emitter& emitter, Checks& checks) {
   }
   for (const Vec3& x : emitter.points)
     if (!x.allFinite()) return checks.vector("emitter.points", x);
+  check_apart(emitter, checks);
 }
 
 void check(const Body& body, Checks& checks) {

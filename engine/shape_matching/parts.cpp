@@ -22,8 +22,11 @@ void find_parts(const ShapeMatching& shape, Parts& parts) {
     }
   parts.number.assign(n, 0);
   for (std::uint32_t i = 0; i < n; ++i) ++parts.number[sets.root(i)];
-  parts.count = 0;
-  for (const std::uint32_t size : parts.number) parts.count += size >= k_crumb;
+  parts.count = parts.crumbs = 0;
+  for (const std::uint32_t size : parts.number) {
+    parts.count += size >= k_crumb;
+    parts.crumbs += size > 0 && size < k_crumb;
+  }
   parts.of.resize(n);
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t root = sets.root(i);
@@ -35,6 +38,7 @@ void append_parts(const Parts& behind, Parts& parts) {
   const auto n = static_cast<std::uint32_t>(parts.of.size());
   for (const std::uint32_t root : behind.of) parts.of.push_back(root == Parts::k_none ? root : n + root);
   parts.count += behind.count;
+  parts.crumbs += behind.crumbs;
 }
 
 void sort_parts(std::span<const std::uint32_t> order, Parts& parts) {

@@ -16,6 +16,7 @@ struct Parts {
   static constexpr std::uint32_t k_none = UINT32_MAX;
   std::vector<std::uint32_t> of;  ///< per particle the least one of its part, or k_none where that is a crumb
   std::size_t count = 0;          ///< crumbs left out
+  std::size_t crumbs = 0;         ///< how many there are
 
   // Scratch.
   DisjointSets sets;

@@ -201,14 +201,26 @@ std::size_t place_of(const Simulation::State& s, EmitterId id) {
   throw ConfigError("emitter", "there is no emitter " + std::to_string(number) + ", or no longer");
 }
 
-void check_emitter(const Emitter& emitter) {
+void check_speed(const Simulation::State& s, const Emitter& emitter, Checks& checks) {
+  const double own = emitter.velocity.cast<double>().norm();
+  check_speed(s, "emitter.speed", static_cast<double>(emitter.speed.highest()) + own, checks);
+}
+
+void check_emitter(const Simulation::State& s, const Emitter& emitter) {
   Checks checks;
   check(emitter, checks);
   check_poses("emitter", emitter.pose, emitter.keyframes, checks);
+  check_speed(s, emitter, checks);
   checks.finish();
 }
 
 }  // namespace
+
+void check_emitters(const Simulation::State& s) {
+  Checks checks;
+  for (const EmitterState& emitter : s.emitters) check_speed(s, emitter.settings, checks);
+  checks.finish();
+}
 
 void flow(Simulation::State& s) {
   // Whoever removes its body, or lets go what it holds, takes an emitter with it.
@@ -258,7 +270,7 @@ void move_emitters(Simulation::State& s, double end, double time_step) {
 EmitterId Simulation::add_emitter(const Emitter& settings, MaterialId material, std::string name) {
   state_->refuse_in_callback();
   State& s = *state_;
-  check_emitter(settings);
+  check_emitter(s, settings);
   EmitterState emitter{.id = EmitterId{s.emitter_count}, .settings = settings};
   if (!settings.keyframes.empty()) {
     emitter.settings.pose = pose_at(settings.keyframes, s.time);
@@ -286,6 +298,20 @@ const Emitter& Simulation::emitter(EmitterId id) const {
   return state_->emitters[place_of(*state_, id)].settings;
 }
 
+std::vector<EmitterId> Simulation::emitter_ids() const {
+  std::vector<EmitterId> ids;
+  for (const EmitterState& emitter : state_->emitters) ids.push_back(emitter.id);
+  return ids;
+}
+
+std::vector<ParticleId> Simulation::held(EmitterId id) const {
+  std::vector<ParticleId> ids;
+  for (const std::vector<ParticleId>& layer : state_->emitters[place_of(*state_, id)].held)
+    std::ranges::copy_if(layer, std::back_inserter(ids),
+                         [&](ParticleId held) { return state_->store.slots.find(held).has_value(); });
+  return ids;
+}
+
 void Simulation::set_flow(EmitterId id, const Schedule& speed, const Vec3& velocity) {
   state_->refuse_in_callback();
   EmitterState& emitter = state_->emitters[place_of(*state_, id)];
@@ -293,7 +319,7 @@ void Simulation::set_flow(EmitterId id, const Schedule& speed, const Vec3& veloc
   settings.speed = speed;
   settings.velocity = velocity;
   settings.keyframes.clear();
-  check_emitter(settings);
+  check_emitter(*state_, settings);
   emitter.settings = settings;
 }
 

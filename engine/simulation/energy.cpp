@@ -1,5 +1,4 @@
 // Energies of model 2, section 4, in double and one thread: for those who judge a motion, not for its steps.
-// Differences of moments lose the digits that a square of size over strain has; a double has them to spare.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <span>
@@ -7,37 +6,14 @@
 #include <vector>
 
 #include "core/polar_rotation.h"
-#include "shape_matching/run_tables.h"
 #include "simulation/phases.h"
+#include "simulation/region_moments.h"
 #include "simulation/state.h"
 
 namespace mallow {
 namespace {
 
 using Vec = Eigen::Vector3d;
-
-/// Sums over lists of rows, each of `count` numbers that lie behind each other.
-template <int count>
-using Numbers = Eigen::Array<double, count, 1>;
-
-/// What the rows of every list have in sum, by a table of runs as in the steps.
-template <int count>
-std::vector<Numbers<count>> sum_lists(const TableLists& lists, std::vector<Numbers<count>> table) {
-  const std::size_t rows = lists.rows;
-  table.reserve(rows * lists.lengths.count);
-  for (std::uint32_t l = 1; l < lists.lengths.count; ++l)
-    for (std::size_t i = 0; i < rows; ++i) {
-      Numbers<count> sum = table[(l - 1) * rows + i];
-      const std::size_t end = std::min(rows, i + lists.lengths.length[l]);
-      for (std::size_t k = i + lists.lengths.length[l - 1]; k < end; ++k) sum += table[k];
-      table.push_back(sum);
-    }
-  std::vector<Numbers<count>> sums(lists.count.size(), Numbers<count>::Zero());
-  for (std::size_t list = 0; list < sums.size(); ++list)
-    for (std::uint32_t k = 0; k < lists.count[list]; ++k)
-      sums[list] += table[lists.entries[lists.begin[list] + k]];
-  return sums;
-}
 
 constexpr int k_newton = 5;             ///< iterations; from a step's rotation two or three do
 constexpr double k_least_pivot = 1e-2;  ///< as a share of A at rest: far from where two rotations are as good
@@ -57,54 +33,6 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& a, const Eigen::Quaterni
     if (turn.squaredNorm() < k_exact_turn * k_exact_turn) return q.toRotationMatrix();
   }
   return polar_rotation(a, last, scale).toRotationMatrix();
-}
-
-/// Weighted moments of a particle, or in sum of a region: of x and of r, each from that of the first
-/// particle.
-struct Moments {
-  static constexpr int k_count = 24;  ///< a multiple of what a vector register holds
-  Numbers<k_count> all = Numbers<k_count>::Zero();
-
-  double& weight() { return all[0]; }
-  auto x() { return Eigen::Map<Vec>(&all[1]); }
-  auto r() { return Eigen::Map<Vec>(&all[4]); }
-  auto xr() { return Eigen::Map<Eigen::Matrix3d>(&all[7]); }
-  double& xx() { return all[16]; }
-  auto rr() { return Eigen::Map<Eigen::Matrix<double, 6, 1>>(&all[17]); }  ///< xx, yy, zz, yz, xz, xy
-};
-
-/// Positions and rest positions of a body's particles, from those of the first [m].
-struct Places {
-  std::vector<Vec> x, rest;
-};
-Places places(const Simulation::State& state, const BodyState& body) {
-  Places all;
-  const auto x = [&](std::size_t i) { return Vec(state.store.position.get(body.begin + i).cast<double>()); };
-  const auto rest = [&](std::size_t i) { return Vec(body.shape.reference.get(i).cast<double>()); };
-  for (std::size_t i = 0; i < body.size(); ++i) {
-    all.x.push_back(x(i) - x(0));
-    all.rest.push_back(rest(i) - rest(0));
-  }
-  return all;
-}
-
-/// By region.
-std::vector<Numbers<Moments::k_count>> region_moments(const ShapeMatching& shape, const Places& at) {
-  std::vector<Numbers<Moments::k_count>> rows(at.x.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double w = static_cast<double>(shape.weight[i]);
-    const Vec &x = at.x[i], &r = at.rest[i];
-    Moments own;
-    own.weight() = w;
-    own.x() = w * x;
-    own.r() = w * r;
-    own.xr() = w * x * r.transpose();
-    own.xx() = w * x.squaredNorm();
-    own.rr() << r.x() * r.x(), r.y() * r.y(), r.z() * r.z(), r.y() * r.z(), r.x() * r.z(), r.x() * r.y();
-    own.rr() *= w;
-    rows[i] = own.all;
-  }
-  return sum_lists<Moments::k_count>(shape.regions, std::move(rows));
 }
 
 /// Σ_j ½ Σ_i w_i |x_i − goal_ij|² of a body of unit masses [m²], and g − x of its particles [m].

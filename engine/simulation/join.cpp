@@ -180,11 +180,11 @@ void join_into_first(Simulation::State& s, std::span<const BodyId> ids) {
   measure_rigid(s, body);
   const auto tell = [&](BodyEvent event) { s.next_events.push_back(event); };
   tell({.kind = BodyEvent::Kind::yielded, .body = body.id});
-  const std::size_t parts = s.parts_after.count;
+  const std::size_t parts = s.parts_after.count, crumbs = s.parts_after.crumbs;
   if (any_in_two(s.parts_before, s.parts_after))
-    tell({.kind = BodyEvent::Kind::torn, .body = body.id, .parts = parts});
+    tell({.kind = BodyEvent::Kind::torn, .body = body.id, .parts = parts, .crumbs = crumbs});
   for (const BodyId id : ids.subspan(1))
-    tell({.kind = BodyEvent::Kind::merged, .body = body.id, .parts = parts, .other = id});
+    tell({.kind = BodyEvent::Kind::merged, .body = body.id, .parts = parts, .crumbs = crumbs, .other = id});
 }
 
 }  // namespace

@@ -189,6 +189,7 @@ void plan_motion(Simulation::State& state, float time_step) {
       state.moving.loads[c].torque = static_cast<double>(time_step) * load.torque;
     }
   }
+  add_resting_loads(state, static_cast<double>(time_step));
   state.pin_motions.clear();
   for (const PinState& pin : state.pins)
     state.pin_motions.push_back({.velocity = velocity_of(pin, time_step)});

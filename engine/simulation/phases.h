@@ -9,6 +9,7 @@
 #include "simulation/state.h"
 
 namespace mallow {
+class Checks;
 
 /// Why an id names no particle.
 std::string why_unknown(const ParticleStore& store, ParticleId id);
@@ -46,6 +47,13 @@ int update_references(Simulation::State& state);
 void sort_fluids(Simulation::State& state);
 /// What moves beside them, or has changed, wakes bodies -> those that move in this step.
 void wake_bodies(Simulation::State& state);
+/// A body sleeps that is slower than this [m/s] for so long [s], with all that it touches; 0: it never does.
+double sleep_speed(const Simulation::State& state, const BodyState& body);
+double sleep_time(const Simulation::State& state, const BodyState& body);
+/// Bodies that have fallen asleep in this step go on giving colliders what they gave them in it.
+void keep_loads(Simulation::State& state, double time_step);
+/// The loads of a step begin with those of what sleeps.
+void add_resting_loads(Simulation::State& state, double time_step);
 /// speeds -> bodies that have been slow for long, with all that they touch, sleep: their velocities are 0.
 void rest_bodies(Simulation::State& state, float time_step);
 /// positions, colliders -> what walls hold of the volume around the particles of fluids. [model 2, section 2]
@@ -69,6 +77,11 @@ struct ChosenStep {
 /// velocities, accelerations, time left until `end` -> Δt, with V in the report. [TK eq. 12, model 3] Throws
 /// StepError.
 ChosenStep choose_time_step(Simulation::State& state, double end, StepReport& report);
+/// Nothing faster moves in any step [m/s]: it would be shorter than steps may be, see
+/// Simulation::set_velocity().
+double fastest_carried(const Simulation::State& state);
+/// A problem where something would be faster than that.
+void check_speed(const Simulation::State& state, const char* field, double speed, Checks& checks);
 /// everything -> next positions and velocities, mean |a_ext|; one loop does what is asked for, each phase
 /// once in a step. [TK eq. 10, 11, 13, model 4, 5] Throws StepError.
 void move_bodies(Simulation::State& state, float time_step, const MotionPhases& phases);
@@ -95,6 +108,8 @@ void finish_step(Simulation::State& state, const ChosenStep& step);
 int join_bodies(Simulation::State& state);
 /// time -> layers that leave their emitters, or are put behind them; particles that sinks take.
 void flow(Simulation::State& state);
+/// Throws ConfigError where one lets its strand out faster than steps carry.
+void check_emitters(const Simulation::State& state);
 /// keyframes, speeds -> what emitters and the pins of what they hold do in a step that ends at `end` [s].
 void drive_emitters(Simulation::State& state, double end, double time_step);
 /// Emitters as that step has moved them.

@@ -69,6 +69,11 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   archive(body.hit_impulse);
   archive(body.island);
   archive(body.slow_time);
+  pass_list(archive, body.resting, 56, [&](auto& resting) {
+    archive(resting.collider);
+    archive.array(resting.load.impulse.data(), 3);
+    archive.array(resting.load.torque.data(), 3);
+  });
   archive(body.begin);
   archive(body.end);
   archive(body.spacing);
@@ -108,6 +113,9 @@ void require_valid(const UnpackingArchive& archive, const Simulation::State& sta
   require(!body.hit_impulse || *body.hit_impulse >= 0, "the impulse that it tells of must be 0 or above");
   require(std::isfinite(body.slow_time) && body.slow_time >= 0,
           "the time that it has been slow must be finite and 0 or above");
+  for (const BodyState::RestingLoad& resting : body.resting)
+    require(resting.load.impulse.allFinite() && resting.load.torque.allFinite(),
+            "what it gives colliders while it sleeps must be finite");
   for (const float value : {body.spacing, body.mass, body.rest_density})
     require(std::isfinite(value) && value > 0,
             "spacing, particle mass and rest density must be finite and above 0");
@@ -254,13 +262,14 @@ void pass_events(Archive& archive, State& state) {
     archive(contact.apart);
   });
   // A step that failed leaves those of bodies that it joined.
-  pass_list(archive, state.next_events, 18, [&](auto& event) {
+  pass_list(archive, state.next_events, 26, [&](auto& event) {
     auto kind = static_cast<std::uint8_t>(event.kind);
     std::optional<std::uint64_t> other = std::nullopt;
     if (event.other) other = static_cast<std::uint64_t>(*event.other);
     archive(kind);
     pass_id(archive, event.body);
     archive(event.parts);
+    archive(event.crumbs);
     archive(other);
     if constexpr (!Archive::k_packs) {
       if (kind > static_cast<std::uint8_t>(BodyEvent::Kind::merged))

@@ -247,6 +247,7 @@ void prepare(Simulation::State& s) {
   read_alphas(s);
   for (BodyState& body : s.bodies)
     if (body.matches_shape() && !body.shape.built) build_regions(s.execution, s.region_scratch, body.shape);
+  check_emitters(s);
   s.prepared = true;
 }
 

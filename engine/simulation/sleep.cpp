@@ -24,15 +24,17 @@ bool creeps(const Simulation::State& state, const BodyState& body) {
   return body.viscosity > k_thick * density * default_kinematic_viscosity(state.scale, state.scene_step());
 }
 
-/// 0: it does not sleep.
+}  // namespace
+
 double sleep_speed(const Simulation::State& state, const BodyState& body) {
+  if (!state.bodies_sleep() || body.is_heated) return 0;
   if (!state.config.sleep_speed && creeps(state, body)) return 0;
   return static_cast<double>(
       state.config.sleep_speed.value_or(k_sleep_speed * body.spacing / state.scene_step()));
 }
 
-/// Left out, longer than what is thrown up is slow at its highest: in steps much shorter than gravity asks
-/// for bodies fell asleep in the air.
+// Left out, longer than what is thrown up is slow at its highest: in steps much shorter than gravity asks
+// for bodies fell asleep in the air.
 double sleep_time(const Simulation::State& state, const BodyState& body) {
   constexpr double k_turning = 3;  // speeds by gravity; two of them is as long as that takes
   if (state.config.sleep_time) return static_cast<double>(*state.config.sleep_time);
@@ -40,6 +42,8 @@ double sleep_time(const Simulation::State& state, const BodyState& body) {
   const double gravity = static_cast<double>(state.config.gravity.norm());
   return gravity > 0 ? std::max(time, k_turning * sleep_speed(state, body) / gravity) : time;
 }
+
+namespace {
 
 /// In the step that begins now.
 bool is_moving(const Simulation::State& state, const Collider& collider) {
@@ -149,6 +153,7 @@ void wake_island(Simulation::State& state, BodyState& body) {
     if (other.island != island) continue;
     other.island = 0;
     other.slow_time = 0;
+    other.resting.clear();
     state.next_events.push_back({BodyEvent::Kind::woke, other.id});
   }
 }
@@ -158,6 +163,7 @@ void wake_all(Simulation::State& state) {
     if (body.island != 0) state.next_events.push_back({BodyEvent::Kind::woke, body.id});
     body.island = 0;
     body.slow_time = 0;
+    body.resting.clear();
   }
 }
 
@@ -228,7 +234,7 @@ void rest_bodies(Simulation::State& state, float time_step) {
   bool any_ready = false;
   for (BodyState* body : state.awake) {
     const double speed = sleep_speed(state, *body);
-    const bool slow = body->mean_speed < speed && !body->is_heated;
+    const bool slow = body->mean_speed < speed;
     body->slow_time = slow ? body->slow_time + static_cast<double>(time_step) : 0;
     if (!(body->slow_time >= sleep_time(state, *body))) continue;
     if (is_kept_awake(state, *body))
@@ -254,6 +260,7 @@ void rest_bodies(Simulation::State& state, float time_step) {
     any = true;
   }
   if (!any) return;
+  keep_loads(state, static_cast<double>(time_step));
   islands.by_island.clear();
   hold_sleepers(state);
   state.sph.kept.forget();

@@ -85,6 +85,12 @@ struct BodyState {
   double slow_time = 0;   ///< for how long it has been slower than what may sleep [s]
   double mean_speed = 0;  ///< of its particles, after the last step [m/s]
   Aabb box = {};          ///< around its particles while it sleeps [m]
+  /// What it gives a collider a second.
+  struct RestingLoad {
+    std::uint64_t collider;  ///< its id
+    ColliderLoad load;       ///< [N, N m]
+  };
+  std::vector<RestingLoad> resting;                     ///< while it sleeps, where loads are measured
   bool paints_alpha = false, paints_stiffness = false;  ///< its particles have their own
   bool paints_yield = false;                            ///< likewise, or follow temperatures in it
   bool is_heated = false;                               ///< its particles have a temperature

@@ -4,6 +4,7 @@
 #include <limits>
 #include <sstream>
 
+#include "core/checks.h"
 #include "simulation/damage.h"
 #include "simulation/phases.h"
 #include "simulation/settings.h"
@@ -70,8 +71,10 @@ TimeStepLimits limits(const Simulation::State& state, std::vector<TimeStepLimits
   std::ostringstream text = describe_particle(state, row);
   text << "would move at " << velocity << " m/s and needs a step of " << time_step
        << " s, below a thousandth of the longest, "
-       << k_shortest_step * static_cast<double>(state.longest_step())
-       << " s; lower material.pressure_coefficient or viscosity, raise solver.support_radius, or lower "
+       << k_shortest_step * static_cast<double>(state.longest_step()) << " s";
+  if (velocity > fastest_carried(state))
+    text << ", and no step carries more than " << fastest_carried(state) << " m/s";
+  text << "; lower material.pressure_coefficient or viscosity, raise solver.support_radius, or lower "
           "solver.time_step (now "
        << state.base_step() << ")";
   throw StepError(text.str(), state.store.id[row], Phase::time_step);
@@ -137,6 +140,24 @@ double unlimited_step(const Simulation::State& state) {
   TimeStepLimits bounds = limits(state, pressures);
   bounds.time_step = std::numeric_limits<float>::infinity();
   return limited_time_step(bounds, static_cast<double>(largest_norm(state.store.velocity)));
+}
+
+double fastest_carried(const Simulation::State& state) {
+  // What is faster has no square that is a float.
+  static const double k_fastest = std::sqrt(static_cast<double>(std::numeric_limits<float>::max()));
+  const bool is_settled = state.scale.spacing > 0;
+  const bool is_limited = is_settled && (state.needs_sph() || state.keeps_volume() || state.bodies_touch());
+  if (!is_limited) return k_fastest;
+  return static_cast<double>(farthest_move(state)) /
+         (k_shortest_step * static_cast<double>(state.longest_step()));
+}
+
+void check_speed(const Simulation::State& state, const char* field, double speed, Checks& checks) {
+  const double fastest = fastest_carried(state);
+  if (speed <= fastest) return;
+  std::ostringstream text;
+  text << speed << " m/s is not allowed: no step carries more than " << fastest << " m/s";
+  checks.problem(field, text.str());
 }
 
 void Simulation::State::require_ahead(double end) const {

@@ -81,7 +81,7 @@ std::optional<CarriedRegions> new_frame(Simulation::State& state, BodyState& bod
 void tell_parts(Simulation::State& state, const BodyState& body) {
   Parts &before = state.parts_before, &after = state.parts_after;
   const auto tell = [&](BodyEvent::Kind kind) {
-    state.events.push_back({.kind = kind, .body = body.id, .parts = after.count});
+    state.events.push_back({.kind = kind, .body = body.id, .parts = after.count, .crumbs = after.crumbs});
   };
   if (any_in_two(before, after)) tell(BodyEvent::Kind::torn);
   if (any_in_two(after, before)) tell(BodyEvent::Kind::merged);

@@ -20,6 +20,13 @@ void check_finite(const char* field, const Vec3& value) {
   checks.finish();
 }
 
+/// Throws ConfigError.
+void refuse_faster(const Simulation::State& s, const char* field, double speed) {
+  Checks checks;
+  check_speed(s, field, speed, checks);
+  checks.finish();
+}
+
 bool is_pinned(const Simulation::State& s, std::size_t row) {
   return !s.store.pin.empty() && s.store.pin[row] != 0;
 }
@@ -142,13 +149,18 @@ void Simulation::set_velocity(BodyId id, const Vec3& velocity, const Vec3& angul
   BodyState& body = s.body(id);
   check_finite("body.velocity", velocity);
   check_finite("body.angular_velocity", angular_velocity);
-  wake_island(s, body);
   const Eigen::Vector3d middle = middle_of(s, body), spin = angular_velocity.cast<double>();
-  for (std::size_t row = body.begin; row < body.end; ++row) {
-    if (is_pinned(s, row)) continue;
+  const auto velocity_of = [&](std::size_t row) {
     const Eigen::Vector3d from = s.store.position.get(row).cast<double>() - middle;
-    s.store.velocity.set(row, velocity + spin.cross(from).cast<float>());
-  }
+    return Vec3(velocity + spin.cross(from).cast<float>());
+  };
+  double fastest = 0;
+  for (std::size_t row = body.begin; row < body.end; ++row)
+    fastest = std::max(fastest, velocity_of(row).cast<double>().norm());
+  refuse_faster(s, "body.velocity", fastest);
+  wake_island(s, body);
+  for (std::size_t row = body.begin; row < body.end; ++row)
+    if (!is_pinned(s, row)) s.store.velocity.set(row, velocity_of(row));
   measure_rigid(s, body);
   s.held = false;
 }
@@ -157,6 +169,7 @@ void Simulation::set_velocity(std::span<const ParticleId> ids, const Vec3& veloc
   state_->refuse_in_callback();
   State& s = *state_;
   check_finite("velocity", velocity);
+  refuse_faster(s, "velocity", velocity.cast<double>().norm());
   for (const ParticleId id : ids) row(id);
   for (const ParticleId id : ids) {
     const std::size_t at = row(id);
@@ -185,10 +198,15 @@ void Simulation::add_impulse(BodyId id, const Vec3& impulse) {
   State& s = *state_;
   BodyState& body = s.body(id);
   check_finite("impulse", impulse);
-  wake_island(s, body);
   std::size_t free = 0;
   for (std::size_t row = body.begin; row < body.end; ++row) free += !is_pinned(s, row);
   const Vec3 kick = impulse / (body.mass * static_cast<float>(std::max(free, std::size_t{1})));
+  double fastest = 0;
+  for (std::size_t row = body.begin; row < body.end; ++row)
+    if (!is_pinned(s, row))
+      fastest = std::max(fastest, (s.store.velocity.get(row).cast<double>() + kick.cast<double>()).norm());
+  refuse_faster(s, "impulse", fastest);
+  wake_island(s, body);
   for (std::size_t row = body.begin; row < body.end; ++row)
     if (!is_pinned(s, row)) s.store.velocity.set(row, s.store.velocity.get(row) + kick);
   measure_rigid(s, body);
@@ -213,6 +231,15 @@ std::size_t Simulation::add_impulse(const Vec3& center, float radius, const Vec3
   for (const BodyState& body : s.bodies)
     for (std::size_t row = body.begin; row < body.end && body.enabled; ++row)
       sum += static_cast<double>(body.mass) * weight(row);
+  const auto faster = [&](std::size_t row) {
+    return Eigen::Vector3d(s.store.velocity.get(row).cast<double>() +
+                           weight(row) / sum * impulse.cast<double>());
+  };
+  double fastest = 0;
+  for (const BodyState& body : s.bodies)
+    for (std::size_t row = body.begin; row < body.end && body.enabled; ++row)
+      if (weight(row) > 0) fastest = std::max(fastest, faster(row).norm());
+  refuse_faster(s, "impulse", fastest);
   std::size_t count = 0;
   for (BodyState& body : s.bodies) {
     if (!body.enabled) continue;
@@ -300,6 +327,7 @@ void Simulation::set_velocity(PinId id, const Vec3& velocity) {
   state_->refuse_in_callback();
   PinState& pin = state_->pin(id);
   check_finite("pin.velocity", velocity);
+  refuse_faster(*state_, "pin.velocity", velocity.cast<double>().norm());
   pin = {.id = id, .velocity = velocity};
   wake_pinned(*state_, id);
 }
@@ -311,6 +339,8 @@ void Simulation::move_pin(PinId id, const Vec3& way, double seconds) {
   checks.vector("pin.way", way);
   checks.number("pin.seconds", seconds, seconds > 0, "a finite number above 0");
   checks.finish();
+  const double shortest = std::max(seconds, static_cast<double>(state_->config.time_step.value_or(0)));
+  refuse_faster(*state_, "pin.way", way.cast<double>().norm() / shortest);
   pin = {.id = id, .velocity = {0, 0, 0}, .left = way, .seconds = seconds};
   wake_pinned(*state_, id);
 }

@@ -247,7 +247,9 @@ SimulationInfo Simulation::info() const {
          .most_youngs_modulus = static_cast<float>(most_modulus(s.config, settings, body.spacing)),
          .average_neighbors = shape.built ? shape.average_neighbors : count_neighbors(s, body),
          .regions = shape.built ? shape.region_weight.size() : 0,
-         .shape_matching = body.matches_shape()});
+         .shape_matching = body.matches_shape(),
+         .sleep_speed = sleep_speed(s, body),
+         .sleep_time = sleep_time(s, body)});
   }
   return info;
 }

@@ -130,8 +130,9 @@ TEST_F(cli_checkpoint, run_of_so_many_steps_goes_on_to_the_same_state) {
   ASSERT_EQ(running.wait().exit_code, 128 + SIGINT);
   ASSERT_EQ(resume("out", {"--state-out", at("state.csv")}).exit_code, 0);
   EXPECT_EQ(read_text(at("state.csv")), read_text(at("whole.csv")));
-  EXPECT_EQ(names_in(at("out")), (std::vector<std::string>{".mallow-run", "checkpoint", "particles",
-                                                           "report.json", "scene.toml", "summary.html"}));
+  EXPECT_EQ(names_in(at("out")),
+            (std::vector<std::string>{".mallow-run", "checkpoint", "checkpoint.previous", "particles",
+                                      "report.json", "scene.toml", "summary.html"}));
 }
 
 TEST_F(cli_checkpoint, are_written_every_so_many_frames_and_a_run_can_be_made_longer) {
@@ -139,10 +140,31 @@ TEST_F(cli_checkpoint, are_written_every_so_many_frames_and_a_run_can_be_made_lo
   EXPECT_TRUE(fs::exists(at("out/checkpoint")) && fs::exists(at("out/checkpoint.previous")));
   const Outcome outcome = resume("out", {"--frames", "9"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("frame 4\n"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("frame 5\n"), std::string::npos) << outcome.err;
   ASSERT_EQ(run({"--out", at("whole"), "--frames", "9"}, true).exit_code, 0);
   expect_same_run("out", "whole");
   EXPECT_EQ(frames("out").size(), 30u);
+}
+
+TEST_F(cli_checkpoint, is_left_by_a_run_that_is_complete_and_it_goes_on_from_its_end) {
+  ASSERT_EQ(run({"--out", at("out"), "--frames", "3"}, true).exit_code, 0);
+  EXPECT_FALSE(fs::exists(at("out/checkpoint.previous"))) << "one is enough";
+  Outcome outcome = resume("out", {"--frames", "6"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("frame 3\n"), std::string::npos) << outcome.err;
+  ASSERT_EQ(run({"--out", at("whole"), "--frames", "6"}, true).exit_code, 0);
+  expect_same_run("out", "whole");
+  // Nothing to do: nothing is written.
+  const std::string last = read_text(at("out/checkpoint"));
+  ASSERT_EQ(resume("out").exit_code, 0);
+  EXPECT_EQ(read_text(at("out/checkpoint")), last);
+  // One of so many steps ends between two frames.
+  ASSERT_EQ(run({"--out", at("steps"), "--steps", "7"}).exit_code, 0);
+  outcome = resume("steps", {"--frames", "6"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("step 7, frame 2\n"), std::string::npos) << outcome.err;
+  EXPECT_EQ(read_json(at("steps/report.json")).at("state_hash"),
+            read_json(at("whole/report.json")).at("state_hash"));
 }
 
 TEST_F(cli_checkpoint, are_written_every_so_many_seconds) {
@@ -158,7 +180,8 @@ TEST_F(cli_checkpoint, that_is_damaged_is_passed_over_for_the_one_before) {
   fs::remove(at("out/particles/frame_000005.ply"));
   const Outcome outcome = resume("out");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("mallow: warning: " + at("out/checkpoint") + ": "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("mallow: warning: " + at("out/checkpoint") + ": "), std::string::npos)
+      << outcome.err;
   EXPECT_NE(outcome.err.find("damaged"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("checkpoint.previous: step 12, frame 4"), std::string::npos) << outcome.err;
   expect_same_run("out", "whole");
@@ -169,7 +192,7 @@ TEST_F(cli_checkpoint, says_what_to_do_where_there_is_none_to_resume) {
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("holds no run of mallow"), std::string::npos) << outcome.err;
 
-  ASSERT_EQ(run({"--out", at("out"), "--no-surface"}).exit_code, 0);
+  ASSERT_EQ(run({"--out", at("out"), "--no-surface", "--checkpoint-seconds", "0"}).exit_code, 0);
   outcome = resume("out", {"--frames", "5"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("holds a run that is complete"), std::string::npos) << outcome.err;
@@ -213,8 +236,8 @@ TEST_F(cli_checkpoint, warns_of_a_scene_that_has_changed_and_moves_as_before) {
 TEST_F(cli_checkpoint, overwrite_removes_them) {
   ASSERT_EQ(run({"--out", at("out"), "--frames", "4", "--checkpoint-every", "1"}).exit_code, 0);
   ASSERT_EQ(run({"--out", at("out"), "--overwrite", "--no-surface"}).exit_code, 0);
-  EXPECT_EQ(names_in(at("out")), (std::vector<std::string>{".mallow-run", "particles", "report.json",
-                                                           "scene.toml", "summary.html"}));
+  EXPECT_EQ(names_in(at("out")), (std::vector<std::string>{".mallow-run", "checkpoint", "particles",
+                                                           "report.json", "scene.toml", "summary.html"}));
 }
 
 TEST_F(cli_checkpoint, options_that_contradict_are_refused) {

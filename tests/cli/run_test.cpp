@@ -181,6 +181,23 @@ TEST_F(cli_run, info_names_what_would_run) {
   EXPECT_NE(outcome.out.find("viscosity        off"), std::string::npos);
 }
 
+TEST_F(cli_run, info_says_below_which_speed_and_after_which_time_bodies_sleep) {
+  const auto said = [&](std::vector<std::string> settings) {
+    std::vector<std::string> arguments = {"info", scene_};
+    for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
+    const std::string out = run_mallow(arguments).out;
+    const std::size_t at = out.find("sleep  ");
+    return at == std::string::npos ? out : out.substr(at, out.find('\n', at) - at);
+  };
+  EXPECT_EQ(said({"solver.sleep_speed=0.25", "solver.sleep_time=7", "material[0].alpha=0.4"}),
+            "sleep            1 of 1 body, slower than 0.25 m/s (as given) for 7 s (as given)");
+  EXPECT_EQ(
+      said({"solver.time_step=0.1", "material[0].alpha=0.4"}),
+      "sleep            1 of 1 body, slower than 0.05 m/s (0.005 spacings in a time step) for 6 s (60 time "
+      "steps or more)");
+  EXPECT_EQ(said({"solver.sleep_speed=0"}), "sleep            never");
+}
+
 TEST_F(cli_run, info_says_what_was_left_out_and_what_bodies_are_at_the_temperatures_that_they_have) {
   const std::string scene = R"([solver]
 gravity = [0, 0, -9.81]

@@ -130,6 +130,63 @@ TEST_F(cli_series, volume_is_that_of_the_surface_where_one_is_drawn) {
   }
 }
 
+TEST_F(cli_series, volume_of_elastic_bodies_is_that_of_their_stretched_regions) {
+  // Its top is pulled up by a tenth of the height while the base stands.
+  write("bar.toml", R"([solver]
+gravity = [0, 0, 0]
+support_radius = 2.1
+time_step = 0.15
+[run]
+frame_time = 15
+[[material]]
+name = "rubber"
+alpha = 0
+[[body]]
+material = "rubber"
+box = { count = [4, 4, 21], spacing = 1.0, corner = [0, 0, 0], jitter = 0 }
+[[pin]]
+box = { min = [-1, -1, -1], max = [5, 5, 1.1] }
+[[pin]]
+box = { min = [-1, -1, 18.9], max = [5, 5, 22] }
+velocity = [0, 0, 0.03]
+)");
+  ASSERT_EQ(run_mallow({"run", at("bar.toml"), "--frames", "4", "--series", at("bar.csv")}).exit_code, 0);
+  const auto bar = columns(read_text(at("bar.csv")));
+  const std::vector<double>& volume = bar.at("volume");
+  EXPECT_NEAR(volume[0], 16 * 21, 0.02 * 16 * 21);
+  EXPECT_GT(volume[4], 1.02 * volume[0]) << "stretched by 1.8 of 20, it has grown";
+  EXPECT_LT(volume[4], 1.12 * volume[0]);
+}
+
+TEST_F(cli_series, leaves_out_what_a_nozzle_still_holds) {
+  write("nozzle.toml", R"([solver]
+gravity = [0, 0, -0.3]
+support_radius = 2.1
+time_step = 0.15
+[run]
+frame_time = 1.5
+[[material]]
+name = "paste"
+alpha = 0.3
+[[emitter]]
+material = "paste"
+radius = 1.5
+spacing = 1.0
+speed = 1.0
+translate = [0, 0, 10]
+rotate = [180, 0, 0]
+)");
+  ASSERT_EQ(run_mallow({"run", at("nozzle.toml"), "--frames", "4", "--series", at("a.csv")}).exit_code, 0);
+  const auto series = columns(read_text(at("a.csv")));
+  EXPECT_EQ(series.at("particles")[0], 0);
+  EXPECT_EQ(series.at("height")[0], 0);
+  for (std::size_t k = 1; k <= 4; ++k) {
+    EXPECT_GT(series.at("particles")[k], series.at("particles")[k - 1]);
+    EXPECT_LE(series.at("top")[k], 10 + 1e-4) << "the nozzle is there";
+    EXPECT_GT(series.at("top")[k], 8);
+  }
+}
+
 TEST_F(cli_series, of_several_bodies_has_columns_of_each) {
   std::string scene = read_text(scene_);
   scene.insert(scene.find("[[collider]]"), R"([[body]]

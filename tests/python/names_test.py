@@ -49,6 +49,7 @@ class Names(unittest.TestCase):
         self.assertIn("One step of algorithm 3.3", mallow.Simulation.step.__doc__)
         self.assertIn("upper bound of a step", mallow.SolverConfig.time_step.__doc__)
         self.assertIn("[s]", mallow.SolverConfig.time_step.__doc__)
+        self.assertIn("-> Quaternion", mallow.Simulation.rotation.__doc__)
         self.assertIn("a number in [0, 1]", mallow.Material.alpha.__doc__)
         self.assertIn("Default: 0.5", mallow.Material.friction.__doc__)
         bare = [f"{name}.{key}" for name, value in vars(mallow).items() if isinstance(value, type)

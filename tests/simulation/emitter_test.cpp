@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <vector>
 
 #include "mallow/errors.h"
 #include "mallow/simulation.h"
+#include "refusal.h"
 
 namespace mallow {
 namespace emitter_test {
@@ -251,6 +254,36 @@ TEST(emitter, with_key_points_goes_on_with_the_same_bits_after_a_restore) {
   EXPECT_EQ(run(true), run(false));
 }
 
+TEST(emitter, that_lets_out_faster_than_a_step_carries_is_refused_before_the_first_one) {
+  Simulation s(solver(0));
+  s.add_emitter(nozzle(0, 2e4f), s.add_material({.alpha = 1.0f}));
+  EXPECT_EQ(test::refusal([&] { s.prepare(); }),
+            "emitter.speed: 20000 m/s is not allowed: no step carries more than 14000 m/s");
+}
+
+TEST(emitter, tells_which_particles_it_holds) {
+  Simulation s(solver(0));
+  const MaterialId jelly = s.add_material({.alpha = 0.3f});
+  const EmitterId gone = s.add_emitter(nozzle(50), jelly), id = s.add_emitter(nozzle(0), jelly);
+  s.remove_emitter(gone);
+  EXPECT_EQ(s.emitter_ids(), (std::vector<EmitterId>{id}));
+  s.advance(10);
+  std::vector<ParticleId> held = s.held(id);
+  std::ranges::sort(held);
+  const Simulation::Rows rows = s.rows(s.body(id));
+  std::size_t behind = 0;
+  for (std::size_t row = rows.begin; row < rows.end; ++row) {
+    const bool is_behind = s.positions()[row].z() > 1e-4f;
+    behind += is_behind;
+    EXPECT_EQ(std::ranges::binary_search(held, s.ids()[row]), is_behind) << s.positions()[row].transpose();
+  }
+  EXPECT_GT(behind, 0u);
+  EXPECT_EQ(held.size(), behind);
+  s.remove_particles(std::span(held).first(3));
+  EXPECT_EQ(s.held(id).size(), behind - 3);
+  EXPECT_THROW(s.held(gone), ConfigError);
+}
+
 TEST(emitter, is_refused_where_it_is_wrong) {
   Simulation s(solver(0));
   const MaterialId jelly = s.add_material({});
@@ -284,6 +317,13 @@ TEST(emitter, is_refused_where_it_is_wrong) {
       {[](Emitter& e) { e.spacing = 0; }, "emitter.spacing"},
       {[](Emitter& e) { e.radius = 1e6f; }, "emitter.spacing: makes layers of over a million"},
       {[](Emitter& e) { e.pose.rotation.setZero(); }, "emitter.pose.rotation"},
+      {[](Emitter& e) {
+         e.radius = {};
+         e.points = {{0, 0, 0}, {1, 0, 5}, {2, 0, 0}, {1.06f, 0.03f, 0}};
+       },
+       "emitter.points: points 1 (1 0 5) and 3 (1.06 0.03    0) are 0.0670"},
+      {[](Emitter& e) { e.speed = 1e30f; },
+       "emitter.speed: 1e+30 m/s is not allowed: no step carries more than"},
       {[](Emitter& e) { e.jitter = 1; }, "emitter.jitter"},
       {[](Emitter& e) { e.most_particles = 0; }, "emitter.most_particles"},
   };

@@ -49,6 +49,36 @@ TEST(energy, of_the_bodies_is_that_of_the_whole) {
   EXPECT_THROW(s.energy(BodyId{2}), ConfigError);
 }
 
+TEST(volume, of_an_elastic_body_is_that_which_its_stretch_gives_it) {
+  const auto growth = [](Body body, const Eigen::Matrix3f& rate, const Material& material) {
+    SolverConfig config = solver();
+    config.gravity.setZero();
+    Simulation s(config);
+    for (const Vec3& x : body.positions) body.velocities.push_back(rate * x);
+    const BodyId id = s.add_body(body, material);
+    s.step();
+    const BodyInfo info = s.info().bodies[0];
+    const double each = static_cast<double>(info.particle_mass) / static_cast<double>(info.rest_density);
+    return s.volume(id) / (each * static_cast<double>(body.positions.size()));
+  };
+  Eigen::Matrix3f rate;  // [1/s]
+  rate << 0.5f, 0.7f, 0, -0.2f, 0.4f, 0.3f, 0.1f, 0, -1.2f;
+  const double grown = (Eigen::Matrix3d::Identity() + 0.15 * rate.cast<double>()).determinant();
+  const Material loose{.deformation_damping = 0.0f};
+  Material strided = loose;
+  strided.region_stride = 2;
+  EXPECT_LT(grown, 0.97);
+  EXPECT_NEAR(growth(cube(5, 0), rate, loose), grown, 1e-6);
+  EXPECT_NEAR(growth(cube(5, 0), rate, strided), grown, 1e-6);
+  EXPECT_NEAR(growth(cube(5, 0), Eigen::Matrix3f::Zero(), loose), 1, 1e-6);
+  // A sheet has no extent across, in which it could grow.
+  Body sheet{.positions = {}};
+  for (int a = 0; a < 36; ++a) sheet.positions.emplace_back(a / 6, a % 6, 0.0f);
+  Eigen::Matrix3f wider = Eigen::Matrix3f::Zero();
+  wider(0, 0) = 1;
+  EXPECT_NEAR(growth(sheet, wider, loose), 1.15, 1e-6);
+}
+
 // Model 2, section 4: what judges a motion is F, which an elastic body keeps at a constant step.
 TEST(energy, of_a_free_elastic_body_is_kept_at_every_step_up_to_the_elastic_limit) {
   for (const float pull : {0.5f, 1.0f, 2.25f, 2.5f}) {

@@ -63,6 +63,7 @@ std::vector<Call> calls_with_bodies() {
   add_stale(calls, "bounds", [](Simulation& s, BodyId id) { s.bounds(id); });
   add_stale(calls, "motion", [](Simulation& s, BodyId id) { s.motion(id); });
   add_stale(calls, "energy", [](Simulation& s, BodyId id) { s.energy(id); });
+  add_stale(calls, "volume", [](Simulation& s, BodyId id) { s.volume(id); });
   add_stale(calls, "wake", [](Simulation& s, BodyId id) { s.wake(id); });
   add_stale(calls, "is_awake", [](Simulation& s, BodyId id) { s.is_awake(id); });
   add_stale(calls, "enable", [](Simulation& s, BodyId id) { s.enable(id, false); });
@@ -109,6 +110,33 @@ std::vector<Call> calls_with_numbers() {
          crowd.s.set_velocity(crowd.there, {0, 0, 0}, {k_nan, 0, 0});
        },
        "body.angular_velocity"},
+      {"set_velocity",
+       [](Crowd& crowd) {
+         crowd.s.set_velocity(crowd.there, {0, 1e30f, 0});
+       },
+       "body.velocity: 1e+30 m/s is not allowed: no step carries more than"},
+      {"set_velocity",
+       [](Crowd& crowd) {
+         crowd.s.set_velocity(crowd.there, {0, 0, 0}, {0, 0, 1e30f});
+       },
+       "body.velocity"},
+      {"set_velocity",
+       [](Crowd& crowd) {
+         const ParticleId first[] = {crowd.s.ids()[0]};
+         crowd.s.set_velocity(first, {3e38f, 3e38f, 3e38f});
+       },
+       "velocity: 5.19615e+38 m/s"},
+      {"add_impulse",
+       [](Crowd& crowd) {
+         crowd.s.add_impulse(crowd.there, {0, 0, 1e30f});
+       },
+       "impulse: "},
+      {"add_impulse",
+       [](Crowd& crowd) {
+         crowd.s.add_impulse({1, 1, 2}, 2, {0, 0, 1e30f});
+       },
+       "impulse: "},
+      {"set_flow", flow(false, 1e30f, {0, 0, 0}), "emitter.speed: 1e+30 m/s"},
       {"rotations", [](Crowd& crowd) { crowd.s.rotations(crowd.fluid); },
        "'fluid', which has no reference shape"},
   };

@@ -52,6 +52,36 @@ TEST(sleep, of_cubes_at_rest_takes_every_phase_away_and_moves_nothing) {
   for (const Vec3& v : s.velocities_by_id()) ASSERT_TRUE(v.isZero(0));
 }
 
+TEST(sleep, of_a_heap_leaves_its_weight_on_what_it_lies_on) {
+  SolverConfig config = solver();
+  Simulation s(config);
+  std::vector<BodyId> bodies;
+  for (int k = 0; k < 3; ++k) bodies.push_back(s.add_body(cube(5, {0, 0, 0.5 + 5.1 * k}), Material{}));
+  const ColliderId floor = s.add_collider({.shape = Plane{}, .friction = 0.5f, .measure_load = true});
+  const auto force = [&] {
+    const double before = s.time();
+    s.step();
+    return Eigen::Vector3d(s.load(floor).impulse / (s.time() - before));
+  };
+  double weight = 0;
+  for (const BodyId body : bodies) weight += s.motion(body).mass * static_cast<double>(config.gravity.norm());
+  ASSERT_LT(steps_until_all_sleep(s), 4000);
+  const Eigen::Vector3d asleep = force();
+  EXPECT_NEAR(-asleep.z(), weight, 0.01 * weight);
+  Simulation again = Simulation::restore(s.save());
+  again.step();
+  s.step();
+  EXPECT_EQ(again.load(floor).impulse, s.load(floor).impulse);
+  EXPECT_EQ(again.load(floor).torque, s.load(floor).torque);
+  EXPECT_FALSE(s.is_awake(bodies[0]));
+  // Awake it weighs as much; what is gone weighs nothing.
+  for (const BodyId body : bodies) s.wake(body);
+  EXPECT_NEAR(-force().z(), weight, 0.05 * weight);
+  for (const BodyId body : bodies) s.remove_body(body);
+  s.add_body(cube(5, {0, 0, 50}), Material{});
+  EXPECT_EQ(force(), Eigen::Vector3d(0, 0, 0));
+}
+
 TEST(sleep, ends_for_a_whole_column_when_something_falls_on_it) {
   Simulation s = cubes(2, true);
   ASSERT_LT(steps_until_all_sleep(s), 4000);

@@ -175,6 +175,33 @@ void print_volume(const Scene& scene, const SimulationInfo& info) {
     std::printf("volume           by pressure alone\n");
 }
 
+/// How slow bodies are before they fall asleep, and for how long.
+void print_sleep(const Scene& scene, const SimulationInfo& info) {
+  double least_speed = 0, most_speed = 0, least_time = 0, most_time = 0;
+  std::size_t sleepers = 0;
+  for (const BodyInfo& body : info.bodies) {
+    if (body.sleep_speed == 0) continue;
+    least_speed = sleepers == 0 ? body.sleep_speed : std::min(least_speed, body.sleep_speed);
+    least_time = sleepers == 0 ? body.sleep_time : std::min(least_time, body.sleep_time);
+    most_speed = std::max(most_speed, body.sleep_speed);
+    most_time = std::max(most_time, body.sleep_time);
+    ++sleepers;
+  }
+  const auto text = [](double least, double most) {
+    return range_text(static_cast<float>(least), static_cast<float>(most));
+  };
+  const auto source = [](bool is_given, const char* rule) { return is_given ? "as given" : rule; };
+  if (sleepers == 0)
+    std::printf("sleep            never\n");
+  else
+    std::printf("sleep            %zu of %zu bod%s, slower than %s m/s (%s) for %s s (%s)\n", sleepers,
+                info.bodies.size(), info.bodies.size() == 1 ? "y" : "ies",
+                text(least_speed, most_speed).c_str(),
+                source(scene.solver.sleep_speed.has_value(), "0.005 spacings in a time step"),
+                text(least_time, most_time).c_str(),
+                source(scene.solver.sleep_time.has_value(), "60 time steps or more"));
+}
+
 void info(const InfoOptions& options) {
   const Scene scene = read_scene(options.scene);
   if (options.print) {
@@ -210,6 +237,7 @@ void info(const InfoOptions& options) {
               scene.solver.support_radius ? "as given" : "from the largest spacing");
   print_volume(scene, info);
   print_times(scene, info);
+  print_sleep(scene, info);
   print_bodies(scene, info);
   if (shape_matching) print_stiffness(simulation, info);
   print_heat(scene, simulation, info);

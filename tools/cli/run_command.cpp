@@ -403,8 +403,10 @@ void add_run_command(CLI::App& app) {
                        "as without the break. With SCENE, list what differs from it")
           ->excludes(out);
   command
-      ->add_option("--checkpoint-every", options->checkpoint_every,
-                   "Frames from one checkpoint to the next; a run can be resumed from a checkpoint")
+      ->add_option(
+          "--checkpoint-every", options->checkpoint_every,
+          "Frames from one checkpoint to the next; a run can be resumed from a checkpoint. One is left at "
+          "its end too")
       ->check(CLI::PositiveNumber);
   command
       ->add_option(

@@ -17,7 +17,7 @@ std::filesystem::path frame_name(int frame, const std::string& ending);
 /// A folder that holds a run, so that its parts can be made again apart from each other:
 ///   .mallow-run                 what marks the folder as a run's, and is locked by whoever writes into it
 ///   scene.toml  report.json  summary.html  film.mp4
-///   checkpoint  checkpoint.previous  what an unfinished run goes on from
+///   checkpoint  checkpoint.previous  what a run goes on from
 ///   particles/frame_000000.ply  surface/frame_000000.ply  images/frame_000000.png
 ///   export/                     what `mallow export` made of these for other programs
 ///   .mallow-share/              who works on which frame, where several programs share them

@@ -22,6 +22,8 @@ class Checkpoints {
  public:
   Checkpoints(const Scene& scene, const RunPlan& plan, const Cache& cache);
 
+  /// By any count.
+  bool are_wanted() const { return interval_.frames > 0 || interval_.seconds > 0; }
   bool due_after_step() const;
   bool due_after_frame(int frame) const;
   /// series: null where the run writes none.

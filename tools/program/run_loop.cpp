@@ -28,6 +28,7 @@ class FrameWriter {
         series_(series),
         skins_(skins),
         checkpoints_(scene, plan, cache),
+        checkpointed_step_(report.steps),
         whole_frames_(report.frames) {
     if (plan.surface) {
       std::filesystem::create_directories(cache.surface_file(0).parent_path());
@@ -86,12 +87,19 @@ class FrameWriter {
     const auto state =
         std::make_shared<const SavedState>(checkpoints_.take(simulation, skins_, report_, series_));
     files_.add([this, state] { mallow::write_checkpoint(cache_.checkpoint_file(), *state); });
+    checkpointed_step_ = simulation.step_count();
   }
   void after_step(const Simulation& simulation) {
     if (checkpoints_.due_after_step()) write_checkpoint(simulation);
   }
   void after_frame(const Simulation& simulation) {
     if (checkpoints_.due_after_frame(report_.frames) || checkpoints_.due_after_step())
+      write_checkpoint(simulation);
+  }
+
+  /// A run that is complete can be made longer from where it ended.
+  void after_run(const Simulation& simulation) {
+    if (checkpoints_.are_wanted() && checkpointed_step_ != simulation.step_count())
       write_checkpoint(simulation);
   }
 
@@ -107,6 +115,7 @@ class FrameWriter {
   const Series* series_;
   std::span<Skin> skins_;
   Checkpoints checkpoints_;
+  std::int64_t checkpointed_step_;  ///< of the last checkpoint; that of the state that the run begins from
   std::optional<FrameSurface> surface_;
   std::optional<Stills> stills_;
   int whole_frames_;        ///< the last frame of which all files are there; read when none is being written
@@ -174,7 +183,10 @@ RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> sk
     if (writer) writer->after_frame(simulation);
     if (callbacks.after_frame) callbacks.after_frame(report);
   }
-  if (writer) writer->finish();
+  if (writer) {
+    writer->after_run(simulation);
+    writer->finish();
+  }
   return RunEnd::complete;
 }
 

@@ -49,32 +49,48 @@ class Line {
   bool is_empty_ = true;
 };
 
-/// What a set of bodies has in sum.
-struct Sums {
+/// Particles that a nozzle holds, by row.
+std::vector<bool> held_rows(const Simulation& simulation) {
+  std::vector<bool> held(simulation.particle_count(), false);
+  for (const EmitterId emitter : simulation.emitter_ids())
+    for (const ParticleId id : simulation.held(emitter)) held[simulation.row(id)] = true;
+  return held;
+}
+
+/// Of particles that no nozzle holds.
+struct Free {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector3d high = -low;
-  std::size_t particles = 0, awake = 0, parts = 0;
+  std::size_t particles = 0;
+
+  double height() const { return particles > 0 ? high.z() - low.z() : 0; }
+  double top() const { return particles > 0 ? high.z() : 0; }
+};
+
+Free free_of(const Simulation& simulation, const Simulation::Rows& rows, const std::vector<bool>& held) {
+  const VectorView positions = simulation.positions();
+  Free free;
+  for (std::size_t row = rows.begin; row < rows.end; ++row) {
+    if (held[row]) continue;
+    const Eigen::Vector3d x = positions[row].cast<double>();
+    free.low = free.low.cwiseMin(x);
+    free.high = free.high.cwiseMax(x);
+    ++free.particles;
+  }
+  return free;
+}
+
+/// What a set of bodies has in sum.
+struct Sums {
+  Free free;
+  std::size_t awake = 0, parts = 0, crumbs = 0;
   double volume = 0;
   Eigen::Vector3d momentum{0, 0, 0};
 
   Eigen::Vector3d extent() const {
-    return particles > 0 ? Eigen::Vector3d(high - low) : Eigen::Vector3d(0, 0, 0);
+    return free.particles > 0 ? Eigen::Vector3d(free.high - free.low) : Eigen::Vector3d(0, 0, 0);
   }
-  double top() const { return particles > 0 ? high.z() : 0; }
 };
-
-/// Where particles are less dense than at rest, as they are where they see less of each other at a surface,
-/// they count as at rest: so that the volume of what lies still is that of its particles.
-double volume(const Simulation& simulation, const Simulation::Rows& rows, double mass, double rest_volume) {
-  const std::span<const float> densities = simulation.densities();
-  if (densities.size() < rows.end) return rest_volume * static_cast<double>(rows.end - rows.begin);
-  double sum = 0;
-  for (std::size_t row = rows.begin; row < rows.end; ++row) {
-    const double density = static_cast<double>(densities[row]);
-    sum += density * rest_volume > mass ? mass / density : rest_volume;
-  }
-  return sum;
-}
 
 /// Least, mean and most of some particles; empty cells where there are none.
 void add_temperatures(const Simulation& simulation, const Simulation::Rows& rows, Line& line) {
@@ -114,7 +130,6 @@ Series::Series(const fs::path& file, Simulation& simulation)
         {.id = id,
          .name = simulation.name(id),
          .is_heated = simulation.material_settings(simulation.material(id)).temperature.has_value()});
-  find_rest_volumes(simulation);
   row_time_ = simulation.time();
   loads_.resize(colliders_.size());
   file_.add(header());
@@ -129,24 +144,13 @@ Series::Series(const std::string& text, const fs::path& file, Simulation& simula
     bodies_.push_back({.id = BodyId{body.at("id").get<std::uint64_t>()},
                        .name = body.at("name").get<std::string>(),
                        .parts = body.at("parts").get<std::size_t>(),
+                       .crumbs = body.at("crumbs").get<std::size_t>(),
                        .is_heated = body.value("is_heated", false)});
-  find_rest_volumes(simulation);
   state.at("row_time").get_to(row_time_);
   state.at("largest_compression").get_to(largest_compression_);
   state.at("mean_compression").get_to(mean_compression_);
   for (const auto& sum : state.at("loads")) loads_.push_back(load_from_json(nlohmann::ordered_json(sum)));
   loads_.resize(colliders_.size());
-}
-
-void Series::find_rest_volumes(Simulation& simulation) {
-  const SimulationInfo info = simulation.info();
-  const std::vector<BodyId> ids = simulation.bodies();
-  for (Body& body : bodies_) {
-    const auto found = std::ranges::find(ids, body.id);
-    if (found == ids.end()) continue;  // it is gone
-    const BodyInfo& now = info.bodies[static_cast<std::size_t>(found - ids.begin())];
-    body.rest_volume = static_cast<double>(now.particle_mass) / static_cast<double>(now.rest_density);
-  }
 }
 
 bool Series::has_body_columns() const {
@@ -165,10 +169,26 @@ std::string Series::header() const {
   const auto of_units = [&](const std::string& name) {
     return has_units_ ? name : name.substr(0, name.find(" ["));
   };
-  for (const char* name : {"frame", "time [s]", "steps", "particles", "height [m]", "top [m]", "extent_x [m]",
-                           "extent_y [m]", "volume [m3]", "kinetic_energy [J]", "elastic_energy [J]",
-                           "conserved_energy [J]", "momentum_x [N s]", "momentum_y [N s]", "momentum_z [N s]",
-                           "parts", "awake_bodies", "largest_compression", "mean_compression"})
+  for (const char* name : {"frame",
+                           "time [s]",
+                           "steps",
+                           "particles",
+                           "height [m]",
+                           "top [m]",
+                           "extent_x [m]",
+                           "extent_y [m]",
+                           "volume [m3]",
+                           "kinetic_energy [J]",
+                           "elastic_energy [J]",
+                           "conserved_energy [J]",
+                           "momentum_x [N s]",
+                           "momentum_y [N s]",
+                           "momentum_z [N s]",
+                           "parts",
+                           "crumbs",
+                           "awake_bodies",
+                           "largest_compression",
+                           "mean_compression"})
     line.add(of_units(name));
   if (has_collider_columns())
     for (std::size_t k = 0; k < colliders_.size(); ++k)
@@ -193,13 +213,16 @@ void Series::add_step(const StepReport& step, const Simulation& simulation) {
   for (std::size_t k = 0; k < colliders_.size(); ++k) add(simulation.load(colliders_[k]), loads_[k]);
   for (const BodyEvent& event : simulation.events()) {
     if (event.kind != BodyEvent::Kind::torn && event.kind != BodyEvent::Kind::merged) continue;
-    if (const auto body = std::ranges::find(bodies_, event.body, &Body::id); body != bodies_.end())
-      body->parts = event.parts;
+    const auto body = std::ranges::find(bodies_, event.body, &Body::id);
+    if (body == bodies_.end()) continue;
+    body->parts = event.parts;
+    body->crumbs = event.crumbs;
   }
 }
 
 void Series::add_row(int frame, Simulation& simulation, const std::optional<double>& volume_of_surface) {
   const std::vector<BodyId> ids = simulation.bodies();
+  const std::vector<bool> held = held_rows(simulation);
   Sums sums;
   Line of_bodies, of_heat;
   for (const Body& body : bodies_) {
@@ -211,32 +234,31 @@ void Series::add_row(int frame, Simulation& simulation, const std::optional<doub
         for (int cell = 0; cell < 7; ++cell) of_bodies.add(std::string());
       continue;
     }
-    const Aabb box = simulation.bounds(body.id);
+    const Free free = free_of(simulation, rows, held);
     const BodyMotion motion = simulation.motion(body.id);
-    const std::size_t particles = rows.end - rows.begin;
-    const double mass = particles > 0 ? motion.mass / static_cast<double>(particles) : 0;
-    sums.low = sums.low.cwiseMin(box.min.cast<double>());
-    sums.high = sums.high.cwiseMax(box.max.cast<double>());
-    sums.particles += particles;
+    sums.free.low = sums.free.low.cwiseMin(free.low);
+    sums.free.high = sums.free.high.cwiseMax(free.high);
+    sums.free.particles += free.particles;
     sums.awake += simulation.is_awake(body.id) ? 1 : 0;
     sums.parts += body.parts;
-    sums.volume += volume(simulation, rows, mass, body.rest_volume);
+    sums.crumbs += body.crumbs;
+    if (!volume_of_surface) sums.volume += simulation.volume(body.id);
     sums.momentum += motion.momentum;
     if (!has_body_columns()) continue;
-    of_bodies.add(static_cast<double>(box.max.z()) - static_cast<double>(box.min.z()));
-    of_bodies.add(static_cast<double>(box.max.z()));
+    of_bodies.add(free.height());
+    of_bodies.add(free.top());
     of_bodies.add(motion.center_of_mass);
     of_bodies.add(motion.kinetic_energy);
     of_bodies.add(body.parts);
   }
-  const Energy energy = sums.particles > 0 ? simulation.energy() : Energy{};
+  const Energy energy = simulation.particle_count() > 0 ? simulation.energy() : Energy{};
   Line line;
   line.add(static_cast<std::size_t>(frame));
   line.add(simulation.time());
   line.add(static_cast<std::size_t>(simulation.step_count()));
-  line.add(sums.particles);
+  line.add(sums.free.particles);
   line.add(sums.extent().z());
-  line.add(sums.top());
+  line.add(sums.free.top());
   line.add(sums.extent().x());
   line.add(sums.extent().y());
   line.add(volume_of_surface.value_or(sums.volume));
@@ -245,6 +267,7 @@ void Series::add_row(int frame, Simulation& simulation, const std::optional<doub
   line.add(energy.conserved);
   line.add(sums.momentum);
   line.add(sums.parts);
+  line.add(sums.crumbs);
   line.add(sums.awake);
   line.add(largest_compression_);
   line.add(mean_compression_);
@@ -268,6 +291,7 @@ std::string Series::saved() const {
     bodies.push_back({{"id", static_cast<std::uint64_t>(body.id)},
                       {"name", body.name},
                       {"parts", body.parts},
+                      {"crumbs", body.crumbs},
                       {"is_heated", body.is_heated}});
   for (const ColliderLoad& load : loads_) loads.push_back(nlohmann::json(to_json(load)));
   const nlohmann::json state = {{"file", fs::absolute(file_.file()).string()},
@@ -283,14 +307,17 @@ std::string Series::saved() const {
 
 const char* series_help() {
   return "Columns of --series, a row for frame 0 and each frame after it, units in the header:\n"
-         "frame, time, steps, particles;\n"
-         "height, top, extent_x, extent_y: of the box around all particles' centres; top is its largest z;\n"
-         "volume: that the surface encloses where one is drawn (--out without --no-surface), else of the\n"
-         "  particles, mass over density, where less dense than at rest as at rest;\n"
+         "frame, time, steps;\n"
+         "particles: that no nozzle holds any more;\n"
+         "height, top, extent_x, extent_y: of the box around their centres; top is its largest z;\n"
+         "volume: that the surface encloses where one is drawn (--out without --no-surface), else of all\n"
+         "  particles: mass over density where SPH runs, one less dense than at rest as at rest; where only\n"
+         "  shapes are matched, as its regions are stretched against their rest shapes;\n"
          "kinetic_energy, elastic_energy, conserved_energy (what elastic bodies keep), without pinned "
          "particles;\n"
          "momentum_x, _y, _z: of all particles;\n"
-         "parts: pieces that shape matching holds together, one a body until it tears or merges;\n"
+         "parts: pieces that shape matching holds together, of four particles or more, one a body until an\n"
+         "  update of its reference shape tears or merges it; crumbs: smaller pieces, as of then;\n"
          "awake_bodies: that do not sleep;\n"
          "largest_compression: of a particle in any step since the row before; mean_compression: over all\n"
          "  particles in the last step; both where solver.volume_iterations run, else 0;\n"

@@ -35,11 +35,9 @@ class Series {
   struct Body {
     BodyId id;
     std::string name;
-    double rest_volume = 0;  ///< of a particle [m³]
-    std::size_t parts = 1;
+    std::size_t parts = 1, crumbs = 0;
     bool is_heated = false;
   };
-  void find_rest_volumes(Simulation& simulation);
   std::string header() const;
   bool has_body_columns() const;
   bool has_collider_columns() const;

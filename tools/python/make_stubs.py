@@ -15,7 +15,8 @@ from typing import Any, Callable, Iterator, Optional, Sequence, Union as _Union
 
 import numpy
 
-Vector = _Union[numpy.ndarray, Sequence[float]]
+Vector = _Union[numpy.ndarray, Sequence[float]]  # three numbers
+Quaternion = _Union[numpy.ndarray, Sequence[float]]  # x, y, z, w
 Array = _Union[numpy.ndarray, Sequence[Any]]
 '''
 SIGNATURE = re.compile(r"^(?:\d+\. )?(\w+)\((.*)\) -> (.+)$")
@@ -30,7 +31,7 @@ def type_text(text, is_argument):
     if is_argument:
         text = text.replace("numpy.ndarray", "Array")
     else:
-        text = re.sub(r"\bVector\b", "numpy.ndarray", text)
+        text = re.sub(r"\b(Vector|Quaternion)\b", "numpy.ndarray", text)
     return re.sub(r"Callable\[\[(.*?)\], (.*?)\]", r"Callable[[\1], \2]", text)
 
 

@@ -30,7 +30,9 @@ struct Emitter {
   /// Where given, it moves and turns through these poses, and what it holds with it, as a Collider does. Its
   /// pose and velocity are those that follow.
   std::vector<PoseKeyframe> keyframes = {};
-  Schedule speed = 1.0f;             ///< of the strand, from the nozzle on [m/s], >= 0; 0: it does not flow
+  /// Of the strand, from the nozzle on [m/s], >= 0; 0: it does not flow. No faster than a step carries: see
+  /// Simulation::set_velocity().
+  Schedule speed = 1.0f;
   std::optional<double> start = {};  ///< it flows from this time on [s], >= 0; left out: at once
   /// And until this [s], >= 0, when what has not passed the nozzle is taken away; left out: it goes on.
   std::optional<double> stop = {};

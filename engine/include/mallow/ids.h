@@ -5,7 +5,9 @@
 /// What parts of a simulation are called. A name is never given to anything else: each is a slot and its
 /// generation, slot + 2^32 generation. Slots are counted from 0 in the order in which things of a kind are
 /// added, and that of one that was removed is used again, in the next generation: as long as nothing is
-/// removed ids are 0, 1, 2, ...
+/// removed ids are 0, 1, 2, ... They say nothing of the simulation that gave them: another one takes an id
+/// for its own of that slot and generation, and refuses it only where it has none. Who has several
+/// simulations keeps each one's ids apart.
 namespace mallow {
 
 /// Of Simulation::ids().

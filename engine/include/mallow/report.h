@@ -73,6 +73,7 @@ struct BodyEvent {
   /// Of torn and merged: those that it has now. Particles are in one part where they share a region of shape
   /// matching, directly or through others; parts of fewer than four particles are crumbs and not counted.
   std::size_t parts = 0;
+  std::size_t crumbs = 0;  ///< likewise: those crumbs
   /// Of a contact between bodies: greater than `body`. Of merged: the body that has become part of `body` and
   /// is no more, see Body::merges; none where parts of one body merged.
   std::optional<BodyId> other = {};
@@ -138,6 +139,10 @@ struct BodyInfo {
   double average_neighbors = 0;   ///< mean |N_i| over the reference shape, i included, whatever the stride
   std::size_t regions = 0;        ///< of shape matching, as many as are owned; 0 where none are built
   bool shape_matching = false;    ///< runs now
+  /// It falls asleep where it is slower than this [m/s] for sleep_time [s], with all that it touches; in
+  /// force, as set or as spacing and gravity have it. 0: it never does.
+  double sleep_speed = 0;
+  double sleep_time = 0;
 };
 /// What a simulation runs and holds; see Simulation::info().
 struct SimulationInfo {

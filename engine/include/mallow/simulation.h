@@ -186,8 +186,14 @@ class MALLOW_EXPORT Simulation {
   BodyId body(EmitterId emitter) const;
   /// As it is now, where it has moved.
   const Emitter& emitter(EmitterId emitter) const;
+  /// Those that there are, in the order in which they were added.
+  std::vector<EmitterId> emitter_ids() const;
+  /// Particles of the layers that have not passed the nozzle, the next to leave first. Throws ConfigError
+  /// where there is none of this id.
+  std::vector<ParticleId> held(EmitterId emitter) const;
   /// How fast the strand leaves it, and how fast the nozzle itself moves, from now on [m/s]. It has no
-  /// keyframes then.
+  /// keyframes then. Throws ConfigError, and changes nothing, where one is out of range, or both are faster
+  /// than any step carries.
   void set_flow(EmitterId emitter, const Schedule& speed, const Vec3& velocity = {0, 0, 0});
   /// The nozzle is gone and what it held is free.
   void remove_emitter(EmitterId emitter);
@@ -245,24 +251,29 @@ class MALLOW_EXPORT Simulation {
   /// whatever steps led there; in between it moves and turns evenly, so take seconds as short as the motion
   /// asks for.
   void set_pose(ColliderId collider, const Pose& pose, double seconds = 0);
-  /// The velocity of the particles of a pin from now on [m/s], finite.
+  /// The velocity of the particles of a pin from now on [m/s], finite; no faster than steps carry.
   void set_velocity(PinId pin, const Vec3& velocity);
   /// The particles of a pin go `way` [m] in the next `seconds`, > 0, evenly, and stay there.
   void move_pin(PinId pin, const Vec3& way, double seconds);
   /// Of all particles of a body that are not pinned: [m/s], and [rad/s] about its centre of mass, along the
   /// axes of the world. Wakes it; costs a pass over its particles. Throws ConfigError, and changes nothing,
-  /// where there is none of this id, or a number is not finite.
+  /// where there is none of this id, a number is not finite, or a particle would be so fast that no step
+  /// carries it: steps are a thousandth of the longest at least, and none moves anything farther than the
+  /// support radius, less half a spacing where bodies touch.
   void set_velocity(BodyId body, const Vec3& velocity, const Vec3& angular_velocity = {0, 0, 0});
-  /// Of particles that are not pinned [m/s]. Throws ConfigError, and changes nothing, where an id is not one.
+  /// Of particles that are not pinned [m/s]. Throws ConfigError, and changes nothing, where an id is not one,
+  /// and as the other does.
   void set_velocity(std::span<const ParticleId> ids, const Vec3& velocity);
   /// Moves a body, pinned particles too, so that its centre of mass is there [m]. Where it then overlaps
   /// another body, contact pushes apart those particles that are near each other; two that stand deep in each
   /// other may stay so.
   void set_position(BodyId body, const Vec3& center_of_mass);
-  /// Adds momentum [N s] to the particles of a body that are not pinned, the same to each.
+  /// Adds momentum [N s] to the particles of a body that are not pinned, the same to each. Throws as
+  /// set_velocity() does.
   void add_impulse(BodyId body, const Vec3& impulse);
   /// Adds momentum [N s] to what is in a ball [m], most in its middle and none at its rim: as (1 − r²/R²)² of
-  /// the mass there. Returns how many particles got some; where there is none, none is given.
+  /// the mass there. Returns how many particles got some; where there is none, none is given. Throws as
+  /// set_velocity() does.
   std::size_t add_impulse(const Vec3& center, float radius, const Vec3& impulse);
   /// A body that is not enabled stands where it is, is met by nothing, and costs nothing. It is still seen in
   /// every view, and goes on as fast as it was when it is enabled again. Throws ConfigError where there is
@@ -338,8 +349,9 @@ class MALLOW_EXPORT Simulation {
   /// Of each of colliders().
   std::vector<ColliderId> collider_ids() const;
   const Collider& collider(ColliderId id) const;  ///< throws ConfigError where there is none
-  /// What particles gave a collider in the last step; zeros before the first. Its measure_load must be set:
-  /// else ConfigError. Summed in double, in an order that does not depend on the number of threads.
+  /// What particles gave a collider in the last step; zeros before the first. What sleeps goes on pushing as
+  /// it did in the step after which it fell asleep. Its measure_load must be set: else ConfigError. Summed in
+  /// double, in an order that does not depend on the number of threads.
   ColliderLoad load(ColliderId id) const;
 
   /// The particle of each row; sorting moves rows, never ids.
@@ -423,6 +435,13 @@ class MALLOW_EXPORT Simulation {
   /// Those of one body, pinned particles left out; as costly, for its particles. Throws ConfigError where
   /// there is none of this id.
   Energy energy(BodyId body) const;
+  /// The space that a body takes up [m³]. Where SPH ran in the last step, of its particles by their
+  /// densities, mass over density, one that is less dense than at rest as at rest: how it is compressed, not
+  /// how it is stretched. Else, where shapes are matched, of its particles at rest times the mean determinant
+  /// of the affine maps that take regions from their rest shapes to where they are: a reference shape that
+  /// has given way to a compressed one knows of that no more. Else of its particles at rest. Summed in
+  /// double, as slow as energy(), and throws as that does.
+  double volume(BodyId body) const;
 
   /// 64 bits of positions and velocities in id order, time and step: equal states have equal hashes.
   std::uint64_t state_hash() const;

@@ -159,7 +159,7 @@ namespace pybind11::detail {
 /// A vector of N numbers: any sequence of them in, an array that cannot be written out.
 template <class Vector, class Scalar, std::size_t N>
 struct small_vector_caster {
-  static constexpr auto name = const_name("Vector");
+  static constexpr auto name = const_name<N == 4>("Quaternion", "Vector");
   bool load(handle source, bool) {
     const auto array = mallow::python::numbers_of<Scalar>(source);
     if (!array) return false;

@@ -107,6 +107,7 @@ void bind_events(py::module_& module) {
   event.field("kind", &BodyEvent::kind)
       .field("body", &BodyEvent::body)
       .field("parts", &BodyEvent::parts)
+      .field("crumbs", &BodyEvent::crumbs)
       .field("other", &BodyEvent::other)
       .field("collider", &BodyEvent::collider)
       .field("position", &BodyEvent::position)
@@ -137,6 +138,8 @@ void bind_infos(py::module_& module) {
       .field("average_neighbors", &BodyInfo::average_neighbors)
       .field("regions", &BodyInfo::regions)
       .field("shape_matching", &BodyInfo::shape_matching)
+      .field("sleep_speed", &BodyInfo::sleep_speed)
+      .field("sleep_time", &BodyInfo::sleep_time)
       .done();
   Struct<SimulationInfo>(module, "SimulationInfo", Change::frozen)
       .field("particles", &SimulationInfo::particles)

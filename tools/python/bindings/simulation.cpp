@@ -103,6 +103,7 @@ void bind_steps(SimulationClass& simulation) {
            doc("Simulation.energy"))
       .def("energy", long_verb(py::overload_cast<BodyId>(&Simulation::energy, py::const_)), py::arg("body"),
            doc("Simulation.energy#2"))
+      .def("volume", long_verb(&Simulation::volume), py::arg("body"), doc("Simulation.volume"))
       .def("info", long_verb(&Simulation::info), doc("Simulation.info"))
       .def(
           "save",

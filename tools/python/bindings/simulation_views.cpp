@@ -130,6 +130,8 @@ void bind_of_scene(SimulationClass& simulation) {
   def("config", query(&Simulation::config));
   def("material_settings", query(&Simulation::material_settings), "material");
   def("emitter", query(&Simulation::emitter), "emitter");
+  def("emitter_ids", query(&Simulation::emitter_ids));
+  def("held", query(&Simulation::held), "emitter");
   def("colliders", query(&Simulation::colliders));
   def("collider_ids", query(&Simulation::collider_ids));
   def("collider", query(&Simulation::collider), "collider");
