@@ -109,7 +109,10 @@ void remove_rows(Simulation::State& s, BodyState& body, std::span<const std::uin
   for (const std::uint32_t row : rows) places.push_back(row - static_cast<std::uint32_t>(body.begin));
   const bool built = shape.built, kept = shape.reference.size() == body.size();
   CarriedRegions carried;
-  if (built) carried = carry_regions(shape);
+  if (built) {
+    find_parts(shape, s.parts_before);
+    carried = carry_regions(shape);
+  }
   s.store.erase(rows);
   const std::size_t old_end = body.end;
   body.end -= rows.size();
@@ -121,7 +124,15 @@ void remove_rows(Simulation::State& s, BodyState& body, std::span<const std::uin
     return;
   }
   erase_from_reference(places, carried, shape);
-  if (built) rebuild_shape(s, body, carried);
+  if (!built) return;
+  rebuild_shape(s, body, carried);
+  find_parts(shape, s.parts_after);
+  if (s.parts_after.count <= s.parts_before.count) return;
+  body.apart = true;  // nothing holds its parts to one rigid motion
+  s.next_events.push_back({.kind = BodyEvent::Kind::torn,
+                           .body = body.id,
+                           .parts = s.parts_after.count,
+                           .crumbs = s.parts_after.crumbs});
 }
 
 }  // namespace

@@ -98,8 +98,9 @@ double modulus_time_step(const SolverConfig& config, const Material& material, f
 
 void check_modulus(const SolverConfig& config, const Material& material, const BodyState& body,
                    Checks& checks) {
-  if (!config.time_step || !is_elastic(material)) return;
   const float spacing = body.spacing;
+  // Where particles have no neighbours, that is what is told.
+  if (!config.time_step || !is_elastic(material) || spacing >= config.support_radius) return;
   const std::string where = "body '" + body.name + "' of material '" + body.material->name + "'";
   const auto is_too_stiff = [&](const Material& one) {
     return static_cast<double>(*one.youngs_modulus) > most_modulus(config, one, spacing) * (1 + k_rounding);

@@ -5,6 +5,8 @@
 
 #include "colliders/collider_checks.h"
 #include "config/validation.h"
+#include "core/bounds.h"
+#include "core/precision.h"
 #include "shape_matching/reshape.h"
 #include "simulation/phases.h"
 #include "simulation/settings.h"
@@ -171,11 +173,17 @@ void Simulation::set_velocity(std::span<const ParticleId> ids, const Vec3& veloc
   check_finite("velocity", velocity);
   refuse_faster(s, "velocity", velocity.cast<double>().norm());
   for (const ParticleId id : ids) row(id);
+  std::vector<BodyState*> bodies;
   for (const ParticleId id : ids) {
     const std::size_t at = row(id);
     if (!is_pinned(s, at)) s.store.velocity.set(at, velocity);
-    wake_island(s, s.body_of(at));
+    BodyState& body = s.body_of(at);
+    wake_island(s, body);
+    if (bodies.empty() || bodies.back() != &body) bodies.push_back(&body);
   }
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  for (BodyState* body : bodies) measure_rigid(s, *body);
   s.held = false;
 }
 
@@ -184,8 +192,12 @@ void Simulation::set_position(BodyId id, const Vec3& center) {
   State& s = *state_;
   BodyState& body = s.body(id);
   check_finite("body.center", center);
-  wake_island(s, body);
   const Eigen::Vector3d by = center.cast<double>() - s.origin.cast<double>() - middle_of(s, body);
+  const Aabb box = box_around(s.store.position, body.begin, body.end);
+  for (const Vec3& corner : {box.min, box.max})
+    if (const auto why = why_too_far((corner.cast<double>() + by).cast<float>(), body.spacing))
+      throw ConfigError("body.center", *why);
+  wake_island(s, body);
   for (std::size_t row = body.begin; row < body.end; ++row)
     s.store.position.set(row, (s.store.position.get(row).cast<double>() + by).cast<float>());
   measure_rigid(s, body);

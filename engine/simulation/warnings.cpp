@@ -8,6 +8,7 @@
 #include "colliders/shapes.h"
 #include "config/gravity_units.h"
 #include "core/bounds.h"
+#include "simulation/phases.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 #include "simulation/stiffness.h"
@@ -79,6 +80,7 @@ class Warnings {
       look_at_stride(body);
       look_at_volume(body);
       look_at_limp(body);
+      look_at_sleep(body);
     }
     if (state_.step == 0 && state_.bodies.size() > 1) look_at_overlaps();
     if (state_.step == 0)
@@ -111,6 +113,16 @@ class Warnings {
         "): at rest its own weight updates the reference shape, so that it sinks like clay; 40 times "
         "gravity is ",
         40 * gravity);
+  }
+
+  /// What is let go is as fast as gravity makes it in the time after which it sleeps.
+  void look_at_sleep(const BodyState& body) {
+    const double gravity = static_cast<double>(state_.config.gravity.norm());
+    const double speed = sleep_speed(state_, body), time = sleep_time(state_, body);
+    if (gravity > 0 && speed > gravity * time)
+      add(body, "falls asleep in the air, as in sleep_time, ", time,
+          " s, gravity makes nothing as fast as sleep_speed, ", speed, unit(" m/s"),
+          ": lower sleep_speed, or raise sleep_time above ", speed / gravity, " s");
   }
 
   /// What acts on another body as on itself rubs it only as a fluid does.

@@ -303,6 +303,60 @@ TEST(verbs, refuse_what_is_wrong) {
   EXPECT_NE(refusal([&] { s.step(); }).find("a callback may not change"), std::string::npos);
 }
 
+TEST(verbs, keep_the_momentum_of_particles_that_are_thrown_whoever_moves_as_one) {
+  for (const bool half : {false, true}) {
+    SCOPED_TRACE(half);
+    SolverConfig config = solver();
+    config.gravity = {0, 0, 0};
+    config.sleep_speed = 0;
+    Simulation s(config);
+    const BodyId id = s.add_body(cube(6, {0, 0, 0}), Material{.alpha = 0.1f});
+    for (int k = 0; k < 10; ++k) s.step();
+    std::vector<ParticleId> ids(s.ids().begin(), s.ids().end());
+    if (half) ids.resize(ids.size() / 2);
+    s.set_velocity(std::span<const ParticleId>(ids), {0, 0, 0.2f});
+    const double given = s.motion(id).momentum.z();
+    EXPECT_NEAR(given, 0.2 * static_cast<double>(ids.size()), 1e-2);
+    for (int k = 0; k < 5; ++k) s.step();
+    EXPECT_NEAR(s.motion(id).momentum.z(), given, 1e-4 * given);
+  }
+}
+
+TEST(verbs, put_no_body_where_floats_do_not_tell_its_particles_apart) {
+  Simulation s(solver());
+  const BodyId id = s.add_body(cube(4, {0, 0, 0}), Material{});
+  s.step();
+  const std::uint64_t hash = s.state_hash();
+  EXPECT_NE(refusal([&] { s.set_position(id, {1e30f, 0, 0}); }).find("body.center"), std::string::npos);
+  EXPECT_NE(refusal([&] { s.set_position(id, {1e7f, 0, 0}); }).find("floats are steps"), std::string::npos);
+  EXPECT_EQ(s.state_hash(), hash);
+}
+
+TEST(removed_particles, that_held_a_body_together_leave_it_torn_and_its_parts_to_themselves) {
+  SolverConfig config = solver();
+  config.gravity = {0, 0, 0};
+  config.sleep_speed = 0;
+  Simulation s(config);
+  const BodyId id = s.add_body(sample(Lattice{.count = {11, 6, 6}, .jitter = 0}), Material{.alpha = 0.1f});
+  s.step();
+  s.remove_particles(Aabb{{3.5f, -9, -9}, {7.5f, 9, 9}});
+  std::vector<ParticleId> right;
+  for (const ParticleId particle : s.particles_in(Aabb{{7.5f, -9, -9}, {20, 9, 9}}))
+    right.push_back(particle);
+  ASSERT_FALSE(right.empty());
+  s.set_velocity(std::span<const ParticleId>(right), {0.2f, 0, 0});
+  s.step();
+  std::size_t torn = 0;
+  for (const BodyEvent& event : s.events())
+    if (event.kind == BodyEvent::Kind::torn && event.body == id) torn = event.parts;
+  EXPECT_EQ(torn, 2u);
+  for (int k = 0; k < 40; ++k) s.step();
+  double left = 0;
+  for (const Vec3& x : s.positions_by_id())
+    if (x.x() < 3.5f) left = std::max(left, static_cast<double>(x.x()));
+  EXPECT_NEAR(left, 3, 1e-3) << "what stays is not drawn along";
+}
+
 TEST(queries, find_what_a_ray_or_a_place_meets) {
   Simulation s(solver());
   const BodyId low = s.add_body(cube(4, {0, 0, 0}), Material{});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "mallow/errors.h"
@@ -303,6 +304,23 @@ TEST(sleep, takes_nothing_in_the_air_however_short_steps_are) {
       s.advance(6);
       EXPECT_NEAR(s.motion(id).velocity.z(), static_cast<double>(up) - 0.3 * 6, 1e-3) << step << ' ' << up;
     }
+}
+
+TEST(sleep, in_the_air_is_warned_of_where_settings_ask_for_it) {
+  const auto says = [](float speed, float time) {
+    SolverConfig config = solver();
+    config.sleep_speed = speed;
+    config.sleep_time = time;
+    Simulation s(config);
+    s.add_body(cube(3, {0, 0, 50}), Material{});
+    s.prepare();
+    return std::ranges::any_of(s.info().warnings, [](const std::string& text) {
+      return text.find("falls asleep in the air") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(says(0.5f, 1));
+  EXPECT_FALSE(says(0.5f, 2));
+  EXPECT_FALSE(says(0, 1));
 }
 
 }  // namespace sleep_test

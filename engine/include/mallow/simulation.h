@@ -266,7 +266,8 @@ class MALLOW_EXPORT Simulation {
   void set_velocity(std::span<const ParticleId> ids, const Vec3& velocity);
   /// Moves a body, pinned particles too, so that its centre of mass is there [m]. Where it then overlaps
   /// another body, contact pushes apart those particles that are near each other; two that stand deep in each
-  /// other may stay so.
+  /// other may stay so. Throws ConfigError, and changes nothing, also where floats cannot tell its particles
+  /// apart.
   void set_position(BodyId body, const Vec3& center_of_mass);
   /// Adds momentum [N s] to the particles of a body that are not pinned, the same to each. Throws as
   /// set_velocity() does.
@@ -276,8 +277,8 @@ class MALLOW_EXPORT Simulation {
   /// set_velocity() does.
   std::size_t add_impulse(const Vec3& center, float radius, const Vec3& impulse);
   /// A body that is not enabled stands where it is, is met by nothing, and costs nothing. It is still seen in
-  /// every view, and goes on as fast as it was when it is enabled again. Throws ConfigError where there is
-  /// none of this id, or no longer.
+  /// every view, goes on as fast as it was when it is enabled again, and nothing may be added where it
+  /// overlaps it. Throws ConfigError where there is none of this id, or no longer.
   void enable(BodyId body, bool enabled);
   /// As set last; true at first. Throws as enable() does.
   bool is_enabled(BodyId body) const;
