@@ -118,7 +118,8 @@ void check_stiffness(const SolverConfig& config, const Material& material, const
   if (static_cast<double>(*material.elastic_time_step) >= least * (1 - k_rounding)) return;
   text << *material.elastic_time_step << not_allowed_in(where) << ": at least (1 - alpha) "
        << (factor == 1 ? "" : "time_step_factor^2 ") << "solver.time_step/" << most << " = " << least
-       << ", as a stiffer body would gain energy; lower solver.time_step (now " << *config.time_step << ")";
+       << ", as a stiffer body would gain energy; lower solver.time_step (now " << *config.time_step << ')';
+  if (factor > 1) text << ", or solver.time_step_factor (now " << factor << ')';
   checks.problem("material.elastic_time_step", text.str());
 }
 
@@ -181,6 +182,8 @@ void check_elasticity(const SolverConfig& config, const Material& material, cons
   text.precision(3);
   if (const double step = spring.base_for(asked); step > 0)
     text << ", or solver.time_step (now " << base << ") to " << step << " s";
+  if (config.time_step_factor > 1)
+    text << ", or solver.time_step_factor (now " << config.time_step_factor << ')';
   if (material.youngs_modulus)
     text << ", or material.youngs_modulus";
   else

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -214,6 +217,44 @@ Body read_ply_points(const std::filesystem::path& file) {
 
 }  // namespace
 
+namespace {
+
+/// So many points tell how far all are apart: their nearest are looked for among all.
+constexpr std::size_t k_looked_at = 101;
+/// Fewer are no lattice.
+constexpr std::size_t k_fewest = 8;
+/// Shares of the spacing between which the nearest of most points are: 1 on a cubic lattice, 1.12 where they
+/// are packed as closely as they can be.
+constexpr float k_nearest = 0.7f, k_farthest = 1.4f;
+
+/// The median distance of points to the nearest other one; at least 2 points.
+float median_nearest(const std::vector<Vec3>& points) {
+  const std::size_t count = std::min(points.size(), k_looked_at);
+  std::vector<float> nearest(count, std::numeric_limits<float>::infinity());
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = k * points.size() / count;
+    for (std::size_t j = 0; j < points.size(); ++j)
+      if (j != i) nearest[k] = std::min(nearest[k], (points[j] - points[i]).squaredNorm());
+  }
+  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::ranges::nth_element(nearest, middle);
+  return std::sqrt(*middle);
+}
+
+/// A spacing that is not that of the points: each stands for a cube as wide as that.
+void look_at_spacing(Body& body) {
+  if (body.positions.size() < k_fewest || !(body.spacing > 0)) return;
+  const float apart = median_nearest(body.positions), share = apart / body.spacing;
+  if (!std::isfinite(share) || (share >= k_nearest && share <= k_farthest)) return;
+  std::ostringstream text;
+  text << "spacing " << body.spacing << " m is not that of its points, whose nearest are " << apart
+       << " m apart in the median: " << std::pow(share, -3.0f)
+       << " times the mass, as each stands for a cube as wide as the spacing; give spacing = " << apart;
+  body.notes.push_back(text.str());
+}
+
+}  // namespace
+
 Body read_points(const std::filesystem::path& file, float spacing) {
   const std::string ending = lower_case_ending(file);
   Body body;
@@ -226,6 +267,7 @@ Body read_points(const std::filesystem::path& file, float spacing) {
   }
   if (body.positions.empty()) fail_file(file, "holds no points: at least one is needed");
   body.spacing = spacing;
+  look_at_spacing(body);
   return body;
 }
 

@@ -66,8 +66,17 @@ struct Allowed {
 
 }  // namespace
 
+std::string key_of_schedule(const BoundField& field) {
+  return std::string_view(field.name).ends_with("_by_temperature") ? "temperature" : "time";
+}
+
 std::string allowed(const BoundField& field) {
-  return std::visit(Allowed{field.range}, field.target);
+  std::string text = std::visit(Allowed{field.range}, field.target);
+  const std::string time = "time", key = key_of_schedule(field);
+  if (key == time) return text;
+  for (std::size_t at = text.find(time); at != text.npos; at = text.find(time, at + key.size()))
+    text.replace(at, time.size(), key);
+  return text;
 }
 
 std::string value_text(const BoundField& field) {

@@ -54,6 +54,8 @@ BoundFields fields(Config& config) {
 
 /// "a number > 0", "3 numbers in [0, 1]", "\"blended\", \"anisotropic\" or \"spheres\"".
 std::string allowed(const BoundField& field);
+/// What the keys of a schedule are: "time" or "temperature".
+std::string key_of_schedule(const BoundField& field);
 /// The value as TOML, or an empty string where it is left out.
 std::string value_text(const BoundField& field);
 

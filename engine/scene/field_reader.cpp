@@ -126,10 +126,11 @@ class ValueReader {
     if (problems_.count() != problems_before) return;
     for (std::size_t i = 1; i < keys.size(); ++i)
       if (keys[i].time <= keys[i - 1].time)
-        problems_.add(
-            (*keyframes)[i].place, element_path(path_, i),
-            not_allowed("time " + number_text(keys[i].time),
-                        "a time after " + number_text(keys[i - 1].time) + ", that of the key before"));
+        problems_.add((*keyframes)[i].place, element_path(path_, i),
+                      not_allowed(key_of_schedule(field_) + ' ' + number_text(keys[i].time),
+                                  "a " + key_of_schedule(field_) +
+                                      (key_of_schedule(field_) == "time" ? " after " : " above ") +
+                                      number_text(keys[i - 1].time) + ", that of the key before"));
     if (problems_.count() == problems_before) *schedule = Schedule(std::move(keys));
   }
 
@@ -172,7 +173,8 @@ class ValueReader {
     const std::string path = element_path(path_, index);
     const Array* pair = node.get_if<Array>();
     if (!pair || pair->size() != 2) {
-      problems_.add(node.place, path, not_allowed(describe(node), "two numbers [time, number]"));
+      problems_.add(node.place, path,
+                    not_allowed(describe(node), "two numbers [" + key_of_schedule(field_) + ", number]"));
       return key;
     }
     read_number((*pair)[0], element_path(path, 0), k_finite, &key.time);

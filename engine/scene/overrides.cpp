@@ -111,6 +111,13 @@ void take_in_preset(Node& root, const std::vector<Segment>& segments, const Plac
   set_place(list->back(), place);
 }
 
+/// Whether the scene or the presets have a material of that name.
+bool is_material(const Node& root, const std::string& name) {
+  const Node* given = find(root, k_materials);
+  const Array* list = given ? given->get_if<Array>() : nullptr;
+  return (list && named(*list, name)) || find_preset(name);
+}
+
 /// What to say of "material.NAME" where neither the scene nor the presets have the name.
 std::string other_materials(const Node& root, const std::string& name) {
   std::vector<std::string> names;
@@ -182,15 +189,24 @@ void apply_override(Node& root, const std::string& override_text, Problems& prob
   if (segments->size() > 1 && (*segments)[1].index && std::ranges::find(known, section) == known.end())
     return problems.add(place, path, "unknown key '" + section + "'" + suggestion(section, known));
 
+  if (segments->size() == 2 && section == k_materials && !(*segments)[1].index &&
+      is_material(root, (*segments)[1].key))
+    return problems.add(place, path,
+                        "is a whole material: give one key of it at a time, as " + path + ".alpha=0.1");
   take_in_preset(root, *segments, place);
   if (const std::string why = what_is_missing(root, *segments); !why.empty())
     return problems.add(place, path, "does not exist: " + why);
 
   Node* node = &root;
+  std::string before;
   for (const Segment& segment : *segments) {
     std::string why_not;
+    const Array* list = node->get_if<Array>();
+    const bool counted = list && !segment.index && !list->empty() && list->front().get_if<Table>();
     node = enter(*node, segment, place, why_not);
+    if (!node && counted) why_not += "; the first is " + element_path(before, 0) + path.substr(before.size());
     if (!node) return problems.add(place, path, "does not exist: " + why_not);
+    before = segment.index ? element_path(before, *segment.index) : join_path(before, segment.key);
   }
   *node = std::move(*value);
 }

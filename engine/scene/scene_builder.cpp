@@ -99,6 +99,22 @@ std::vector<Problem> about(const std::filesystem::path& file, const ConfigError&
   return problems;
 }
 
+/// The same problems of a body, which say by what its particles are too stiff: its paint, or its file.
+std::vector<Problem> about_stiffness(const SceneBody& body, const std::filesystem::path& folder,
+                                     const ConfigError& error) {
+  const auto paints = [](const ScenePaint& paint) { return paint.stiffness || paint.alpha; };
+  const auto* points = std::get_if<PointsSource>(&body.source);
+  std::vector<Problem> problems = error.problems();
+  for (Problem& problem : problems) {
+    if (problem.field != "body.stiffness") continue;
+    if (const auto paint = std::ranges::find_if(body.paint, paints); paint != body.paint.end())
+      problem.field = element_path(k_paint_key, static_cast<std::size_t>(paint - body.paint.begin()));
+    else if (points)
+      problem.file = (folder / points->file).string();
+  }
+  return problems;
+}
+
 /// Moves a body. Throws ConfigError where floats cannot tell its points apart then.
 void move(Body& body, const Eigen::Vector3d& by) {
   if (by.isZero(0)) return;
@@ -194,6 +210,16 @@ void paint_column(const SceneBody& body, std::optional<float> ScenePaint::*value
   }
 }
 
+/// Columns of a file that do nothing.
+void look_at_columns(const Material& material, Body& points) {
+  const auto follows = [&](const char* key) {
+    points.notes.push_back(std::string("its ") + key + " has no effect, as it follows the material's " + key +
+                           "_by_temperature; give a temperature in its place");
+  };
+  if (!points.alpha.empty() && material.alpha_by_temperature) follows("alpha");
+  if (!points.plastic_yield.empty() && material.plastic_yield_by_temperature) follows("plastic_yield");
+}
+
 /// Paint that does nothing.
 void look_at_paint(const SceneBody& body, const Material& material, Body& points) {
   for (std::size_t k = 0; k < body.paint.size(); ++k) {
@@ -217,6 +243,7 @@ void look_at_paint(const SceneBody& body, const Material& material, Body& points
 
 void paint(const SceneBody& body, const Material& material, Body& points) {
   using namespace scene_file;
+  look_at_columns(material, points);
   paint_column(body, &ScenePaint::alpha, material.alpha.at(0), points, points.alpha);
   paint_column(body, &ScenePaint::stiffness, 1, points, points.stiffness);
   const auto& yields = material.plastic_yield_by_temperature;
@@ -271,10 +298,14 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
                                   " are allowed");
       const std::size_t number = groups.of_body[i];
       const auto& group = groups.list[number];
-      if (ids[number])
-        simulation.extend_body(*ids[number], points);
-      else if (!refused.contains(group.material))
-        ids[number] = add_body(simulation, points, materials.at(group.material), group, refused);
+      try {
+        if (ids[number])
+          simulation.extend_body(*ids[number], points);
+        else if (!refused.contains(group.material))
+          ids[number] = add_body(simulation, points, materials.at(group.material), group, refused);
+      } catch (const ConfigError& error) {
+        throw ConfigError(about_stiffness(body, scene.file.parent_path(), error));
+      }
       if (notes)
         for (const std::string& note : points.notes) notes->push_back(path + ": " + note);
     });

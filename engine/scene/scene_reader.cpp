@@ -62,6 +62,7 @@ class SceneReader {
     read_section("render", fields(scene_.render));
     if (const Node* render = find(root_, "render"))
       check_file(*render, "render", "environment", files_, scene_.render.environment, problems_);
+    check_view();
     check_materials();
     check_groups();
     check_particles();
@@ -81,6 +82,15 @@ class SceneReader {
     problems_.add(
         place_of_clash(find(*solver, "update_interval")->place, find(*solver, "update_period")->place),
         "solver.update_interval", "is not allowed beside update_period: give one of the two");
+  }
+
+  /// Before frames are computed that nothing can draw.
+  void check_view() {
+    const RenderConfig& render = scene_.render;
+    if (!render.eye || !render.target || *render.eye != *render.target) return;
+    const Node& given = *find(root_, "render");
+    problems_.add(place_of_clash(find(given, "target")->place, find(given, "eye")->place), "render.target",
+                  "is not allowed where render.eye is: the camera stands at eye and looks at target");
   }
 
   void read_list(const char* key, std::size_t at_least,

@@ -124,6 +124,26 @@ void look_at_creep(const Scene& scene, double seconds, std::vector<std::string>&
   }
 }
 
+/// What begins only when a run is over.
+void look_at_beginnings(const Scene& scene, double seconds, std::vector<std::string>& all) {
+  const auto look = [&](const char* list, std::size_t number, const char* key, double begin) {
+    if (begin < seconds) return;
+    std::ostringstream text;
+    text << list << '[' << number << "]: " << key << ' ' << begin << " s is not reached, as the run covers "
+         << seconds << " s; give an earlier time, or more frames";
+    all.push_back(text.str());
+  };
+  const auto look_at_keyframes = [&](const char* list, std::size_t number, const auto& keys) {
+    if (keys.size() > 1) look(list, number, "keyframes[0].time", static_cast<double>(keys.front().time));
+  };
+  for (std::size_t c = 0; c < scene.colliders.size(); ++c)
+    look_at_keyframes("collider", c, scene.colliders[c].scene_keyframes);
+  for (std::size_t e = 0; e < scene.emitters.size(); ++e) {
+    look("emitter", e, "start", scene.emitters[e].start.value_or(-1));
+    look_at_keyframes("emitter", e, scene.emitters[e].scene_keyframes);
+  }
+}
+
 /// Half a turn [degrees]: from one keyframe to the next things turn the shorter way round.
 constexpr float k_half_turn = 180;
 
@@ -156,6 +176,7 @@ std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info
   const double seconds = frames * frame;
   if (scene.run.frames == 0) return all;
   look_at_creep(scene, seconds, all);
+  look_at_beginnings(scene, seconds, all);
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
     look_at_turns("collider[" + std::to_string(c) + "]", scene.colliders[c].scene_keyframes, all);
   for (std::size_t e = 0; e < scene.emitters.size(); ++e)

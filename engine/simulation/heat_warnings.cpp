@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "config/gravity_units.h"
 #include "mallow/materials.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
@@ -16,6 +17,8 @@ namespace {
 /// plates may be of either, and are nobody's mistake.
 constexpr float k_coldest_meant = 70;
 constexpr float k_ice = 273.15f;  // [K]
+/// [J/(kg K)]
+constexpr float k_least_specific_heat = 100;
 
 /// Least and most of some temperatures [K].
 struct TemperatureRange {
@@ -39,6 +42,11 @@ bool is_left_out(const Schedule& air) {
   return air.keys().size() == 1 && air.lowest() == usual.air_temperature.lowest();
 }
 
+/// Alpha at the start; nothing where it is left out.
+std::optional<float> given_alpha(const Material& material) {
+  return material.alpha.highest() > 0 ? std::optional(material.alpha.at(0)) : std::nullopt;
+}
+
 class HeatWarnings {
  public:
   explicit HeatWarnings(const Simulation::State& state) : state_(state) {}
@@ -49,7 +57,15 @@ class HeatWarnings {
     for (const BodyState& body : state_.bodies) {
       look_at_lack(body);
       look_at_conductivity(body);
+      look_at_specific_heat(body);
       const Material& material = body.material->settings;
+      look_at_both(body, "alpha", given_alpha, material.alpha_by_temperature);
+      look_at_both(
+          body, "viscosity", [](const Material& one) { return one.viscosity; },
+          material.viscosity_by_temperature);
+      look_at_both(
+          body, "plastic_yield", [](const Material& one) { return one.plastic_yield; },
+          material.plastic_yield_by_temperature);
       if (!is_in_kelvins) continue;
       look_at_keys(body, "alpha", material.alpha_by_temperature);
       look_at_keys(body, "viscosity", material.viscosity_by_temperature);
@@ -114,6 +130,32 @@ class HeatWarnings {
                          material.plastic_yield_by_temperature;
     if (material.temperature && follows && material.conductivity == 0)
       list_.add(body, "no heat passes through it, as its conductivity is 0; give material.conductivity");
+  }
+
+  /// A specific heat in kJ/(kg K): no solid or liquid has so little but heavy metals, from 120 J/(kg K).
+  void look_at_specific_heat(const BodyState& body) {
+    const float heat = body.material->settings.specific_heat;
+    if (!body.material->settings.temperature || heat >= k_least_specific_heat ||
+        !is_in_metres(state_.config.gravity))
+      return;
+    list_.add(body, "specific_heat ", heat,
+              " J/(kg K): no material has so little, if gravity is in metres and seconds; give ", 1000 * heat,
+              " for ", heat, " kJ/(kg K)");
+  }
+
+  /// What is given beside keys by temperature, which alone count. A material by name may have what it starts
+  /// with beside them, and so may who starts with that.
+  void look_at_both(const BodyState& body, const char* what, std::optional<float> (*given)(const Material&),
+                    const std::optional<Schedule>& keys) {
+    const Material& material = body.material->settings;
+    const std::optional<float> value = given(material);
+    if (!keys || !material.temperature || !value) return;
+    if (*value == keys->at(static_cast<double>(*material.temperature))) return;
+    const MaterialPreset* known = find_preset(body.material->name);
+    if (known && value == given(known->material)) return;
+    list_.add(body, what, ' ', *value, " has no effect, as ", what, "_by_temperature is what it follows, ",
+              keys->at(static_cast<double>(*material.temperature)), " at its temperature of ",
+              *material.temperature, "; change that, or leave it out");
   }
 
   /// Nothing that there is gets where the schedule changes.

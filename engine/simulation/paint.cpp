@@ -42,10 +42,7 @@ void check_springs(const Simulation::State& s, const BodyState& body, float shar
 }
 
 void check_elasticity(const Simulation::State& s, const BodyState& body, Checks& checks) {
-  float most = 0;
-  for (std::size_t row = body.begin; row < body.end; ++row)
-    most = std::max(most, (1 - least_alpha(s, body, row)) * s.store.stiffness[row]);
-  check_springs(s, body, most, checks);
+  check_springs(s, body, static_cast<float>(painted_elasticity(s, body)), checks);
 }
 
 /// Bodies that have particles among these rows, and a column that they get a value in.
@@ -102,6 +99,15 @@ float yield_of(const Material& material) {
 }
 
 }  // namespace
+
+double painted_elasticity(const Simulation::State& s, const BodyState& body) {
+  double most = 0;
+  if (!body.is_painted()) return most;
+  for (std::size_t row = body.begin; row < body.end; ++row)
+    most = std::max(most, (1 - static_cast<double>(least_alpha(s, body, row))) *
+                              static_cast<double>(s.store.stiffness[row]));
+  return most;
+}
 
 void refuse_yields(const BodyState& body, const Body& points) {
   if (points.plastic_yield.empty() || flows(body.material->settings)) return;

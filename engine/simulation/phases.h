@@ -158,6 +158,9 @@ void paint_rows(Simulation::State& state, BodyState& body, std::size_t begin, co
 /// A body is about to become one with another of its material: what either paints it paints, and particles of
 /// the other one have what they follow now.
 void paint_alike(Simulation::State& state, BodyState& body, BodyState& other);
+/// The largest (1 − alpha) times stiffness of particles that have their own, at the least alpha that they may
+/// come to; 0 where none has.
+double painted_elasticity(const Simulation::State& state, const BodyState& body);
 /// Throws ConfigError where points make a body too stiff.
 void check_elasticity(const Simulation::State& state, const BodyState& body, const Body& points);
 /// Throws ConfigError where a body is stiffer than its steps carry.

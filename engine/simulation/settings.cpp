@@ -35,7 +35,8 @@ TimeStepSource resolve_time_step(const Simulation::State& state, const SceneScal
   config.time_step = default_time_step(scale);
   double carried = std::numeric_limits<double>::infinity();
   for (const BodyState& body : state.bodies)
-    carried = std::min(carried, modulus_time_step(config, body.material->settings, body.spacing));
+    carried = std::min(carried, modulus_time_step(config, body.material->settings, body.spacing,
+                                                  painted_elasticity(state, body)));
   const bool is_shorter =
       std::isfinite(carried) && !(config.time_step && static_cast<double>(*config.time_step) <= carried);
   if (is_shorter) config.time_step = static_cast<float>(carried);

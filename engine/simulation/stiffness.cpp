@@ -21,14 +21,18 @@ constexpr double k_default_pull = 1;
 constexpr double k_room = 0.99;
 constexpr double k_rounding = 1e-5;  // of what is typed with six digits
 
-bool is_elastic(const Material& material) {
-  return material.youngs_modulus && !material.alpha.keys().empty() && lowest_alpha(material) < 1;
+/// 1 − α, at most.
+double elastic_share(const Material& material) {
+  return 1 - static_cast<double>(lowest_alpha(material));
 }
 
-/// (1 − α) Y/(ρ m2) [1/s²], of which steps take Δt² times.
-double pull_rate(const SolverConfig& config, const Material& material, float spacing) {
-  return (1 - static_cast<double>(lowest_alpha(material))) * static_cast<double>(*material.youngs_modulus) /
-         stiffness_scale(config, material, spacing);
+bool is_elastic(const Material& material) {
+  return material.youngs_modulus && !material.alpha.keys().empty() && elastic_share(material) > 0;
+}
+
+/// Y/(ρ m2) times the share of it that acts [1/s²], of which steps take Δt² times.
+double pull_rate(const SolverConfig& config, const Material& material, float spacing, double share) {
+  return share * static_cast<double>(*material.youngs_modulus) / stiffness_scale(config, material, spacing);
 }
 
 /// The step whose pull, damping and all, is `most`: the root of rate (Δt² + 2 τ Δt) = most.
@@ -88,11 +92,14 @@ double most_modulus(const SolverConfig& config, const Material& material, float 
   return stiffness_scale(config, material, spacing) / (share * step * pull);
 }
 
-double modulus_time_step(const SolverConfig& config, const Material& material, float spacing) {
-  if (!is_elastic(material)) return std::numeric_limits<double>::infinity();
+double modulus_time_step(const SolverConfig& config, const Material& material, float spacing,
+                         double painted) {
+  const double share = std::max(elastic_share(material), painted);
+  if (!material.youngs_modulus || material.alpha.keys().empty() || !(share > 0))
+    return std::numeric_limits<double>::infinity();
   const double factor = static_cast<double>(config.time_step_factor);
   const double most = static_cast<double>(most_pull(material)) / (factor * factor);
-  return step_of_pull(pull_rate(config, material, spacing), static_cast<double>(material.damping_time),
+  return step_of_pull(pull_rate(config, material, spacing, share), static_cast<double>(material.damping_time),
                       std::min(k_default_pull, k_room * most));
 }
 
@@ -110,7 +117,7 @@ void check_modulus(const SolverConfig& config, const Material& material, const B
   if (is_too_stiff(undamped)) {
     const double most = most_modulus(config, material, spacing);
     const double factor = static_cast<double>(config.time_step_factor);
-    const double rate = pull_rate(config, material, spacing);
+    const double rate = pull_rate(config, material, spacing, elastic_share(material));
     const double step = std::min(
         step_of_pull(rate, static_cast<double>(material.damping_time), static_cast<double>(k_stiffest)),
         step_of_pull(rate, 0, static_cast<double>(most_pull(material))));
@@ -118,8 +125,11 @@ void check_modulus(const SolverConfig& config, const Material& material, const B
     text.precision(3);
     text << *material.youngs_modulus << " is not allowed in " << where << ", whose spacing is " << spacing
          << " m: at most " << most << " Pa in steps of " << factor * static_cast<double>(*config.time_step)
-         << " s, as a stiffer body would gain energy; lower it, or solver.time_step to "
-         << 0.99 * step / factor << " s";
+         << " s, as a stiffer body would gain energy; lower it, or ";
+    if (factor > 1)
+      text << "solver.time_step_factor (now " << factor << ") to "
+           << 0.99 * step / static_cast<double>(*config.time_step) << ", or ";
+    text << "solver.time_step to " << 0.99 * step / factor << " s";
     return checks.problem("material.youngs_modulus", text.str());
   }
   // What is too stiff by its damping alone is damped too much.

@@ -35,8 +35,10 @@ float lowest_alpha(const Material& material);
 double most_modulus(const SolverConfig& config, const Material& material, float spacing);
 
 /// Δt0 that Y asks for where it is left out; infinite where there is no Y. At it the pull of a step is 1, as
-/// it is by default without Y: that leaves room for pressure; less where the longest step would carry no more.
-double modulus_time_step(const SolverConfig& config, const Material& material, float spacing);
+/// it is by default without Y: that leaves room for pressure; less where the longest step would carry no
+/// more. painted: the largest (1 − α) times stiffness of particles that have their own, 0 where none has;
+/// what the material has counts where it is more.
+double modulus_time_step(const SolverConfig& config, const Material& material, float spacing, double painted);
 
 /// Whether steps are short enough for Y, and for its damping; nothing where Δt0 is not known yet. body: that
 /// the message names, with its material.

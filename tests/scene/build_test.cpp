@@ -278,6 +278,60 @@ TEST_F(build_scene, says_which_step_carries_a_stiffness_that_is_painted) {
   EXPECT_EQ(refused("elastic_time_step = " + std::to_string(elastic), "solver.time_step=0.001"), "no error");
 }
 
+TEST_F(build_scene, names_the_paint_or_the_file_that_makes_particles_too_stiff) {
+  const auto refused = [&](const std::string& body) {
+    return build_error(
+        read("[solver]\nsupport_radius = 2.0\ntime_step = 0.15\n[[material]]\nname = "
+             "\"jelly\"\n[[body]]\nmaterial = \"jelly\"\n" +
+             body));
+  };
+  const std::string paint =
+      "paint = [{ sphere = { radius = 9 }, temperature = 3 }, { sphere = { radius = 9 }, "
+      "stiffness = 40 }]\n";
+  const std::string box = refused("box = { count = [2, 2, 2], spacing = 1.0 }\n" + paint);
+  EXPECT_NE(box.find("body[0].box: paint[1]: makes (1 - alpha) times stiffness 40"), box.npos) << box;
+  write("grains.csv", "x,y,z,stiffness\n0,0,0,1\n1,0,0,40\n");
+  const std::string file = refused("points = { file = \"grains.csv\", spacing = 1.0 }\n");
+  EXPECT_NE(file.find("grains.csv: body.stiffness: makes (1 - alpha) times stiffness 40"), file.npos) << file;
+}
+
+TEST_F(build_scene, names_a_spacing_that_is_not_that_of_the_points) {
+  std::string points = "x,y,z\n";
+  for (int i = 0; i < 27; ++i)
+    points += std::to_string(0.5 * (i % 3)) + ',' + std::to_string(0.5 * (i / 3 % 3)) + ',' +
+              std::to_string(0.5 * (i / 9)) + '\n';
+  write("grains.csv", points);
+  const auto notes_of = [&](const std::string& spacing) {
+    std::vector<std::string> notes;
+    build(read("[solver]\nsupport_radius = 2.0\n[[material]]\nname = \"jelly\"\n[[body]]\nmaterial = "
+               "\"jelly\"\npoints = { file = \"grains.csv\", spacing = " +
+               spacing + " }\n"),
+          1, &notes);
+    return notes;
+  };
+  for (const char* spacing : {"0.36", "0.5", "0.71"}) EXPECT_TRUE(notes_of(spacing).empty()) << spacing;
+  EXPECT_EQ(notes_of("0.25").size(), 1u);
+  EXPECT_EQ(
+      notes_of("1.0"),
+      std::vector<std::string>{
+          "body[0].points: grains.csv: spacing 1 m is not that of its points, whose nearest are 0.5 m "
+          "apart in the median: 8 times the mass, as each stands for a cube as wide as the spacing; give "
+          "spacing = 0.5"});
+}
+
+TEST_F(build_scene, names_a_column_of_a_file_that_follows_temperature_instead) {
+  write("grains.csv", "x,y,z,alpha\n0,0,0,0.5\n1,0,0,0.5\n");
+  std::vector<std::string> notes;
+  build(read("[solver]\nsupport_radius = 2.0\n[[material]]\nname = \"jelly\"\ntemperature = 300\n"
+             "alpha_by_temperature = [[300, 0.1], [310, 1]]\n[[body]]\nmaterial = \"jelly\"\npoints = { file "
+             "= \"grains.csv\", spacing = 1.0 }\n"),
+        1, &notes);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("its alpha has no effect, as it follows the material's alpha_by_temperature"),
+            notes[0].npos)
+      << notes[0];
+}
+
 TEST_F(build_scene, names_what_a_temperature_is_missing_for) {
   const std::string text = build_error(read(two_cubes("alpha_by_temperature = [[300, 0.1], [310, 1]]")));
   EXPECT_NE(text.find("material.temperature: is missing: alpha_by_temperature needs the temperature of the "

@@ -31,6 +31,32 @@ TEST_F(heat_warnings, name_what_counts_for_nothing_without_a_temperature) {
             "carries no heat"));
 }
 
+TEST_F(heat_warnings, name_what_is_given_beside_keys_by_temperature) {
+  const auto butter = [&](const std::string& change) {
+    return warnings_of(SceneFixture::read(on_a_plate("butter", "", "", ""), {"material.butter." + change}));
+  };
+  EXPECT_TRUE(warns(butter("alpha=0.9"),
+                    "alpha 0.9 has no effect, as alpha_by_temperature is what it follows, "
+                    "0.4 at its temperature of 291"));
+  EXPECT_TRUE(warns(butter("viscosity=3"), "viscosity 3 has no effect"));
+  EXPECT_FALSE(warns(butter("temperature=295"), "has no effect")) << "butter has an alpha beside its keys";
+  const std::string own =
+      "temperature = 300.0\nconductivity = 1.0\nplastic_yield_by_temperature = [[299.0, "
+      "0.1], [310.0, 0.01]]\nalpha = 0.3\n";
+  EXPECT_TRUE(
+      warns(warnings_of(read(jelly(own + "plastic_yield = 0.3"))), "plastic_yield 0.3 has no effect"));
+  EXPECT_FALSE(warns(warnings_of(read(jelly(own))), "has no effect"));
+}
+
+TEST_F(heat_warnings, name_a_specific_heat_in_kilojoules) {
+  const auto with = [&](const std::string& heat) {
+    return warns(warnings_of(read(jelly("temperature = 300.0\nconductivity = 1.0\nspecific_heat = " + heat))),
+                 "give 4200 for 4.2 kJ/(kg K)");
+  };
+  EXPECT_TRUE(with("4.2"));
+  EXPECT_FALSE(with("4200.0"));
+}
+
 TEST_F(heat_warnings, name_temperatures_at_which_nothing_that_there_is_changes) {
   const std::string plate = "[[collider]]\nplane = { offset = -1.0 }\ntemperature = 350.0\n";
   for (const std::string what : {"alpha", "viscosity", "plastic_yield"}) {

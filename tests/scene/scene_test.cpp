@@ -462,6 +462,34 @@ TEST_F(scene, can_be_overridden) {
   EXPECT_EQ(read.solver.instruction_level, InstructionLevel::v3);
 }
 
+TEST_F(scene, refuses_a_camera_that_looks_at_itself) {
+  const std::string text = k_small_scene + "[render]\neye = [1, 2, 3]\ntarget = ";
+  EXPECT_EQ(
+      problems(text + "[1, 2, 3]\n"),
+      std::vector<std::string>{"scene.toml:10:10: render.target: is not allowed where render.eye is: the "
+                               "camera stands at eye and looks at target"});
+  EXPECT_TRUE(problems(text + "[1, 2, 4]\n").empty());
+}
+
+TEST_F(scene, calls_the_keys_of_what_follows_temperature_temperatures) {
+  const auto of = [&](const std::string& keys) {
+    return problems(
+        "[solver]\nsupport_radius = 2.0\n[[material]]\nname = \"jelly\"\nalpha_by_temperature = " + keys +
+        k_small_scene.substr(k_small_scene.find("\n[[body]]")));
+  };
+  const std::string where = "scene.toml:5:35: material[0].alpha_by_temperature[1]: ";
+  EXPECT_EQ(
+      of("[[310, 1], [300, 0.1]]"),
+      std::vector<std::string>{where + "temperature 300.0 is not allowed: a temperature above 310.0, that "
+                                       "of the key before"});
+  EXPECT_EQ(of("[[310, 1], 3]"),
+            std::vector<std::string>{where + "3 is not allowed: two numbers [temperature, number]"});
+  const auto words = of("true");
+  ASSERT_EQ(words.size(), 1u);
+  EXPECT_NE(words[0].find("[[temperature, number], ...] with temperatures that increase"), words[0].npos)
+      << words[0];
+}
+
 TEST_F(scene, takes_the_last_of_two_overrides) {
   EXPECT_EQ(SceneFixture::read(k_small_scene, {"run.frames=10", "run.frames=20"}).run.frames, 20);
 }
@@ -473,12 +501,19 @@ TEST_F(scene, names_the_override_that_is_wrong) {
       {"run.frames=ten", "run.frames: \"ten\" (a string) is not allowed: a whole number in [0, 2147483647]"},
       {"material[1].alpha=0", "material[1].alpha: does not exist: there are 1, counted from 0"},
       {"material.jam.alpha=0",
-       "material.jam.alpha: does not exist: no material has the name 'jam'; known are jelly, rubber, gelatin, "
+       "material.jam.alpha: does not exist: no material has the name 'jam'; known are jelly, rubber, "
+       "gelatin, "
        "plasticine, clay, dough, butter, chocolate, toothpaste, shaving_cream, mayonnaise, ketchup, honey "
        "and water"},
       {"pin[0].velocity=[0,0,1]", "pin[0].velocity: does not exist: there is none"},
       {"material.jely.alpha=0",
        "material.jely.alpha: does not exist: no material has the name 'jely'; did you mean 'jelly'?"},
+      {"material.jelly={alpha=0.1}",
+       "material.jelly: is a whole material: give one key of it at a time, as material.jelly.alpha=0.1"},
+      {"material.butter={alpha=0.1}",
+       "material.butter: is a whole material: give one key of it at a time, as material.butter.alpha=0.1"},
+      {"body.group=1",
+       "body.group: does not exist: none of these has the name 'group'; the first is body[0].group"},
       {"solver.time_step.x=1", "solver.time_step.x: does not exist: this is not a table"},
       {"solver[0]=1", "solver[0]: does not exist: this is not a list"},
       {"bodies[0].merges=true", "bodies[0].merges: unknown key 'bodies'; did you mean 'body'?"},

@@ -145,6 +145,27 @@ TEST_F(scene_warnings, name_creep_that_takes_longer_than_the_run) {
   EXPECT_FALSE(warns(warnings_of(read(jelly(flows + "1.0"))), "plastic_creep"));
 }
 
+TEST_F(scene_warnings, name_what_begins_when_the_run_is_over) {
+  const auto emits = [&](const std::string& start) {
+    return warns(warnings_of(read(jelly("alpha = 0.3",
+                                        "[[emitter]]\nmaterial = \"blob\"\nradius = 0.3\n"
+                                        "spacing = 0.1\ntranslate = [5, 0, 5]\nstart = " +
+                                            start))),
+                 "emitter[0]: start 5 s is not reached, as the run covers 0.999999 s");
+  };
+  EXPECT_TRUE(emits("5.0"));
+  EXPECT_FALSE(emits("0.5"));
+  const auto moves = [&](const std::string& first) {
+    return warns(warnings_of(read(jelly("alpha = 0.3",
+                                        "[[collider]]\nplane = { offset = -1.0 }\nkeyframes = "
+                                        "[{ time = " +
+                                            first + " }, { time = 9.0, translate = [0, 0, 1] }]\n"))),
+                 "collider[0]: keyframes[0].time 5 s is not reached");
+  };
+  EXPECT_TRUE(moves("5.0"));
+  EXPECT_FALSE(moves("0.0"));
+}
+
 TEST_F(scene_warnings, name_parts_that_pass_through_each_other) {
   const auto of = [&](float alpha, float gap, std::optional<int> iterations = 0) {
     SolverConfig solver{.support_radius = 0.21f, .gravity = {0, 0, -9.81f}};

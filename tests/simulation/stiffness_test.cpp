@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "bars/bar.h"
@@ -153,6 +154,67 @@ TEST(youngs_modulus, is_not_given_beside_elastic_time_step) {
   material.elastic_time_step = 0.01f;
   Simulation s(in_metres());
   EXPECT_NE(refusal([&] { s.add_material(material); }).find("give one of the two"), std::string::npos);
+}
+
+/// Δt0 that follows, of a cube whose first particle has so many times the modulus and an alpha.
+float chosen_step(const SolverConfig& config, const Material& material, std::optional<float> stiffness,
+                  std::optional<float> alpha = {}) {
+  Body body = cube(0.01f);
+  if (stiffness) {
+    body.stiffness.assign(body.positions.size(), 1.0f);
+    body.stiffness.front() = *stiffness;
+  }
+  if (alpha) {
+    body.alpha.assign(body.positions.size(), material.alpha.lowest());
+    body.alpha.front() = *alpha;
+  }
+  Simulation s(config);
+  s.add_body(body, material);
+  s.step();
+  return s.info().time_step;
+}
+
+TEST(youngs_modulus, that_particles_have_more_of_makes_the_step_as_short_as_one_of_the_material) {
+  for (const Quality quality : qualities()) {
+    const SolverConfig config = with_quality(in_metres(), quality);
+    for (const float times : {1.5f, 4.0f, 30.0f})
+      EXPECT_FLOAT_EQ(chosen_step(config, stiff(1e5f, 0.1f), times),
+                      chosen_step(config, stiff(1e5f * times, 0.1f), {}))
+          << times << ' ' << name(quality);
+    EXPECT_FLOAT_EQ(chosen_step(config, stiff(1e5f, 0.9f), {}, 0.1f),
+                    chosen_step(config, stiff(1e5f, 0.1f), {}))
+        << name(quality);
+  }
+}
+
+TEST(youngs_modulus, that_no_particle_has_more_of_leaves_the_step_as_it_is) {
+  for (const float alpha : {0.0f, 0.1f, 0.4f, 0.7f}) {
+    const float step = chosen_step(in_metres(), stiff(1e5f, alpha), {});
+    EXPECT_EQ(chosen_step(in_metres(), stiff(1e5f, alpha), 1.0f), step) << alpha;
+    EXPECT_EQ(chosen_step(in_metres(), stiff(1e5f, alpha), 0.2f), step) << alpha;
+    Material melts = stiff(1e5f, alpha);
+    melts.temperature = 300.0f;
+    melts.alpha_by_temperature = Schedule{{290, alpha}, {310, 1}};
+    EXPECT_EQ(chosen_step(in_metres(), melts, {}), step) << alpha;
+  }
+}
+
+TEST(youngs_modulus, names_the_factor_on_steps_that_makes_them_too_long) {
+  SolverConfig config = in_metres();
+  config.time_step = 0.001f;
+  config.time_step_factor = 3;
+  const std::string text = refusal([&] {
+    Simulation s(config);
+    s.add_body(cube(0.01f), stiff(1e5f));
+  });
+  const std::string words = "solver.time_step_factor (now 3) to ";
+  ASSERT_NE(text.find(words), text.npos) << text;
+  config.time_step_factor = std::stof(text.substr(text.find(words) + words.size()));
+  EXPECT_EQ(refusal([&] {
+              Simulation s(config);
+              s.add_body(cube(0.01f), stiff(1e5f));
+            }),
+            "nothing");
 }
 
 TEST(youngs_modulus, stays_at_any_quality) {
