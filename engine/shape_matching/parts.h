@@ -33,4 +33,16 @@ void sort_parts(std::span<const std::uint32_t> order, Parts& parts);
 /// where that is. Uses the scratch of `a`.
 bool any_in_two(Parts& a, const Parts& b);
 
+/// Particles that some others, which go, held together: they shared regions with these.
+struct HeldTogether {
+  std::vector<std::uint32_t> rows;   ///< ascending, those that go left out
+  std::vector<std::uint32_t> group;  ///< of each: the same where they were in one part through those that go
+};
+/// places: of those that will go, ascending; of a shape whose regions are built.
+HeldTogether held_together_by(std::span<const std::uint32_t> places, const ShapeMatching& shape);
+/// Whether particles of a group are in two parts now that regions are built without those that went; parts
+/// are found only then, or where the regions of the group alone do not say. former: what each row was.
+bool are_torn(const HeldTogether& held, std::span<const std::uint32_t> former, const ShapeMatching& shape,
+              Parts& parts);
+
 }  // namespace mallow

@@ -109,8 +109,9 @@ void remove_rows(Simulation::State& s, BodyState& body, std::span<const std::uin
   for (const std::uint32_t row : rows) places.push_back(row - static_cast<std::uint32_t>(body.begin));
   const bool built = shape.built, kept = shape.reference.size() == body.size();
   CarriedRegions carried;
+  HeldTogether held;
   if (built) {
-    find_parts(shape, s.parts_before);
+    held = held_together_by(places, shape);
     carried = carry_regions(shape);
   }
   s.store.erase(rows);
@@ -126,8 +127,7 @@ void remove_rows(Simulation::State& s, BodyState& body, std::span<const std::uin
   erase_from_reference(places, carried, shape);
   if (!built) return;
   rebuild_shape(s, body, carried);
-  find_parts(shape, s.parts_after);
-  if (s.parts_after.count <= s.parts_before.count) return;
+  if (!are_torn(held, carried.former, shape, s.parts_after)) return;
   body.apart = true;  // nothing holds its parts to one rigid motion
   s.next_events.push_back({.kind = BodyEvent::Kind::torn,
                            .body = body.id,

@@ -3,10 +3,13 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
+#include <set>
 
 #include "levels.h"
 #include "matrix_regions.h"
+#include "shape_matching/parts.h"
 #include "shape_matching/reshape.h"
 #include "shape_matching/shape_matching.h"
 
@@ -322,6 +325,36 @@ TEST(regions, of_a_body_that_loses_some_are_measured_anew_beside_those_and_keep_
     EXPECT_LT(anew, round % 2 == 0 ? near + 1 : std::ssize(changed) / 2);
     world.match();
   }
+}
+
+TEST(parts, that_removed_particles_held_together_are_torn_where_all_parts_say_so) {
+  World world(700, 10, 1.5f);  // hardly holds together
+  CarriedRegions unsorted = carry_regions(world.shape);
+  sort_rows(world, unsorted);
+  std::mt19937 random(3);
+  int torn_rounds = 0, whole_rounds = 0;
+  Parts before, after, found;
+  while (world.x.size() > 100) {
+    find_parts(world.shape, before);
+    std::vector<std::uint32_t> places;
+    const std::size_t n = world.x.size(), first = random() % n;
+    for (std::size_t i = first; i < std::min(first + 1 + random() % 6, n); i += 1 + random() % 2)
+      places.push_back(static_cast<std::uint32_t>(i));
+    const HeldTogether held = held_together_by(places, world.shape);
+    CarriedRegions carried = carry_regions(world.shape);
+    erase_from_reference(places, carried, world.shape);
+    world.x.erase(places);
+    sort_rows(world, carried);
+    find_parts(world.shape, after);
+    std::map<std::uint32_t, std::set<std::uint32_t>> parts_of;  // those before -> those after
+    for (std::size_t i = 0; i < world.x.size(); ++i)
+      if (after.of[i] != Parts::k_none) parts_of[before.of[carried.former[i]]].insert(after.of[i]);
+    const bool torn = std::ranges::any_of(parts_of, [](const auto& part) { return part.second.size() > 1; });
+    ASSERT_EQ(are_torn(held, carried.former, world.shape, found), torn) << world.x.size();
+    (torn ? torn_rounds : whole_rounds) += 1;
+  }
+  EXPECT_GT(torn_rounds, 10);
+  EXPECT_GT(whole_rounds, 50);
 }
 
 TEST(regions, of_a_body_that_grew_to_one_side_leave_it_alone_when_it_moves_as_a_rigid_whole) {
