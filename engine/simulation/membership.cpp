@@ -150,7 +150,7 @@ void rebuild_shape(Simulation::State& s, BodyState& body, CarriedRegions& carrie
 void forget_body(Simulation::State& s, BodyState& body) {
   s.body_slots.give_back(static_cast<std::uint64_t>(body.id));
   const std::size_t place = static_cast<std::size_t>(&body - s.bodies.data());
-  s.bodies.erase(s.bodies.begin() + place);
+  s.bodies.erase(s.bodies.begin() + static_cast<std::ptrdiff_t>(place));
   s.islands.by_island.clear();
   for (std::size_t b = place; b < s.bodies.size(); ++b)
     s.body_slots.index[slot_of(s.bodies[b].id)] = static_cast<std::uint32_t>(b);
