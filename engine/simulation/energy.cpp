@@ -102,7 +102,7 @@ void add_energy(const Simulation::State& s, const BodyState& body, std::vector<V
   }
 }
 
-Energy energy_of(const Simulation::State& s, std::span<const BodyState> bodies) {
+Energy energy_of(const Simulation::State& s, const auto& bodies) {
   Energy energy;
   std::vector<Vec> pull;
   for (const BodyState& body : bodies) add_energy(s, body, pull, energy);
@@ -120,7 +120,7 @@ Energy Simulation::energy() const {
 Energy Simulation::energy(BodyId id) const {
   const BodyState& body = state_->body(id);
   mallow::prepare(*state_);
-  return energy_of(*state_, {&body, 1});
+  return energy_of(*state_, std::span(&body, 1));
 }
 
 }  // namespace mallow

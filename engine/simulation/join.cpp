@@ -103,9 +103,9 @@ void give_rows(Simulation::State& s, BodyState& body, const BodyState& from) {
             static_cast<std::uint32_t>(between));
   std::iota(order.begin() + static_cast<std::ptrdiff_t>(count), order.end(), 0u);
   if (between > 0) s.store.permute(begin, order, s.execution.threads);
-  for (BodyState* one = &body + 1; one != &from; ++one) {
-    one->begin += count;
-    one->end += count;
+  for (std::size_t b = s.place_of(body) + 1; &s.bodies[b] != &from; ++b) {
+    s.bodies[b].begin += count;
+    s.bodies[b].end += count;
   }
   body.end += count;
 }
@@ -162,6 +162,7 @@ void join_into_first(Simulation::State& s, std::span<const BodyId> ids) {
   BodyState& body = s.body(ids.front());
   CarriedRegions carried = leave_frame(s, body);
   find_parts(body.shape, s.parts_before);
+  std::vector<BodyState*> joined;
   for (const BodyId id : ids.subspan(1)) {
     BodyState& other = s.body(id);
     append_carried(leave_frame(s, other), carried);
@@ -171,8 +172,9 @@ void join_into_first(Simulation::State& s, std::span<const BodyId> ids) {
     give_rows(s, body, other);
     take_over(body, other);
     give_names(s, id, body.id);
-    forget_body(s, other);
+    joined.push_back(&other);
   }
+  forget_bodies(s, joined);
   s.rows_changed();
   take_frame(s, body, carried);
   find_parts(body.shape, s.parts_after);

@@ -9,6 +9,7 @@
 #include "colliders/pose.h"
 #include "config/validation.h"
 #include "core/bounds.h"
+#include "core/box_tree.h"
 #include "shape_matching/reshape.h"
 #include "simulation/overlaps.h"
 #include "simulation/phases.h"
@@ -95,10 +96,18 @@ std::vector<ParticleId> ids_in(const Simulation::State& s, const Aabb& region, c
   throw ConfigError(field, text.str());
 }
 
-/// Bodies that sleep beside a box wake: what they lean on is gone.
-void wake_beside(Simulation::State& s, const Aabb& box) {
+/// Bodies that sleep beside one of these boxes wake: what they lean on is gone.
+void wake_beside(Simulation::State& s, std::span<const Aabb> boxes) {
+  BoxTree tree;
+  tree.build(boxes);
   for (BodyState& body : s.bodies) {
-    if (body.island != 0 && are_near(body.box, box, 2 * body.spacing)) wake_island(s, body);
+    if (body.island == 0) continue;
+    const float reach = 2 * body.spacing;
+    const Vec3 around = Vec3::Constant(reach);
+    bool is_beside = false;
+    tree.for_overlapping({body.box.min - around, body.box.max + around},
+                         [&](std::uint32_t b) { is_beside |= are_near(body.box, boxes[b], reach); });
+    if (is_beside) wake_island(s, body);
   }
 }
 
@@ -147,12 +156,12 @@ void rebuild_shape(Simulation::State& s, BodyState& body, CarriedRegions& carrie
   s.held = false;
 }
 
-void forget_body(Simulation::State& s, BodyState& body) {
-  s.body_slots.give_back(static_cast<std::uint64_t>(body.id));
-  const std::size_t place = static_cast<std::size_t>(&body - s.bodies.data());
-  s.bodies.erase(s.bodies.begin() + static_cast<std::ptrdiff_t>(place));
+void forget_bodies(Simulation::State& s, std::span<BodyState* const> gone) {
+  for (const BodyState* body : gone) s.body_slots.give_back(static_cast<std::uint64_t>(body->id));
+  s.bodies.erase_if(
+      [&](const BodyState& body) { return !s.body_slots.find(static_cast<std::uint64_t>(body.id)); });
   s.islands.by_island.clear();
-  for (std::size_t b = place; b < s.bodies.size(); ++b)
+  for (std::size_t b = 0; b < s.bodies.size(); ++b)
     s.body_slots.index[slot_of(s.bodies[b].id)] = static_cast<std::uint32_t>(b);
 }
 
@@ -257,25 +266,40 @@ std::vector<ParticleId> extend(Simulation::State& s, BodyState& body, const Body
 
 namespace {
 
-void erase_body(Simulation::State& s, BodyState& body) {
-  wake_island(s, body);
-  const Aabb box = box_around(s.store.position, body.begin, body.end);
-  std::vector<std::uint32_t> rows(body.size());
-  for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = static_cast<std::uint32_t>(body.begin + k);
+/// All of some bodies, in the order of their rows.
+void erase_bodies(Simulation::State& s, std::span<BodyState* const> erased) {
+  std::vector<std::uint32_t> rows;
+  std::vector<Aabb> boxes;
+  for (BodyState* body : erased) {
+    wake_island(s, *body);
+    boxes.push_back(box_around(s.store.position, body->begin, body->end));
+    for (std::size_t row = body->begin; row < body->end; ++row)
+      rows.push_back(static_cast<std::uint32_t>(row));
+  }
   s.store.erase(rows);
-  const std::size_t old_end = body.end;
-  body.end = body.begin;
-  shift_rows(s, body, old_end);
-  forget_body(s, body);
+  std::size_t gone = 0;
+  auto next = erased.begin();
+  for (std::size_t b = s.place_of(*erased.front()); b < s.bodies.size(); ++b) {
+    BodyState& body = s.bodies[b];
+    const std::size_t size = body.size();
+    body.begin -= gone;
+    body.end -= gone;
+    if (next == erased.end() || *next != &body) continue;
+    body.end = body.begin;
+    gone += size;
+    ++next;
+  }
+  forget_bodies(s, erased);
   s.rows_changed();
-  wake_beside(s, box);
+  wake_beside(s, boxes);
 }
 
 }  // namespace
 
 void Simulation::remove_body(BodyId id) {
   state_->refuse_in_callback();
-  erase_body(*state_, state_->body(id));
+  BodyState* body = &state_->body(id);
+  erase_bodies(*state_, {&body, 1});
 }
 
 void Simulation::remove_particles(std::span<const ParticleId> ids) {
@@ -285,18 +309,22 @@ void Simulation::remove_particles(std::span<const ParticleId> ids) {
 
 void erase_particles(Simulation::State& s, std::span<const ParticleId> ids) {
   const std::vector<std::uint32_t> rows = rows_of(s, ids);
+  std::vector<BodyState*> whole;
   // From the last body on: the rows of those before it stay where they are.
   for (std::size_t end = rows.size(); end > 0;) {
     BodyState& body = s.body_of(rows[end - 1]);
     std::size_t begin = end;
     while (begin > 0 && rows[begin - 1] >= body.begin) --begin;
-    wake_island(s, body);
-    if (end - begin == body.size())
-      erase_body(s, body);
-    else
+    if (end - begin == body.size()) {
+      whole.push_back(&body);
+    } else {
+      wake_island(s, body);
       remove_rows(s, body, std::span(rows).subspan(begin, end - begin));
+    }
     end = begin;
   }
+  std::ranges::reverse(whole);
+  if (!whole.empty()) erase_bodies(s, whole);
 }
 
 std::size_t Simulation::remove_particles(const Aabb& region) {

@@ -17,8 +17,8 @@ void rebuild_shape(Simulation::State& state, BodyState& body, CarriedRegions& ca
 /// Where a body is becomes its reference shape, and its regions are built of what their particles carried
 /// along there, see reframe_regions(). The parts before are sorted likewise.
 void take_frame(Simulation::State& state, BodyState& body, CarriedRegions& carried);
-/// A body that has no rows any more is taken out of the list of bodies.
-void forget_body(Simulation::State& state, BodyState& body);
+/// Bodies that have no rows any more are taken out of the list of bodies.
+void forget_bodies(Simulation::State& state, std::span<BodyState* const> gone);
 /// As Simulation::remove_particles(); ids: different, and there.
 void erase_particles(Simulation::State& state, std::span<const ParticleId> ids);
 /// As Simulation::unpin().

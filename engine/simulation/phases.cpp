@@ -57,7 +57,7 @@ void sort_fluids(Simulation::State& state) {
   state.fluid_order.resize_unset(state.store.size());
   for (const std::uint32_t row : grid.order) {
     const BodyState& body = std::as_const(state).body_of(row);
-    std::uint32_t& next = filled[static_cast<std::size_t>(&body - state.bodies.data())];
+    std::uint32_t& next = filled[state.place_of(body)];
     state.fluid_order[body.begin + next++] = row - static_cast<std::uint32_t>(body.begin);
   }
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {

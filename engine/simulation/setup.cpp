@@ -34,17 +34,23 @@ class FirstBodies {
     if (!body.merges) return nullptr;
     const std::uint32_t material = body.material->number;
     const float margin = 2 * k_same_spacing * body.spacing;
-    const BodyState* first = nullptr;
+    const First* first = nullptr;
     for (auto one = firsts_.lower_bound({material, body.spacing - margin});
          one != firsts_.end() && one->first <= Key{material, body.spacing + margin}; ++one)
-      if (merge(*one->second, body) && (!first || one->second < first)) first = one->second;
-    if (!first) firsts_.emplace(Key{material, body.spacing}, &body);
-    return first;
+      if (merge(*one->second.body, body) && (!first || one->second.place < first->place))
+        first = &one->second;
+    if (first) return first->body;
+    firsts_.emplace(Key{material, body.spacing}, First{&body, firsts_.size()});
+    return nullptr;
   }
 
  private:
   using Key = std::pair<std::uint32_t, float>;
-  std::map<Key, const BodyState*> firsts_;  ///< in one list of bodies, so that a pointer is a place in it
+  struct First {
+    const BodyState* body;
+    std::size_t place;  ///< among the firsts
+  };
+  std::map<Key, First> firsts_;
 };
 
 /// Of a particle in densities: its lattice has the same by either kernel.

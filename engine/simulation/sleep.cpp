@@ -104,7 +104,7 @@ void find_islands(Simulation::State& state) {
       const std::uint32_t row = near.row[point];
       if (other && row >= other->begin && row < other->end) continue;
       other = &std::as_const(state).body_of(row);
-      islands.sets.join(near.blocks.blocks[k].range, static_cast<std::uint32_t>(other - state.bodies.data()));
+      islands.sets.join(near.blocks.blocks[k].range, state.place_of(*other));
     }
   }
 }
@@ -245,9 +245,7 @@ void rest_bodies(Simulation::State& state, float time_step) {
   if (!any_ready) return;
   find_islands(state);
   Islands& islands = state.islands;
-  const auto root = [&](const BodyState& body) {
-    return islands.sets.root(static_cast<std::uint32_t>(&body - state.bodies.data()));
-  };
+  const auto root = [&](const BodyState& body) { return islands.sets.root(state.place_of(body)); };
   // One whose bodies all sleep already goes on as it is.
   islands.rests.assign(state.bodies.size(), false);
   for (const BodyState* body : state.awake) islands.rests[root(*body)] = true;

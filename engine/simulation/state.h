@@ -13,6 +13,7 @@
 #include "core/disjoint_sets.h"
 #include "core/execution.h"
 #include "core/slots.h"
+#include "core/stable_list.h"
 #include "heat/heat.h"
 #include "mallow/simulation.h"
 #include "motion/motion.h"
@@ -226,7 +227,7 @@ struct Simulation::State {
   Vec3 origin{0, 0, 0};  ///< that positions in the store are relative to, see choose_origin() [m]
   ParticleStore store;
   std::deque<MaterialState> materials;  ///< bodies point to them
-  std::vector<BodyState> bodies;        ///< in the order of their rows
+  StableList<BodyState> bodies;         ///< in the order of their rows
   Slots body_slots;                     ///< BodyId -> index
   std::vector<Collider> colliders;
   std::vector<std::uint64_t> collider_ids;  ///< of each collider
@@ -294,6 +295,8 @@ struct Simulation::State {
   std::size_t index(ColliderId id) const;
   PinState& pin(PinId id);
   MaterialState& material(MaterialId id);
+  /// Its place among the bodies.
+  std::uint32_t place_of(const BodyState& body) const { return body_slots.index[slot_of(body.id)]; }
   /// The body of a row.
   const BodyState& body_of(std::size_t row) const {
     return *std::ranges::upper_bound(bodies, row, {}, &BodyState::end);

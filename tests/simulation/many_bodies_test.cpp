@@ -142,6 +142,31 @@ TEST(many_bodies_that, have_flowed_look_for_each_other_for_what_few_cost_each) {
   EXPECT_LE(many, k_most * std::max(few, k_least));
 }
 
+/// Processor time of taking most bodies of a crowd that sleeps out, all in one call, for each [s].
+double cost_of_removing(std::size_t across) {
+  Simulation s(SolverConfig{.time_step = 0.15f,
+                            .support_radius = 2.1f,
+                            .gravity = {0, 0, 0},
+                            .sleep_speed = 1.0f,
+                            .sleep_time = 0.1f});
+  const MaterialId material = s.add_material(Material{});
+  std::vector<BodyId> bodies;
+  for (std::size_t b = 0; b < across * across * across; ++b)
+    bodies.push_back(s.add_body(cube(1, place(b, across, 6)), material));
+  while (s.is_awake(bodies.back())) s.step();
+  std::vector<ParticleId> ids(s.ids().begin(), s.ids().end());
+  std::ranges::sort(ids);
+  ids.resize(ids.size() - 9);
+  const double all = seconds([&] { s.remove_particles(ids); });
+  EXPECT_EQ(s.body_count(), 9u);
+  return all / static_cast<double>(ids.size());
+}
+
+TEST(many_bodies_that, are_removed_together_go_for_what_few_cost_each) {
+  const double few = cost_of_removing(11), many = cost_of_removing(22);
+  EXPECT_LE(many, k_most * std::max(few, k_least));
+}
+
 TEST(overlap, is_found_among_many_bodies_wherever_they_have_come) {
   Simulation s(SolverConfig{.time_step = 0.15f, .support_radius = 2.1f, .gravity = {0, 0, 0}});
   const MaterialId material = s.add_material(Material{});

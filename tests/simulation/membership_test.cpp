@@ -46,6 +46,36 @@ TEST(removed_body, leaves_every_bit_of_the_others) {
   EXPECT_EQ(run(true), run(false));
 }
 
+TEST(removed_bodies, leave_the_same_bits_and_names_whether_they_go_together_or_one_by_one) {
+  const auto run = [](bool together) {
+    Simulation s(solver());
+    std::vector<BodyId> bodies;
+    for (int b = 0; b < 12; ++b)
+      bodies.push_back(s.add_body(cube(3, {4.0f * static_cast<float>(b), 0, 1}), Material{.alpha = 0.3f}));
+    s.add_collider({.shape = Plane{}});
+    for (int k = 0; k < 10; ++k) s.step();
+    std::vector<ParticleId> ids;
+    for (const int b : {0, 3, 4, 7, 11}) {
+      const Simulation::Rows rows = s.rows(bodies[static_cast<std::size_t>(b)]);
+      ids.insert(ids.end(), s.ids().begin() + rows.begin, s.ids().begin() + rows.end);
+    }
+    const Simulation::Rows cut = s.rows(bodies[8]);
+    ids.insert(ids.end(), s.ids().begin() + cut.begin, s.ids().begin() + cut.begin + 5);
+    if (together) {
+      s.remove_particles(ids);
+    } else {
+      s.remove_particles(std::span(ids).last(5));
+      for (const int b : {11, 7, 4, 3, 0}) s.remove_body(bodies[static_cast<std::size_t>(b)]);
+    }
+    EXPECT_EQ(s.body_count(), 7u);
+    EXPECT_THROW(s.rows(bodies[4]), ConfigError);
+    EXPECT_EQ(s.rows(bodies[5]).begin, 54u);
+    for (int k = 0; k < 20; ++k) s.step();
+    return s.state_hash();
+  };
+  EXPECT_EQ(run(true), run(false));
+}
+
 TEST(removed_body, is_told_from_whoever_gets_its_slot) {
   Simulation s(solver());
   const BodyId a = s.add_body(cube(3, {0, 0, 0}), Material{}, "a");
