@@ -66,6 +66,9 @@ class StableList {
   Iterator<const T> end() const { return begin() + static_cast<std::ptrdiff_t>(size()); }
 
   void push_back(T item) { items_.push_back(std::make_unique<T>(std::move(item))); }
+  void insert(std::size_t place, T item) {
+    items_.insert(items_.begin() + static_cast<std::ptrdiff_t>(place), std::make_unique<T>(std::move(item)));
+  }
   void erase_if(auto goes) {
     std::erase_if(items_, [&](const std::unique_ptr<T>& item) { return goes(std::as_const(*item)); });
   }

@@ -259,6 +259,7 @@ Body sample(const SceneBody& body, const std::filesystem::path& scene_file, int 
   Body points = std::visit(scene_file::Sample{folder, threads}, body.source);
   points.velocity += body.velocity;
   points.merges = body.merges;
+  points.splits = body.splits;
   return points;
 }
 

@@ -45,6 +45,7 @@ BoundFields fields(SceneBody& body) {
       {"merges", &body.merges, k_any, "",
        "acts on others of its material that merge as on itself: two puddles become one, and what flows once "
        "it is pressed together"},
+      {"splits", &body.splits, k_any, "", "parts that it is torn into become bodies of their own, which touch"},
       {"velocity", &body.velocity, k_finite, "m/s", "of every particle at the start"},
       {"skin", &body.skin, k_any, "",
        "mesh that follows it and is drawn in place of its surface, OBJ, PLY, STL or OFF, placed as its own",

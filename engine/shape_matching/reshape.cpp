@@ -272,6 +272,26 @@ void erase_from_reference(std::span<const std::uint32_t> places, CarriedRegions&
   center_reference(carried, shape);
 }
 
+SplitShape split_off(std::span<const std::uint32_t> places, const CarriedRegions& carried,
+                     const ShapeMatching& whole) {
+  SplitShape part;
+  part.shape.region_radius = whole.region_radius;
+  part.shape.region_stride = whole.region_stride;
+  part.shape.spacing = whole.spacing;
+  part.shape.flows = whole.flows;
+  part.shape.frame = whole.frame;
+  part.shape.reference.resize(places.size());
+  part.carried.former.assign(places.size(), FormerLists::k_none);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    part.shape.reference.set(k, whole.reference.get(places[k]));
+    part.carried.rotations.push_back(carried.rotations[places[k]]);
+    if (!carried.stretches.empty()) part.carried.stretches.push_back(carried.stretches[places[k]]);
+  }
+  center_reference(part.carried, part.shape);
+  forget_lists(part.carried);
+  return part;
+}
+
 void rest_anew(const VectorColumn& positions, std::size_t begin, std::span<const std::uint8_t> yields,
                const Execution& execution, CarriedRegions& carried, ShapeMatching& shape) {
   RestBeside(positions, begin, yields, execution, carried, shape).run();

@@ -41,6 +41,14 @@ void sort_carried(std::span<const std::uint32_t> order, CarriedRegions& carried)
 void build_carried(const CarriedRegions& carried, const Execution& execution, RegionScratch& scratch,
                    ShapeMatching& shape);
 
+/// Some particles of a shape as one of their own, in which they rest as they did: its regions are due to be
+/// built. places: of them, ascending. carried: what all of the whole carry along; returned for them alone.
+struct SplitShape {
+  ShapeMatching shape;
+  CarriedRegions carried;
+};
+SplitShape split_off(std::span<const std::uint32_t> places, const CarriedRegions& carried,
+                     const ShapeMatching& whole);
 /// places: of particles, ascending, not all of them. carried: of a shape that is built, else left as it is.
 /// Regions are due to be built.
 void erase_from_reference(std::span<const std::uint32_t> places, CarriedRegions& carried,

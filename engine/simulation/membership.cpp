@@ -160,6 +160,10 @@ void forget_bodies(Simulation::State& s, std::span<BodyState* const> gone) {
   for (const BodyState* body : gone) s.body_slots.give_back(static_cast<std::uint64_t>(body->id));
   s.bodies.erase_if(
       [&](const BodyState& body) { return !s.body_slots.find(static_cast<std::uint64_t>(body.id)); });
+  number_bodies(s);
+}
+
+void number_bodies(Simulation::State& s) {
   s.islands.by_island.clear();
   for (std::size_t b = 0; b < s.bodies.size(); ++b)
     s.body_slots.index[slot_of(s.bodies[b].id)] = static_cast<std::uint32_t>(b);
@@ -185,6 +189,7 @@ BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name)
   body.name = name.empty() ? "body " + std::to_string(s.body_slots.size()) : std::move(name);
   body.material = &material;
   body.merges = points.merges;
+  body.splits = points.splits;
   body.hit_impulse = s.contacts.hit_impulse;
   body.begin = body.end = s.store.size();
   body.spacing = points.spacing;
@@ -333,6 +338,13 @@ std::size_t Simulation::remove_particles(const Aabb& region) {
   return ids.size();
 }
 
+std::vector<BodyId> Simulation::split(BodyId id) {
+  state_->refuse_in_callback();
+  BodyState& body = state_->body(id);
+  prepare();
+  return split_body(*state_, body);
+}
+
 ColliderId Simulation::add_collider(const Collider& collider) {
   state_->refuse_in_callback();
   State& s = *state_;
@@ -347,6 +359,19 @@ ColliderId Simulation::add_collider(const Collider& collider) {
   if (!added.keyframes.empty()) added.pose = pose_at(added.keyframes, s.time);
   wake_near(s, added);
   return ColliderId{id};
+}
+
+void Simulation::set_collider(ColliderId id, const Collider& collider) {
+  state_->refuse_in_callback();
+  State& s = *state_;
+  Collider& kept = s.colliders[s.index(id)];
+  Checks checks;
+  check(collider, checks);
+  checks.finish();
+  wake_near(s, kept);
+  kept = collider;
+  if (!kept.keyframes.empty()) kept.pose = pose_at(kept.keyframes, s.time);
+  wake_near(s, kept);
 }
 
 void Simulation::remove_collider(ColliderId id) {

@@ -17,6 +17,10 @@ void rebuild_shape(Simulation::State& state, BodyState& body, CarriedRegions& ca
 /// Where a body is becomes its reference shape, and its regions are built of what their particles carried
 /// along there, see reframe_regions(). The parts before are sorted likewise.
 void take_frame(Simulation::State& state, BodyState& body, CarriedRegions& carried);
+/// Parts of a body become bodies: Simulation::split().
+std::vector<BodyId> split_body(Simulation::State& state, BodyState& body);
+/// Slots tell where bodies are in the list, after some came or went before others.
+void number_bodies(Simulation::State& state);
 /// Bodies that have no rows any more are taken out of the list of bodies.
 void forget_bodies(Simulation::State& state, std::span<BodyState* const> gone);
 /// As Simulation::remove_particles(); ids: different, and there.

@@ -102,6 +102,8 @@ void tell_contacts(Simulation::State& state, float time_step);
 /// next positions and velocities become the present ones; time, step and colliders move on.
 void finish_step(Simulation::State& state, const ChosenStep& step);
 
+/// Parts of bodies that were torn, and are to split, -> bodies. [Body::splits]
+void split_torn(Simulation::State& state);
 /// κ of regions, at a check -> bodies that are pressed into each other, which are one from now on: the first
 /// of them in the order of rows. Returns how many reference shapes that took anew. [model 2, section 5]
 /// Throws StepError.

@@ -64,6 +64,7 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   pass_id(archive, body.id);
   archive(body.name);
   archive(body.merges);
+  archive(body.splits);
   archive(body.enabled);
   archive(body.user_data);
   archive(body.hit_impulse);

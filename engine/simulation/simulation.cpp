@@ -85,6 +85,7 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
 StepReport Simulation::step_towards(double end) {
   prepare();
   state_->require_ahead(end);
+  split_torn(*state_);                      // parts that were torn off -> bodies
   const int joined = join_bodies(*state_);  // κ -> bodies that are one   [model 2, section 5]
   flow(*state_);                            // time -> rows of strands
   prepare();

@@ -81,15 +81,17 @@ class SourceWarnings {
   }
 
   void look_at_parts(const BodyState& body) {
-    if (!body.shape.flows || !body.shape.built || body.most_alpha() > 0 || keeps_volume_) return;
+    const bool may_be_several = body.shape.built && (body.shape.flows || body.apart);
+    if (!may_be_several || body.most_alpha() > 0 || keeps_volume_) return;
     Parts parts;
     find_parts(body.shape, parts);
     if (parts.count > 1)
       list_.add(
           body, "its ", parts.count,
           " parts pass through each other where alpha is 0, as nothing acts between parts of a body; make "
-          "them "
-          "bodies of their own, or give alpha, or volume_iterations");
+          "them bodies of their own (splits = true does it where a body is torn, split() now), or give "
+          "alpha, "
+          "or volume_iterations");
   }
 
   void look_at_formulation() {

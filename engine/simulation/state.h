@@ -59,6 +59,7 @@ struct BodyState {
   std::string name;
   MaterialState* material = nullptr;
   bool merges = false;             ///< Body::merges
+  bool splits = false;             ///< Body::splits
   std::size_t begin = 0, end = 0;  ///< rows
   float spacing = 0;               ///< h [m]
   float mass = 0;                  ///< m [kg]

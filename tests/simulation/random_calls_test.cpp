@@ -46,7 +46,7 @@ class Caller {
   void call() {
     const std::vector<BodyId> bodies = s_->bodies();
     const auto body = [&] { return bodies[pick(bodies.size())]; };
-    switch (pick(24)) {
+    switch (pick(26)) {
       case 0:
       case 1:
         if (bodies.size() < 12) add_body();
@@ -191,6 +191,15 @@ class Caller {
       case 23:
         s_->set_temperature(s_->collider_ids().front(),
                             pick(2) == 0 ? std::nullopt : std::optional<Schedule>(number(1000)));
+        break;
+      case 24:
+        s_->split(body());
+        break;
+      case 25:
+        if (!colliders_.empty())
+          s_->set_collider(colliders_.back(), {.shape = Sphere{.center = {0, 0, 0}, .radius = 2 + number(1)},
+                                               .pose = {.translation = {number(15), number(15), 3}},
+                                               .friction = 0.5f});
         break;
       default:
         break;

@@ -42,6 +42,10 @@ struct Body {
   /// and emitters go on in the body that is there. Where only one has an alpha of its own by particle, those
   /// of the others keep the one that they have then.
   bool merges = false;
+  /// Where it was torn (BodyEvent::Kind::torn), its parts become bodies of their own at the start of the next
+  /// step, as by Simulation::split(): so they touch each other as bodies do, which parts of one body do not
+  /// where alpha is 0, and come to rest and sleep each for itself.
+  bool splits = false;
   /// What whoever made the body should know, in words: a mesh that was turned inside out, volume that the
   /// spacing loses. Nothing reads it but people.
   std::vector<std::string> notes = {};

@@ -64,6 +64,7 @@ struct BodyEvent {
               ///< 5]
     torn,     ///< that left it in more parts than it had
     merged,   ///< that left it in fewer, or it became one with another body: see `other`
+    split,    ///< one of its parts is a body of its own from now on: see `other`
     touched,  ///< it touches what it did not; this and the next two where report_contacts() asks for it
     hit,      ///< in this step it got at least the impulse that was asked for from what it touches
     parted,   ///< it touches it no more
@@ -75,7 +76,7 @@ struct BodyEvent {
   std::size_t parts = 0;
   std::size_t crumbs = 0;  ///< likewise: those crumbs
   /// Of a contact between bodies: greater than `body`. Of merged: the body that has become part of `body` and
-  /// is no more, see Body::merges; none where parts of one body merged.
+  /// is no more, see Body::merges; none where parts of one body merged. Of split: the body that is new.
   std::optional<BodyId> other = {};
   std::optional<ColliderId> collider = {};  ///< of a contact with a collider
   // Of touched and hit; what the particles that touch did in this step, in the mean by their impulses.

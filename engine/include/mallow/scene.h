@@ -106,6 +106,7 @@ struct SceneBody {
   std::string material = {};
   std::string group = {};  ///< bodies with one name here are one piece; empty: a piece of its own
   bool merges = false;     ///< Body::merges
+  bool splits = false;     ///< Body::splits
   BodySource source;
   Vec3 velocity{0, 0, 0};
   std::vector<ScenePaint> paint = {};

@@ -175,8 +175,18 @@ class MALLOW_EXPORT Simulation {
   void remove_particles(std::span<const ParticleId> ids);
   /// The same for all that are in a box now. Returns how many; throws ConfigError where there are none.
   std::size_t remove_particles(const Aabb& region);
+  /// Parts of a body that shape matching no longer holds together become bodies of their own, of the same
+  /// material, that rest and move as they did: they touch each other as bodies do. The largest keeps the id,
+  /// or the one that an emitter holds; the others are named after it, and `split` events name them. Parts of
+  /// fewer than four particles stay with it. Returns all of them, the one that keeps the id first: that alone
+  /// where the body is in one part. Throws ConfigError where there is none of this id. See Body::splits.
+  std::vector<BodyId> split(BodyId body);
   /// An obstacle from the next step on. Throws ConfigError with every value that is out of range.
   ColliderId add_collider(const Collider& collider);
+  /// Another one in its place from the next step on, under the same id: shape, pose, friction and all.
+  /// Nothing feels the way from the old pose to the new one; set_pose(), set_twist() and keyframes move it.
+  /// Throws what add_collider() throws, and ConfigError where there is none of this id.
+  void set_collider(ColliderId id, const Collider& collider);
   /// It is gone from the next step on. Throws ConfigError where there is none of this id.
   void remove_collider(ColliderId collider);
   /// A nozzle, and a body that is its strand: what it holds behind it is there at once. Throws what

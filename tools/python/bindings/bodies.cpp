@@ -21,6 +21,7 @@ void bind_points(py::module_& module) {
       .field("stiffness", &Body::stiffness, "", "an array of numbers")
       .field("temperature", &Body::temperature, "", "an array of numbers")
       .field("merges", &Body::merges)
+      .field("splits", &Body::splits)
       .field("notes", &Body::notes, "", "a list of words")
       .done()
       .def("__len__", [](const Body& body) { return body.positions.size(); })

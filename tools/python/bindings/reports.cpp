@@ -100,6 +100,7 @@ void bind_events(py::module_& module) {
                 {"yielded", Kind::yielded},
                 {"torn", Kind::torn},
                 {"merged", Kind::merged},
+                {"split", Kind::split},
                 {"touched", Kind::touched},
                 {"hit", Kind::hit},
                 {"parted", Kind::parted}},

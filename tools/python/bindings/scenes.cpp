@@ -134,6 +134,7 @@ void bind_elements(py::module_& module) {
       .field("material", &SceneBody::material, "", "a name")
       .field("group", &SceneBody::group, "", "a name")
       .field("merges", &SceneBody::merges)
+      .field("splits", &SceneBody::splits)
       .field("source", &SceneBody::source, "",
              "a Lattice, SphereSource, MeshSource, PointsSource or ImplicitSource")
       .field("velocity", &SceneBody::velocity)

@@ -22,13 +22,16 @@ void bind_bodies(SimulationClass& simulation) {
            py::arg("region"), doc("Simulation.remove_particles#2"))
       .def("remove_particles",
            verb(py::overload_cast<std::span<const ParticleId>>(&Simulation::remove_particles)),
-           py::arg("ids"), doc("Simulation.remove_particles"));
+           py::arg("ids"), doc("Simulation.remove_particles"))
+      .def("split", verb(&Simulation::split), py::arg("body"), doc("Simulation.split"));
 }
 
 void bind_surroundings(SimulationClass& simulation) {
   simulation
       .def("add_collider", verb(&Simulation::add_collider), py::arg("collider"),
            doc("Simulation.add_collider"))
+      .def("set_collider", verb(&Simulation::set_collider), py::arg("id"), py::arg("collider"),
+           doc("Simulation.set_collider"))
       .def("remove_collider", verb(&Simulation::remove_collider), py::arg("collider"),
            doc("Simulation.remove_collider"))
       .def("add_emitter", verb(&Simulation::add_emitter), py::arg("emitter"), py::arg("material"),

@@ -1,0 +1,216 @@
+// Bodies whose parts become bodies of their own: Simulation::split(), Body::splits.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "mallow/mallow.h"
+#include "refusal.h"
+
+namespace mallow {
+namespace split_test {
+
+SolverConfig solver(int threads = 2) {
+  return {.time_step = 0.15f, .support_radius = 2.1f, .gravity = {0, 0, -0.3f}, .threads = threads};
+}
+
+/// A bar of 4 x 4 that stands, so many particles high.
+Body bar(int height, float bottom) {
+  return sample(Lattice{.count = {4, 4, height}, .spacing = 1, .corner = {0, 0, bottom}, .jitter = 0.05f});
+}
+
+Aabb slab(float from, float to) {
+  return {{-9, -9, from}, {9, 9, to}};
+}
+
+struct Cut {
+  Simulation simulation;
+  BodyId body;
+};
+
+/// A bar cut into a lower and an upper half by taking three layers out, in flight; more are above.
+Cut cut_bar(SolverConfig config, const Material& material, bool splits = false) {
+  Cut cut{Simulation(config), {}};
+  Body points = bar(20, 0.1f);
+  points.splits = splits;
+  cut.body = cut.simulation.add_body(points, material, "bar");
+  if (config.gravity.z() != 0)
+    cut.simulation.add_collider({.shape = Box{{-0.5f, -0.5f, 0}, {4.5f, 4.5f, 90}, true}, .friction = 0.2f});
+  cut.simulation.step();
+  cut.simulation.remove_particles(slab(8, 11));
+  return cut;
+}
+
+TEST(split, makes_parts_bodies_that_rest_and_move_as_they_did) {
+  SolverConfig config = solver();
+  config.gravity = {0, 0, 0};
+  for (const int stride : {1, 3}) {
+    Cut cut = cut_bar(config, {.alpha = 0.2f, .region_stride = stride});
+    Simulation& s = cut.simulation;
+    s.set_velocity(cut.body, {0.1f, 0, 0}, {0, 0.1f, 0.1f});
+    for (int k = 0; k < 20; ++k) s.step();
+    s.set_user_data(cut.body, 7);
+    const std::vector<Vec3> x = s.positions_by_id(), v = s.velocities_by_id();
+    const double elastic = s.energy().elastic;
+    const std::vector<BodyId> bodies = s.split(cut.body);
+    ASSERT_EQ(bodies.size(), 2u);
+    EXPECT_EQ(bodies[0], cut.body);
+    EXPECT_EQ(s.bodies(), bodies);
+    EXPECT_EQ(s.rows(bodies[0]).end - s.rows(bodies[0]).begin, 144u) << "the larger part keeps the id";
+    EXPECT_EQ(s.rows(bodies[1]).end - s.rows(bodies[1]).begin, 128u);
+    EXPECT_EQ(s.name(bodies[1]), "bar, part 2");
+    EXPECT_EQ(s.user_data(bodies[1]), 7u);
+    EXPECT_EQ(s.positions_by_id(), x);
+    EXPECT_EQ(s.velocities_by_id(), v);
+    // With a stride other particles own regions now.
+    EXPECT_NEAR(s.energy().elastic, elastic, (stride == 1 ? 1e-4 : 0.25) * elastic + 1e-6);
+    EXPECT_EQ(s.split(bodies[1]), std::vector{bodies[1]});
+    s.step();
+    const auto split = std::ranges::find(s.events(), BodyEvent::Kind::split, &BodyEvent::kind);
+    ASSERT_NE(split, s.events().end());
+    EXPECT_EQ(split->body, bodies[0]);
+    EXPECT_EQ(split->other, bodies[1]);
+  }
+}
+
+TEST(split, lets_halves_move_as_if_they_had_been_cut_by_nobody) {
+  SolverConfig config = solver();
+  config.gravity = {0, 0, 0};
+  const auto run = [&](bool splits) {
+    Cut cut = cut_bar(config, {.alpha = 0, .deformation_damping = 0.0f});
+    Simulation& s = cut.simulation;
+    s.set_velocity(cut.body, {0.1f, 0, 0}, {0, 0, 0.05f});
+    if (splits) s.split(cut.body);
+    for (int k = 0; k < 30; ++k) s.step();
+    return s.positions_by_id();
+  };
+  const std::vector<Vec3> one = run(false), two = run(true);
+  float most = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) most = std::max(most, (one[i] - two[i]).norm());
+  EXPECT_LT(most, 1e-3f);
+}
+
+TEST(split, lets_the_upper_half_of_a_cut_bar_stand_on_the_lower_one) {
+  const auto top = [](bool splits) {
+    Cut cut = cut_bar(solver(), {.alpha = 0}, splits);
+    cut.simulation.advance(60);
+    return cut.simulation.bounds(cut.body).max.z();
+  };
+  EXPECT_NEAR(top(true), 17, 1.5) << "8 and 9 layers, one on the other";
+  EXPECT_LT(top(false), 11) << "halves of one body of alpha 0 pass through each other";
+}
+
+TEST(split, of_bodies_that_are_to_comes_with_the_step_after_they_were_torn) {
+  Cut cut = cut_bar(solver(), {.alpha = 0}, true);
+  Simulation& s = cut.simulation;
+  EXPECT_EQ(s.body_count(), 1u);
+  s.step();
+  EXPECT_EQ(s.body_count(), 2u);
+  std::vector<BodyEvent::Kind> kinds;
+  for (const BodyEvent& event : s.events()) kinds.push_back(event.kind);
+  EXPECT_EQ(kinds, (std::vector{BodyEvent::Kind::torn, BodyEvent::Kind::split}));
+}
+
+TEST(split, has_the_same_bits_on_any_number_of_threads_and_after_a_restore_in_between) {
+  const auto run = [](int threads, bool restores) {
+    Cut cut = cut_bar(solver(threads), {.alpha = 0.1f}, true);
+    Simulation s = restores ? Simulation::restore(cut.simulation.save(), threads) : std::move(cut.simulation);
+    s.step();
+    if (restores) s = Simulation::restore(s.save(), threads);
+    for (int k = 0; k < 60; ++k) s.step();
+    EXPECT_EQ(s.body_count(), 2u);
+    return s.state_hash();
+  };
+  const std::uint64_t hash = run(1, false);
+  EXPECT_EQ(run(2, false), hash);
+  EXPECT_EQ(run(3, true), hash);
+}
+
+TEST(split, keeps_what_particles_have_of_their_own) {
+  SolverConfig config = solver();
+  Simulation s(config);
+  Body points = bar(20, 0.1f);
+  for (const Vec3& x : points.positions) {
+    points.alpha.push_back(x.z() < 10 ? 0.1f : 0.4f);
+    points.temperature.push_back(300 + x.z());
+    points.plastic_yield.push_back(x.x() < 2 ? 0.3f : 0.5f);
+  }
+  const BodyId id = s.add_body(
+      points, Material{.plastic_yield = 0.3f, .temperature = 300.0f, .conductivity = 1, .specific_heat = 1});
+  s.step();
+  s.remove_particles(slab(8, 11));
+  const PinId pin = s.pin(slab(15, 30));
+  const auto columns = [&] {
+    std::vector<std::vector<float>> all;
+    const auto by_id = [&](std::span<const float> column) {
+      std::vector<std::pair<ParticleId, float>> values;
+      for (std::size_t row = 0; row < column.size(); ++row) values.emplace_back(s.ids()[row], column[row]);
+      std::ranges::sort(values);
+      all.emplace_back();
+      for (const auto& [particle, value] : values) all.back().push_back(value);
+    };
+    by_id(s.alphas());
+    by_id(s.temperatures());
+    return all;
+  };
+  const auto before = columns();
+  const std::vector<BodyId> bodies = s.split(id);
+  ASSERT_EQ(bodies.size(), 2u);
+  EXPECT_EQ(columns(), before);
+  for (int k = 0; k < 20; ++k) s.step();
+  s.unpin(pin);
+  EXPECT_EQ(s.body_count(), 2u);
+}
+
+TEST(split, into_many_leaves_crumbs_with_the_one_that_keeps_the_id) {
+  SolverConfig config = solver();
+  config.gravity = {0, 0, 0};
+  Simulation s(config);
+  const BodyId id = s.add_body(
+      sample(Lattice{.count = {40, 2, 2}, .spacing = 1, .corner = {0, 0, 0}, .jitter = 0}), Material{});
+  s.step();
+  for (const float at : {6.0f, 14.0f, 22.0f, 30.0f}) s.remove_particles(Aabb{{at, -1, -1}, {at + 3, 3, 3}});
+  s.remove_particles(Aabb{{34, -1, -1}, {39, 3, 3}});
+  s.remove_particles(Aabb{{39, -1, -1}, {41, 1, 1}});
+  const std::vector<BodyId> bodies = s.split(id);
+  ASSERT_EQ(bodies.size(), 5u);
+  std::size_t particles = 0;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const Simulation::Rows rows = s.rows(bodies[k]);
+    EXPECT_EQ(rows.begin, k == 0 ? 0 : s.rows(bodies[k - 1]).end);
+    particles += rows.end - rows.begin;
+  }
+  EXPECT_EQ(particles, s.particle_count());
+  EXPECT_EQ(s.rows(bodies[0]).end - s.rows(bodies[0]).begin, 24u + 3u)
+      << "the first of the largest, and crumbs";
+  for (int k = 0; k < 10; ++k) s.step();
+}
+
+TEST(split, of_nobody_is_refused) {
+  Cut cut = cut_bar(solver(), {.alpha = 0});
+  cut.simulation.remove_body(cut.body);
+  EXPECT_NE(test::refusal([&] { cut.simulation.split(cut.body); }).find("was removed"), std::string::npos);
+}
+
+TEST(set_collider, gives_another_floor_in_its_place_and_wakes_what_lay_on_it) {
+  Simulation s(solver());
+  const BodyId body = s.add_body(
+      sample(Lattice{.count = {5, 5, 5}, .spacing = 1, .corner = {0, 0, 0.1f}, .jitter = 0}), Material{});
+  const ColliderId floor = s.add_collider({.shape = Plane{}, .friction = 1.0f});
+  for (int k = 0; k < 4000 && s.is_awake(body); ++k) s.step();
+  ASSERT_FALSE(s.is_awake(body));
+  EXPECT_THROW(s.set_collider(floor, {.shape = Plane{}, .friction = -1.0f}), ConfigError);
+  EXPECT_EQ(s.colliders()[0].friction, 1.0f);
+  s.set_collider(floor, {.shape = Plane{{0.1f, 0, 1}, 0}, .friction = 0.0f});
+  EXPECT_EQ(s.colliders()[0].friction, 0.0f);
+  const double before = s.motion(body).center_of_mass.x();
+  s.advance(6);
+  EXPECT_GT(s.motion(body).center_of_mass.x(), before + 0.3) << "it slides down";
+  s.remove_collider(floor);
+  EXPECT_THROW(s.set_collider(floor, {.shape = Plane{}}), ConfigError);
+}
+
+}  // namespace split_test
+}  // namespace mallow
