@@ -46,7 +46,8 @@ void write_mesh_ply(const std::filesystem::path& file, const Mesh& mesh) {
   require_valid(mesh);
   const std::size_t bytes_of_id = body_bytes(mesh.material_ids);
   std::string bytes = ply_header(mesh, bytes_of_id);
-  const std::size_t vertex_bytes = 12 + (mesh.normals.empty() ? 0 : 12) + (mesh.velocities.empty() ? 0 : 12) +
+  const std::size_t vertex_bytes = 12u + (mesh.normals.empty() ? 0u : 12u) +
+                                   (mesh.velocities.empty() ? 0u : 12u) +
                                    (mesh.material_ids.empty() ? 0 : bytes_of_id);
   constexpr std::size_t k_triangle_bytes = 13;
   const std::size_t total =

@@ -53,7 +53,7 @@ Grid::Ptr copy_blocks(const SurfaceField& field) {
     for (openvdb::Index v = 0; v < k_block_voxels; ++v)
       leaf->setValueOff(
           v, std::clamp(static_cast<float>(voxel) * field.distances(b)[v], -background, background));
-    for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t axis = 0; axis < 3; ++axis)
       for (const int way : {-k_block_side, k_block_side}) {
         openvdb::Coord beside = origin(b);
         beside[axis] += way;
@@ -75,7 +75,7 @@ void activate_beside_surface(Grid& grid) {
       const openvdb::Coord at = leaf.offsetToGlobalCoord(v);
       const bool inside = leaf.getValue(v) < 0;
       bool beside = false;
-      for (int axis = 0; axis < 3; ++axis)
+      for (std::size_t axis = 0; axis < 3; ++axis)
         for (const int way : {-1, 1}) {
           openvdb::Coord next = at;
           next[axis] += way;

@@ -24,7 +24,7 @@ class Lines {
     openvdb::CoordBBox box;
     for (const Leaf* leaf : leaves_) box.expand(leaf->getNodeBoundingBox());
     min_ = box.min();
-    for (int axis = 0; axis < 3; ++axis) count_[axis] = static_cast<std::size_t>(box.dim()[axis]);
+    for (std::size_t axis = 0; axis < 3; ++axis) count_[axis] = static_cast<std::size_t>(box.dim()[axis]);
     sort_into_layers();
   }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <sstream>
 #include <utility>
@@ -163,6 +164,78 @@ void look_at_turns(const std::string& what, std::span<const SceneKeyframe> keys,
   }
 }
 
+/// Numbers of degrees that are parts of a turn in radians, to this relative difference: twelfths of half a
+/// turn, from a twelfth to two.
+constexpr float k_same_turn = 1e-3f;
+
+bool are_radians(const Vec3& rotate) {
+  const auto is_part_of_a_turn = [](float angle) {
+    const float parts = std::abs(angle) * 12 / std::numbers::pi_v<float>, whole = std::round(parts);
+    return whole >= 1 && whole <= 24 && std::abs(parts - whole) <= k_same_turn * whole;
+  };
+  return std::ranges::any_of(rotate, is_part_of_a_turn) &&
+         std::ranges::all_of(rotate, [&](float angle) { return angle == 0 || is_part_of_a_turn(angle); });
+}
+
+/// A quarter of a turn is 90 degrees, not 1.5708.
+void look_at_radians(const Scene& scene, std::vector<std::string>& all) {
+  const auto look = [&](const std::string& what, const Vec3& rotate) {
+    if (!are_radians(rotate)) return;
+    const float most = rotate.cwiseAbs().maxCoeff();
+    std::ostringstream text;
+    text << what << ".rotate: " << most << " is in degrees, hardly a turn at all, and "
+         << std::round(180 / std::numbers::pi_v<float> * most) << " degrees are " << most << " radians";
+    all.push_back(text.str());
+  };
+  const auto look_at_all = [&](const char* list, const auto& ones) {
+    for (std::size_t k = 0; k < ones.size(); ++k) {
+      const std::string what = list + ('[' + std::to_string(k) + ']');
+      look(what, ones[k].rotate);
+      for (std::size_t i = 0; i < ones[k].scene_keyframes.size(); ++i)
+        look(what + ".keyframes[" + std::to_string(i) + ']', ones[k].scene_keyframes[i].rotate);
+    }
+  };
+  look_at_all("collider", scene.colliders);
+  look_at_all("emitter", scene.emitters);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    std::visit(
+        [&](const auto& source) {
+          if constexpr (requires { source.placement.rotate; })
+            look("body[" + std::to_string(b) + ']', source.placement.rotate);
+        },
+        scene.bodies[b].source);
+}
+
+/// Whether something follows the temperature of a material.
+bool follows_heat(const Material& material) {
+  return material.alpha_by_temperature || material.viscosity_by_temperature ||
+         material.plastic_yield_by_temperature;
+}
+
+/// Heat that does not get anywhere in a run: what is to melt, or to set, stays as it is.
+void look_at_heat(const Scene& scene, const SimulationInfo& info, double seconds,
+                  std::vector<std::string>& all) {
+  const bool any_heats = std::ranges::any_of(
+      scene.colliders, [](const SceneCollider& collider) { return collider.temperature.has_value(); });
+  if (!any_heats) return;
+  for (const SceneMaterial& material : scene.materials) {
+    const Material& m = material.material;
+    const auto body = std::ranges::find(info.bodies, material.name, &BodyInfo::material);
+    if (body == info.bodies.end() || !follows_heat(m) || !(m.conductivity > 0)) continue;
+    // Half of a sudden change has come this far. [Carslaw & Jaeger, 2.4]
+    const double by_conductivity = seconds / (static_cast<double>(body->rest_density) * m.specific_heat);
+    const double way = std::sqrt(by_conductivity * static_cast<double>(m.conductivity));
+    const double spacing = static_cast<double>(body->spacing);
+    if (way >= spacing) continue;
+    std::ostringstream text;
+    text << "material '" << material.name << "': in the " << seconds << " s of the run heat comes " << way
+         << " m far into it, less than its spacing of " << spacing
+         << " m, so that nothing melts or sets but what starts so; real matter is as slow: a conductivity of "
+         << 9 * spacing * spacing / by_conductivity << " takes it three spacings far, or give a longer run";
+    all.push_back(text.str());
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info) {
@@ -171,11 +244,13 @@ std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info
     all.push_back("solver: gravity is left out, and so 0.3 m/s2 as in the paper, but " + what +
                   "; gravity = [0.0, 0.0, -9.81] is that of the earth");
   look_at_presets(scene, all);
+  look_at_radians(scene, all);
   for (std::string& text : surface_warnings(scene.surface, info)) all.push_back(std::move(text));
   const double frames = scene.run.frames, frame = frame_time(scene, info);
   const double seconds = frames * frame;
   if (scene.run.frames == 0) return all;
   look_at_creep(scene, seconds, all);
+  look_at_heat(scene, info, seconds, all);
   look_at_beginnings(scene, seconds, all);
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
     look_at_turns("collider[" + std::to_string(c) + "]", scene.colliders[c].scene_keyframes, all);

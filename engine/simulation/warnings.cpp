@@ -224,7 +224,7 @@ class Warnings {
     if (!body.paints_stiffness || volume_iterations_ > 0) return;
     std::size_t limp = 0;
     for (std::size_t row = body.begin; row < body.end; ++row)
-      limp += state_.store.stiffness[row] < k_limp && state_.store.alpha[row] < k_no_pressure ? 1 : 0;
+      limp += state_.store.stiffness[row] < k_limp && state_.store.alpha[row] < k_no_pressure ? 1u : 0u;
     if (limp == 0) return;
     add(body, limp,
         " of its particles have a stiffness of 0 or nearly, and an alpha at which no pressure parts ",

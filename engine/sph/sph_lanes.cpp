@@ -114,7 +114,7 @@ struct Separation {
 /// three components of the velocity took 28% of a free cube's spin in 200 steps. There ρ is at least ρ0.
 /// [model 2, section 0]
 struct Conservative {
-  static constexpr bool central = true, looks_ahead = true;
+  [[maybe_unused]] static constexpr bool central = true, looks_ahead = true;
   static float factor(const SphInput& in) {
     return 0.5f * in.spiky_gradient * in.inverse_radius * in.inverse_radius;
   }

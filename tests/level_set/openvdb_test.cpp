@@ -100,7 +100,7 @@ TEST(openvdb, finds_a_level_set_with_a_whole_band_of_three_voxels) {
       for (auto at = ball.grid->cbeginValueOn(); at; ++at) {
         if (std::abs(*at) > 2 * ball.voxel) continue;
         ++band;
-        for (int a = 0; a < 3; ++a)
+        for (std::size_t a = 0; a < 3; ++a)
           for (const int step : {-1, 1}) {
             openvdb::Coord next = at.getCoord();
             next[a] += step;

@@ -43,6 +43,22 @@ class Exceptions(unittest.TestCase):
         self.assertIsInstance(caught.exception.particle_id, int)
         self.assertEqual(simulation.state_hash(), before)
 
+    def test_objects_that_nobody_constructed(self):
+        refused = 0
+        for kind in vars(mallow).values():
+            if not isinstance(kind, type) or issubclass(kind, BaseException):
+                continue
+            bare = kind.__new__(kind)
+            for name in dir(kind):
+                if name.startswith("__") and name != "__repr__":
+                    continue
+                try:
+                    value = getattr(bare, name)
+                    value() if callable(value) else value
+                except (TypeError, AttributeError, mallow.Error) as error:
+                    refused += "never constructed" in str(error)
+        self.assertGreater(refused, 100)
+
     def test_ids_of_another_kind_and_dead_ones(self):
         simulation = cube()
         body = simulation.bodies()[0]

@@ -7,12 +7,13 @@ namespace heat_warnings_test {
 
 using heat_warnings = SceneFixture;
 
-/// A cube of a material by name on a plate, under 9.81 m/s²; lines of [solver], of the body and of the plate.
+/// A cube of a material by name on a plate, under 9.81 m/s², for as long as heat takes; lines of [solver], of
+/// the body and of the plate.
 std::string on_a_plate(const std::string& material, const std::string& solver, const std::string& body,
-                       const std::string& plate) {
+                       const std::string& plate, const std::string& frames = "50000") {
   return "[solver]\ngravity = [0, 0, -9.81]\n" + solver + "\n[[body]]\nmaterial = \"" + material +
          "\"\nbox = { count = [4, 4, 4], spacing = 0.005, corner = [0, 0, 0] }\n" + body +
-         "\n[[collider]]\nplane = {}\n" + plate + "\n[run]\nframe_time = 0.033\n";
+         "\n[[collider]]\nplane = {}\n" + plate + "\n[run]\nframe_time = 0.033\nframes = " + frames + "\n";
 }
 
 std::string painted(const std::string& temperature) {
@@ -108,6 +109,18 @@ TEST_F(heat_warnings, name_degrees_celsius_beside_kelvins_and_say_how_many_kelvi
   EXPECT_TRUE(warns(air,
                     "solver.air_temperature: a temperature of 20 stands beside the kelvins in which material "
                     "'butter' melts"));
+}
+
+TEST_F(heat_warnings, name_a_run_that_heat_gets_nowhere_in) {
+  const auto of = [&](const std::string& material, const std::string& plate, const std::string& frames) {
+    return warnings_of(read(on_a_plate(material, "", "", plate, frames)));
+  };
+  const auto few = of("butter", "temperature = 333", "90");
+  ASSERT_EQ(few.size(), 1u);
+  EXPECT_TRUE(few[0].starts_with("material 'butter': in the 2.97 s of the run heat comes 0.000")) << few[0];
+  EXPECT_TRUE(warns(few, "m far into it, less than its spacing of 0.005 m"));
+  EXPECT_TRUE(of("butter", "temperature = 333", "50000").empty());
+  EXPECT_TRUE(of("jelly", "temperature = 333", "90").empty()) << "carries no heat";
 }
 
 TEST_F(heat_warnings, leave_scenes_alone_that_are_in_one_unit) {

@@ -61,6 +61,21 @@ TEST_F(scene_warnings, name_keyframes_that_are_half_a_turn_or_more_apart) {
   EXPECT_FALSE(warns(turned_by("179"), "shorter way round"));
 }
 
+TEST_F(scene_warnings, name_turns_that_are_in_radians) {
+  const auto of = [&](const std::string& rotate) {
+    return warnings_of(read(jelly("alpha = 0.3",
+                                  "[[collider]]\nbox = { min = [-9, -9, -3], max = [9, 9, -2] }\n"
+                                  "rotate = " +
+                                      rotate + "\n")));
+  };
+  for (const char* const turn : {"[0.0, 0.0, 1.5708]", "[3.14159, 0.0, 0.0]", "[0.7854, 0.0, -1.0472]"})
+    EXPECT_TRUE(warns(of(turn), "collider[0].rotate: ")) << turn;
+  EXPECT_TRUE(warns(of("[0.0, 0.0, 1.5708]"), "90 degrees are 1.5708 radians"));
+  for (const char* const turn :
+       {"[0.0, 0.0, 0.0]", "[0.0, 0.0, 90.0]", "[1.0, 2.0, 3.0]", "[0.5, 1.5708, 0.0]"})
+    EXPECT_FALSE(warns(of(turn), "radians")) << turn;
+}
+
 TEST_F(scene_warnings, name_gravity_that_is_left_out_beside_pascals) {
   const std::string body = "[[body]]\nmaterial = \"honey\"\nbox = { count = [4, 4, 4], spacing = 0.01 }\n";
   const auto has = [&](const std::string& text) {

@@ -57,10 +57,12 @@ TEST(removed_bodies, leave_the_same_bits_and_names_whether_they_go_together_or_o
     std::vector<ParticleId> ids;
     for (const int b : {0, 3, 4, 7, 11}) {
       const Simulation::Rows rows = s.rows(bodies[static_cast<std::size_t>(b)]);
-      ids.insert(ids.end(), s.ids().begin() + rows.begin, s.ids().begin() + rows.end);
+      const std::span<const ParticleId> own = s.ids().subspan(rows.begin, rows.end - rows.begin);
+      ids.insert(ids.end(), own.begin(), own.end());
     }
     const Simulation::Rows cut = s.rows(bodies[8]);
-    ids.insert(ids.end(), s.ids().begin() + cut.begin, s.ids().begin() + cut.begin + 5);
+    const std::span<const ParticleId> some = s.ids().subspan(cut.begin, 5);
+    ids.insert(ids.end(), some.begin(), some.end());
     if (together) {
       s.remove_particles(ids);
     } else {

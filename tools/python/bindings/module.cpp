@@ -15,6 +15,24 @@ const char* doc(std::string_view name) {
   return found->text;
 }
 
+namespace {
+
+/// For an object that __new__ made and __init__ did not, pybind11 allocates what it is to hold when somebody
+/// first looks at it, and constructs nothing: whoever read that crashed.
+void* refuse_unconstructed(std::size_t) {
+  throw py::type_error("this object was never constructed: __init__ was not called");
+}
+
+void refuse_unconstructed_objects(const py::module_& module) {
+  for (const auto& [name, value] : py::dict(module.attr("__dict__"))) {
+    if (!PyType_Check(value.ptr())) continue;
+    auto* const type = reinterpret_cast<PyTypeObject*>(value.ptr());
+    for (py::detail::type_info* info : py::detail::all_type_info(type))
+      info->operator_new = &refuse_unconstructed;
+  }
+}
+
+}  // namespace
 }  // namespace mallow::python
 
 PYBIND11_MODULE(_mallow, module) {
@@ -35,4 +53,5 @@ PYBIND11_MODULE(_mallow, module) {
 #ifdef MALLOW_PYTHON_RENDER
   bind_pictures(module);
 #endif
+  refuse_unconstructed_objects(module);
 }
