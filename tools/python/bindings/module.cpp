@@ -2,6 +2,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "arrays.h"
 #include "docs.h"
 #include "mallow/version.h"
 #include "parts.h"
