@@ -1,4 +1,4 @@
-// Plays a glTF file as three.js does and prints what it shows at some times, as JSON: the meshes whose node has a size,
+// Plays a glTF file as three.js does and prints what it shows at some times, as JSON: the meshes of nodes that have a size,
 // with vertices and normals in the world, morph targets and all. Arguments: the folder of the npm package, the times in
 // seconds with commas between, the file. Exit code 77: there is no three.js.
 import fs from "node:fs";
@@ -47,11 +47,10 @@ for (const clip of animations) {
 const found = { durations: animations.map((clip) => clip.duration), shown: [] };
 for (const time of times.split(",").map(Number)) {
   mixer.setTime(time);
+  scene.traverse((node) => { node.visible = node.scale.x !== 0; });
   scene.updateMatrixWorld(true);
   const meshes = [];
-  scene.traverse((node) => {
-    if (node.isMesh && node.matrixWorld.determinant() !== 0) meshes.push(shownMesh(node));
-  });
+  scene.traverseVisible((node) => { if (node.isMesh) meshes.push(shownMesh(node)); });
   found.shown.push({ time, meshes });
 }
 process.stdout.write(JSON.stringify(found));
