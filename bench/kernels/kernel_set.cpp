@@ -52,6 +52,11 @@ const Json* find_row(const Json& rows, const std::string& kernel, const KernelCa
 Json make_row(const KernelCase& about, const Timed& timed, const std::vector<double>& seconds,
               const Json& rows) {
   const double ns = 1e9 * minimum(seconds) / timed.items;
+  const auto times = [&](double scale) -> Json {
+    return {{"min", scale * minimum(seconds)},
+            {"median", scale * median(seconds)},
+            {"max", scale * maximum(seconds)}};
+  };
   Json row = {{"kernel", about.kernel},
               {"scene", about.scene},
               {"threads", about.threads},
@@ -59,8 +64,8 @@ Json make_row(const KernelCase& about, const Timed& timed, const std::vector<dou
               {"item", about.item},
               {"items", timed.items},
               {"repeats", seconds.size()},
-              {"ms", {{"min", 1e3 * minimum(seconds)}, {"median", 1e3 * median(seconds)}}},
-              {"ns_per_item", {{"min", ns}, {"median", 1e9 * median(seconds) / timed.items}}},
+              {"ms", times(1e3)},
+              {"ns_per_item", times(1e9 / timed.items)},
               {"core_ns_per_item", about.threads * ns}};
   if (const Json* other = find_row(rows, about.compare_to, about)) {
     row["compared_to"] = about.compare_to;

@@ -63,5 +63,6 @@ void add_rotations(const KernelVariants& variants, KernelSet& set);
 void add_neighbors(const KernelVariants& variants, KernelSet& set);
 void add_sph(const KernelVariants& variants, KernelSet& set);
 void add_surface(const KernelVariants& variants, KernelSet& set);
+void add_skin(const KernelVariants& variants, KernelSet& set);
 
 }  // namespace mallow::bench

@@ -49,6 +49,19 @@ TEST_F(bench_kernels, rotations_are_right_wherever_they_are_determined) {
   }
 }
 
+TEST_F(bench_kernels, a_skin_is_bound_and_follows_a_body) {
+  const nlohmann::json document = run_command(
+      "kernels", {"--threads", "1", "--min-time", "0.001", "--repeats", "3", "--filter", "^skin_"});
+  expect_valid("kernels");
+  ASSERT_EQ(document.at("rows").size(), 2u);
+  for (const nlohmann::json& row : document["rows"]) {
+    EXPECT_EQ(row.at("items"), 37706) << row;
+    EXPECT_NEAR(row.at("about").at("particles"), 4000, 40);
+    EXPECT_LE(row.at("ms").at("min"), row["ms"].at("median"));
+    EXPECT_LE(row["ms"]["median"], row["ms"].at("max"));
+  }
+}
+
 TEST_F(bench_kernels, what_makes_no_sense_is_refused) {
   expect_refused("kernels", {"--filter", "no_such_kernel"},
                  {"--filter", "no_such_kernel", "region_sums/cube_15"});

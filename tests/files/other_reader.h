@@ -47,4 +47,11 @@ inline std::optional<nlohmann::json> read_with(const std::string& command,
     GTEST_SKIP() << "SKIPPED: there is no glTF validator; tools/setup --gltf installs it";          \
   const nlohmann::json& name = *name##_or_none
 
+/// times: of the animation [s], a string with commas between.
+#define PLAY_WITH_THREE(name, times, file)                                                              \
+  const auto name##_or_none = read_with(                                                                \
+      "'" MALLOW_NODE "' '" MALLOW_READ_WITH_THREE "' '" MALLOW_THREE "' " + std::string(times), file); \
+  if (!name##_or_none) GTEST_SKIP() << "SKIPPED: there is no three.js; tools/setup --gltf installs it"; \
+  const nlohmann::json& name = *name##_or_none
+
 }  // namespace mallow
