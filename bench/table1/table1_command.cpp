@@ -63,6 +63,7 @@ void run(const Table1Options& options) {
                                              {"fps1", "FPS (1)", 0},
                                              {"paper_fps1", "paper", 1},
                                              {"fps1_ratio", "ratio", 0},
+                                             {"native_ratio", "native", 0},
                                              {"fps2", "FPS (2)", 1},
                                              {"fps2_rendered", "with picture", 2},
                                              {"paper_fps2", "paper", 2},

@@ -150,9 +150,13 @@ Json measure_row(const PaperRow& paper, const Table1Settings& settings, int thre
   const Frames frames = draw_frames(scene, settings, threads);
   // The textbook between two of ours, so that both meet the machine in the same mood.
   std::vector<Run> runs;
-  std::vector<double> textbook;
+  std::vector<double> textbook, native_ms;
+  Scene native = scene;
+  native.solver.arithmetic = Arithmetic::native;
   for (int repeat = 0; repeat < settings.repeats; ++repeat) {
     runs.push_back(run_steps(scene, settings.steps, threads));
+    // Without SPH there is nothing for it to do.
+    if (paper.alpha > 0) native_ms.push_back(run_steps(native, settings.steps, threads).milliseconds());
     if (repeat == 0) textbook = run_textbook(scene, settings, threads);
   }
   std::vector<double> step_ms;
@@ -196,11 +200,16 @@ Json measure_row(const PaperRow& paper, const Table1Settings& settings, int thre
       {"fps2_rendered_ratio", 1000 / (ms + surface_ms + picture_ms) / paper.fps2},
       {"bytes_per_particle", static_cast<double>(runs.front().bytes) / static_cast<double>(info.particles)},
       {"state_hash", program::hash_text(runs.front().state_hash)}};
-  // OpenVDB leaves out spheres of less than 1.5 voxels: then it has no surface to compare with, nor where it is not built.
+  // OpenVDB leaves out spheres of less than 1.5 voxels: then it has no surface to compare with, nor where it
+  // is not built.
   if (frames.plain_distance > 0) {
     row["plain_surface_ms"] = mean(frames.plain_surface);
     row["plain_surface_ratio"] = mean(frames.plain_surface) / mean(frames.beside_plain);
     row["plain_surface_distance"] = frames.plain_distance;
+  }
+  if (!native_ms.empty()) {
+    row["native_ms"] = median(native_ms);
+    row["native_ratio"] = 1000 / median(native_ms) / paper.fps1;
   }
   add_textbook(textbook, runs, row);
   Json phases;

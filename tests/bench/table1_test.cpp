@@ -21,6 +21,7 @@ TEST_F(bench_table1, rows_follow_the_schema_and_hold_paper_and_textbook_beside_o
   EXPECT_GT(cube.at("fps1"), cube.at("fps2"));
   EXPECT_GT(cube.at("fps2"), cube.at("fps2_rendered"));
   EXPECT_GE(cube.at("textbook_steps"), 1);
+  EXPECT_DOUBLE_EQ(cube.at("native_ratio").get<double>() * cube.at("native_ms").get<double>() * 25.1, 1000);
 }
 
 TEST_F(bench_table1, without_time_for_the_textbook_it_is_not_in_the_rows) {
