@@ -11,12 +11,22 @@ constexpr ImGuiWindowFlags k_quiet = ImGuiWindowFlags_NoDecoration | ImGuiWindow
 
 }  // namespace
 
+std::string message_shown(const Frame& frame, const ViewState& state, double wall) {
+  const bool stays = frame.building || frame.failed;
+  const bool has_notice = wall < state.notice_since + k_message_seconds;
+  const bool has_message = stays || wall < state.message_since + k_message_seconds;
+  const std::string said = frame.building ? "building the scene ..." : has_message ? frame.message : "";
+  if (!has_notice || state.notice.empty()) return said;
+  if (said.empty() || (!stays && state.notice_since > state.message_since)) return state.notice;
+  return stays ? said + "\n\n" + state.notice : said;
+}
+
 void draw_message(const Frame& frame, const ViewState& state, double wall) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  std::string text = frame.building ? "building the scene ..." : frame.message;
-  if (text.empty() && wall < state.notice_until) text = state.notice;
+  const std::string text = message_shown(frame, state, wall);
   if (text.empty()) return;
-  ImGui::SetNextWindowPos(ImVec2(16, size.y - 84), ImGuiCond_Always, ImVec2(0, 1));
+  ImGui::SetNextWindowPos(ImVec2(16, size.y - static_cast<float>(state.time_height) - 16), ImGuiCond_Always,
+                          ImVec2(0, 1));
   if (frame.failed) ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.42f, 0.10f, 0.08f, 0.95f));
   ImGui::Begin("message", nullptr, k_quiet | ImGuiWindowFlags_NoInputs);
   ImGui::PushTextWrapPos(std::min(640.0f, size.x - 360));
@@ -38,6 +48,7 @@ void draw_help(ViewState& state) {
       "Space            pause and play      .  one step\n"
       "Backspace        back, held: ever farther          R  to the start\n"
       "[  ]             slower and faster   =  as fast as it goes\n"
+      "U                let go of what the mouse has pinned\n"
       "P                surface or particles               K  what particles are coloured by\n"
       "F                record a film       S  save the scene as it stands\n"
       "C                copy the command line that repeats it\n"
