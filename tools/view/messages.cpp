@@ -14,7 +14,7 @@ constexpr ImGuiWindowFlags k_quiet = ImGuiWindowFlags_NoDecoration | ImGuiWindow
 constexpr std::array<std::array<const char*, 4>, 12> k_help = {{
     {"left button", "the tool at hand: 1 grab  2 throw  3 poke  4 cut  5 heat  6 pin  7 choose", "", ""},
     {"", "beside matter it turns the view", "", ""},
-    {"right button", "turn the view", "middle, or shift and right: move it", ""},
+    {"right button", "turn the view; with shift, or the middle button: move it", "", ""},
     {"wheel", "nearer and farther", "Home", "the view as it was"},
     {"Space", "pause and play", ". (period)", "one step"},
     {"Backspace", "back, held: ever farther", "R", "to the start"},

@@ -36,6 +36,7 @@ class SteppingThread {
 
   /// Takes the newest frame; false where there is none since the last time.
   bool take_frame() { return frames_.take(); }
+  bool has_frame() const { return !frames_.is_taken(); }
   /// The one that was taken last.
   const Frame& frame() { return frames_.front(); }
 

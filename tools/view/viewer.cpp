@@ -172,7 +172,10 @@ void Viewer::draw_next(bool may_wait) {
   // While a film's pictures are being written the next frame is left where it is: the scene waits for it.
   const bool film_is_busy = film_ && film_->is_busy();
   const bool works = (shows_gallery() && gallery().missing() > 0) || film_is_busy || joins_films();
-  window_.poll(!may_wait ? 0 : busy_pictures_ > 0 || stale_ || works ? std::max(0.0, rest) : k_idle_wait);
+  // One that lies there already wakes nobody.
+  const bool film_goes_on = film_ && !film_is_busy && stepping_->has_frame();
+  const double wait = busy_pictures_ > 0 || stale_ || works ? std::max(0.0, rest) : k_idle_wait;
+  window_.poll(!may_wait || film_goes_on ? 0 : wait);
   const bool fresh = !film_is_busy && take_frame();
   if (fresh) {
     busy_pictures_ = std::max(busy_pictures_, 1);
