@@ -231,6 +231,9 @@ TEST_F(cli_checkpoint, warns_of_a_scene_that_has_changed_and_moves_as_before) {
   const Outcome same = run_mallow({"run", scene_, "--resume", at("out"), "--frames", "6"});
   ASSERT_EQ(same.exit_code, 0) << same.err;
   EXPECT_EQ(same.err.find("warning"), std::string::npos) << same.err;
+  EXPECT_NE(same.err.find("nothing is left to run"), std::string::npos) << same.err;
+  EXPECT_NE(same.err.find("--frames 12"), std::string::npos) << "what to ask for\n" << same.err;
+  EXPECT_EQ(outcome.err.find("nothing is left"), std::string::npos) << outcome.err;
 }
 
 TEST_F(cli_checkpoint, overwrite_removes_them) {

@@ -160,7 +160,12 @@ TEST(view_session, verbs_do_what_they_say) {
   session.throw_ball(ray, 1);
   EXPECT_EQ(session.simulation().body_count(), 2u);
   const float reach = reach_of(session.simulation());
+  const BodyId hit = hit_of(session.simulation(), ray).body;
+  const Eigen::Vector3d still = session.simulation().motion(hit).momentum;
   poke(session.simulation(), ray, reach, 0.1f);
+  const Eigen::Vector3d poked = session.simulation().motion(hit).momentum - still;
+  EXPECT_LT(poked.z(), 0) << "along the ray, downwards";
+  EXPECT_LT(poked.head<2>().norm(), 1e-3 * -poked.z());
   heat(session.simulation(), ray, reach, 10, 0.2f);
   EXPECT_FALSE(session.simulation().alphas().empty()) << "it melts where it carries no heat";
   pin(session.simulation(), ray, reach);

@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "view/settings_model.h"
 
@@ -56,10 +57,67 @@ TEST(view_settings, the_command_line_has_what_was_changed_and_gives_the_same_sce
   EXPECT_EQ(settings.command_line().find("--set"), std::string::npos);
   const SettingsSection* section = nullptr;
   SettingsModel::set_share(field_of(settings, "material[0].alpha", section), 0.25);
-  EXPECT_NE(settings.command_line().find("--set 'material[0].alpha=0.25'"), std::string::npos)
+  EXPECT_NE(settings.command_line().find("--set material.jelly.alpha=0.25"), std::string::npos)
       << settings.command_line();
-  const std::string changes[] = {"material[0].alpha=0.25"};
+  const std::string changes[] = {"material.jelly.alpha=0.25"};
   EXPECT_EQ(print_scene(read_scene(cube().file, changes)), print_scene(settings.scene()));
+}
+
+/// What the command's --set say.
+std::vector<std::string> changes_in(const std::string& command) {
+  std::vector<std::string> changes;
+  const std::string line = command.substr(0, command.find("  #"));
+  const std::string option = " --set ";
+  for (std::size_t at = line.find(option); at != line.npos; at = line.find(option, at + 1)) {
+    std::string word = line.substr(at + option.size());
+    word = word.front() == '\'' ? word.substr(1, word.find('\'', 1) - 1) : word.substr(0, word.find(' '));
+    changes.push_back(word);
+  }
+  return changes;
+}
+
+TEST(view_settings, the_command_line_keeps_what_the_viewer_itself_was_told_and_materials_by_name) {
+  const std::string text =
+      "[[body]]\nmaterial = 'jelly'\nbox = { count = [4, 4, 4], spacing = 0.01 }\n[[body]]\n"
+      "material = 'rubber'\nbox = { count = [4, 4, 4], spacing = 0.01, corner = [0.1, 0, 0] }\n";
+  const std::vector<std::string> own = {"solver.time_step_factor=0.9", "material.rubber.alpha=0.3"};
+  SettingsModel settings(parse_scene(text, "two.toml", own), own);
+  const SettingsSection* section = nullptr;
+  for (const char* const key : {"material[0].alpha", "material[1].viscosity"})
+    SettingsModel::set_share(field_of(settings, key, section), 0.75);
+  const std::vector<std::string> changes = changes_in(settings.command_line());
+  EXPECT_EQ(print_scene(parse_scene(text, "two.toml", changes)), print_scene(settings.scene()))
+      << settings.command_line();
+}
+
+TEST(view_settings, the_command_line_says_what_it_lacks) {
+  SettingsModel settings(cube());
+  EXPECT_EQ(settings.command_line().find('#'), std::string::npos);
+  EXPECT_NE(settings.command_line("", {"what the mouse did"}).find("  # without what the mouse did: S saves"),
+            std::string::npos);
+  const SettingsSection* section = nullptr;
+  SettingsModel::set_share(field_of(settings, "material[0].alpha", section), 0.25);
+  SettingsModel::set_share(field_of(settings, "render.field_of_view", section), 0.5);
+  const std::string run = settings.command_line("my run");
+  EXPECT_TRUE(run.starts_with("mallow run --resume 'my run' --set render.field_of_view=")) << run;
+  EXPECT_NE(run.find("  # without settings of the motion"), std::string::npos) << run;
+  EXPECT_EQ(run.find("alpha"), std::string::npos) << "what does not act when it goes on";
+}
+
+TEST(view_settings, pictures_of_runs_are_told_from_what_this_window_shows) {
+  SettingsModel settings(cube());
+  const SettingsSection* section = nullptr;
+  const auto acts = [&](const char* key) {
+    const auto& field = field_of(settings, key, section);
+    return SettingsModel::acts(*section, field);
+  };
+  EXPECT_EQ(acts("render.field_of_view"), SettingsModel::Acts::at_once);
+  EXPECT_EQ(acts("render.eye"), SettingsModel::Acts::at_once);
+  EXPECT_EQ(acts("render.shutter"), SettingsModel::Acts::in_pictures_of_runs);
+  EXPECT_EQ(acts("body[0].velocity"), SettingsModel::Acts::when_built_anew);
+  const auto& shutter = field_of(settings, "render.shutter", section);
+  settings.command(*section, shutter);
+  EXPECT_FALSE(settings.waits_for_rebuild()) << "no rebuild would show it";
 }
 
 TEST(view_settings, every_slider_goes_once_through_its_range_and_the_session_stands) {
@@ -82,6 +140,7 @@ TEST(view_settings, every_slider_goes_once_through_its_range_and_the_session_sta
         if (auto command = settings.command(section, field)) session.run(command);
         session.step_once();
         session.advance(0);
+        ASSERT_FALSE(session.has_failed()) << section.path << "." << field.name << " at " << share;
       }
       put_back();
       if (auto command = settings.command(section, field)) session.run(command);

@@ -26,6 +26,10 @@ const std::string k_cube = std::string(MALLOW_DATA_DIR) + "/scenes/cube.toml";
 class view_window : public testing::Test {
  protected:
   void SetUp() override {
+    for (const char* const film : {"view.mp4", "view_2.mp4"}) {
+      std::filesystem::remove(scratch() / film);
+      std::filesystem::remove_all((scratch() / film).string() + ".frames");
+    }
     if (const std::string why = test::why_no_window(); !why.empty()) GTEST_SKIP() << why;
   }
 };
@@ -105,6 +109,7 @@ TEST_F(view_window, every_slider_goes_once_through_its_range) {
   EXPECT_NE(played.out.find("sweep solver.time_step_factor"), std::string::npos);
   EXPECT_NE(played.out.find("sweep surface.voxels_per_spacing"), std::string::npos);
   EXPECT_GT(number_behind(played.out, "steps"), 0) << played.out;
+  EXPECT_EQ(number_behind(played.out, "failed"), 0) << played.out;
 }
 
 TEST_F(view_window, a_scene_that_is_wrong_is_said_and_ends_with_2) {
@@ -152,8 +157,9 @@ TEST_F(view_window, marks_show_pins_the_region_of_a_particle_and_contacts) {
 }
 
 TEST_F(view_window, a_film_holds_every_frame_of_the_scene_once) {
-  const Played played = play({k_cube, "--width", "320", "--height", "240"},
-                             "ready\nkey space\npictures 4\nkey f\nframes 8\npictures 2\nkey f\npictures 2\nclose\n");
+  const Played played =
+      play({k_cube, "--width", "320", "--height", "240"},
+           "ready\nkey space\npictures 4\nkey f\nframes 8\npictures 2\nkey f\npictures 2\nclose\n");
   ASSERT_EQ(played.exit_code, 0) << played.out;
   if (!program::is_installed("ffmpeg") || !program::is_installed("ffprobe")) {
     EXPECT_TRUE(std::filesystem::exists(scratch() / "view.mp4.frames" / "images")) << "as no ffmpeg is here";
@@ -171,6 +177,110 @@ TEST_F(view_window, a_film_holds_every_frame_of_the_scene_once) {
   std::ifstream(scratch() / "count.txt") >> count;
   EXPECT_GE(count, 8);
   EXPECT_LE(count, 12) << "frames that ended until the key was read";
+}
+
+/// A scene whose steps take next to no time.
+std::string tiny() {
+  const std::filesystem::path file = scratch() / "tiny.toml";
+  std::ofstream(file) << "[solver]\ngravity = [0, 0, -9.81]\n[[body]]\nmaterial = 'jelly'\n"
+                         "box = { count = [4, 4, 4], spacing = 0.01, corner = [-0.035, -0.035, 0.1] }\n"
+                         "[[collider]]\nplane = {}\n[run]\nframes = 60\nframe_time = 0.02\n";
+  return file.string();
+}
+
+/// Pictures in a film; 0 where there is none.
+int pictures_in(const std::filesystem::path& film) {
+  const std::filesystem::path count = scratch() / "count.txt";
+  const std::string probe =
+      "ffprobe -v error -count_frames -select_streams v -of csv=p=0 -show_entries stream=nb_read_frames " +
+      program::shell_word(film.string()) + " > " + program::shell_word(count.string());
+  int pictures = 0;
+  if (std::system(probe.c_str()) == 0) std::ifstream(count) >> pictures;
+  return pictures;
+}
+
+bool can_look_into_films() {
+  return program::is_installed("ffmpeg") && program::is_installed("ffprobe");
+}
+
+/// The small one steps far faster than a window draws; a hand turns the view meanwhile, which draws each
+/// frame more than once.
+TEST_F(view_window, a_film_holds_every_frame_once_in_a_window_that_waits_for_events) {
+  const std::string turn =
+      "press 1\nmove 0.3 0.3\npictures 3\nmove 0.5 0.4\npictures 3\nmove 0.4 0.3\nrelease 1\n";
+  const Played played = play({tiny(), "--paused", "--width", "320", "--height", "240"},
+                             "ready\nhand\nkey =\nkey f\nframes 40\n" + turn +
+                                 "frames 40\nfilm\n"
+                                 "key f\npictures 1\njoined\nclose\n");
+  ASSERT_EQ(played.exit_code, 0) << played.out;
+  const double pictures = number_behind(played.out, "film pictures");
+  EXPECT_GE(pictures, 80);
+  EXPECT_EQ(number_behind(played.out, "first"), 1) << played.out;
+  EXPECT_EQ(number_behind(played.out, "last"), pictures) << played.out;
+  EXPECT_EQ(number_behind(played.out, "of"), pictures) << "frames of the scene have ended\n" << played.out;
+  if (!can_look_into_films()) GTEST_SKIP() << "ffmpeg is not installed (Debian: ffmpeg)";
+  EXPECT_GE(pictures_in(scratch() / "view.mp4"), pictures) << played.out;
+}
+
+TEST_F(view_window, closed_while_it_records_it_makes_the_film_and_says_where) {
+  if (!can_look_into_films()) GTEST_SKIP() << "ffmpeg is not installed (Debian: ffmpeg)";
+  const Played played =
+      play({tiny(), "--width", "320", "--height", "240"}, "ready\nkey f\nframes 9\nfilm\nclose\n");
+  ASSERT_EQ(played.exit_code, 0) << played.out;
+  EXPECT_NE(played.out.find("view.mp4"), std::string::npos) << played.out;
+  EXPECT_FALSE(std::filesystem::exists(scratch() / "view.mp4.frames"));
+  EXPECT_GE(pictures_in(scratch() / "view.mp4"), number_behind(played.out, "film pictures")) << played.out;
+}
+
+TEST_F(view_window, a_film_ends_with_its_scene_and_the_next_one_plays) {
+  if (!can_look_into_films()) GTEST_SKIP() << "ffmpeg is not installed (Debian: ffmpeg)";
+  const Played played =
+      play({tiny(), "--width", "320", "--height", "240"},
+           "ready\nkey space\npictures 4\nkey f\nframes 9\nkey escape\npictures 3\nopen " + k_cube +
+               "\npictures 3\nready\nframes 1\n"
+               "status\nkey space\npictures 4\nkey f\nframes 3\nkey f\npictures 3\njoined\nclose\n");
+  ASSERT_EQ(played.exit_code, 0) << played.out;
+  EXPECT_NE(played.out.find("paused 0"), std::string::npos) << played.out;
+  EXPECT_GE(pictures_in(scratch() / "view.mp4"), 9);
+  EXPECT_GE(pictures_in(scratch() / "view_2.mp4"), 3) << played.out;
+}
+
+TEST_F(view_window, what_was_said_last_is_seen) {
+  const Played played = play({tiny(), "--paused", "--set", "solver.time_step_factor=0.9"},
+                             "ready\nkey 3\nmove 0.5 0.22\npictures 2\npress 0\nrelease 0\npictures 4\n"
+                             "message\nkey c\npictures 3\nmessage\ncopied\nclose\n");
+  ASSERT_EQ(played.exit_code, 0) << played.out;
+  EXPECT_NE(played.out.find("shown poked"), std::string::npos) << played.out;
+  EXPECT_NE(played.out.find("shown copied: mallow run"), std::string::npos) << played.out;
+  EXPECT_NE(played.out.find("--set solver.time_step_factor=0.9  # without what the mouse did"),
+            std::string::npos)
+      << played.out;
+}
+
+TEST_F(view_window, a_scene_that_is_refused_when_built_anew_goes_on_as_it_was) {
+  const Played played =
+      play({tiny(), "--set", "solver.time_step=0.002"},
+           "ready\nframes 3\nset solver.time_step 1\nrebuild\npictures 8\nmessage\nkey =\nframes 3\nstatus\n"
+           "key s\npictures 6\nset solver.time_step 0\nrebuild\npictures 8\nready\nstatus\nclose\n");
+  ASSERT_EQ(played.exit_code, 0) << played.out;
+  EXPECT_NE(played.out.find("shown "), std::string::npos) << played.out;
+  EXPECT_NE(played.out.find("time_step"), std::string::npos) << played.out;
+  EXPECT_TRUE(std::filesystem::exists(scratch() / "view_tiny" / "checkpoint")) << played.out;
+}
+
+TEST_F(view_window, the_field_of_view_is_seen_at_once) {
+  const Played played = play({k_cube, "--paused", "--width", "320", "--height", "240"},
+                             "ready\npictures 2\nscene narrow.png\nset render.field_of_view 0.6\npictures 4\n"
+                             "scene wide.png\nclose\n");
+  ASSERT_EQ(played.exit_code, 0) << played.out;
+  EXPECT_GT(far_off(read_png(scratch() / "narrow.png"), read_png(scratch() / "wide.png"), 16), 0.05);
+}
+
+TEST_F(view_window, help_is_shown_in_the_gallery_too) {
+  const Played played =
+      play({}, "pictures 3\nscreenshot plain.png\nkey h\npictures 3\nscreenshot help.png\nclose\n");
+  ASSERT_EQ(played.exit_code, 0) << played.out;
+  EXPECT_GT(far_off(read_png(scratch() / "plain.png"), read_png(scratch() / "help.png"), 16), 0.08);
 }
 
 }  // namespace view_window_test

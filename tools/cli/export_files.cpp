@@ -25,14 +25,16 @@ bool contains(const std::vector<std::string>& formats, const char* format) {
   return std::find(formats.begin(), formats.end(), format) != formats.end();
 }
 
-/// What files say of each body of the scene.
+/// What files say of each body, of those too that were thrown at the scene before it was saved.
 std::vector<MeshBody> mesh_bodies(const program::CachedRun& run) {
-  const std::vector<Appearance> appearances = program::body_appearances(run.scene);
+  const std::vector<Appearance> appearances = program::body_appearances(run.scene, run.spacings.size());
   const std::vector<std::size_t> materials = body_materials(run.scene);
   std::vector<MeshBody> bodies;
-  for (std::size_t b = 0; b < materials.size(); ++b) {
-    bodies.push_back({appearances[b], run.report.at("groups").at(b).value("name", ""),
-                      run.scene.materials[materials[b]].name});
+  for (std::size_t b = 0; b < run.spacings.size(); ++b) {
+    const auto& group = run.report.at("groups").at(b);
+    bodies.push_back(
+        {appearances[b], group.value("name", ""),
+         b < materials.size() ? run.scene.materials[materials[b]].name : group.value("material", "")});
   }
   return bodies;
 }
@@ -143,14 +145,15 @@ class FrameWriter {
   void write_level_set(const ParticleFrame& frame, const fs::path& file) {
     SurfaceParticles particles = surface_particles(frame, run_.spacings);
     particles.velocities = {};
-    const std::vector<std::size_t> materials = body_materials(run_.scene);
-    for (SurfaceBody& body : particles.bodies) {
-      body.name = bodies_.at(body.body).name;
-      body.material = static_cast<MaterialId>(materials.at(body.body));
-    }
-    surfacer_.draw(particles);
     std::vector<std::string> names;
     for (const SceneMaterial& material : run_.scene.materials) names.push_back(material.name);
+    for (SurfaceBody& body : particles.bodies) {
+      body.name = bodies_.at(body.body).name;
+      const auto material = std::ranges::find(names, bodies_.at(body.body).material);
+      body.material = static_cast<MaterialId>(material - names.begin());
+      if (material == names.end()) names.push_back(bodies_.at(body.body).material);
+    }
+    surfacer_.draw(particles);
     write_whole(file, level_set_vdb(surfacer_, names));
   }
 

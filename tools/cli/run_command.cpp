@@ -131,7 +131,7 @@ program::CheckpointInterval checkpoint_interval(const RunOptions& options,
 void describe(const Scene& scene, int threads, Simulation& simulation, program::RunReport& report) {
   report.threads = threads;
   report.info = simulation.info();
-  report.appearances = program::body_appearances(scene);
+  report.appearances = program::body_appearances(scene, report.info.bodies.size());
   report.frame_time = frame_time(scene, report.info);
 }
 
@@ -249,6 +249,8 @@ Run resume(const RunOptions& options, int threads) {
   if (run.plan.images && run.scene.render.eye) check_pictures(options.film, *run.cache, run.report.frames);
   run.plan.threads = threads;
   run.plan.checkpoints = checkpoint_interval(options, run.plan.checkpoints);
+  if (const std::string said = program::nothing_left(run.plan, run.report); !said.empty())
+    std::fprintf(stderr, "%s\n", said.c_str());
   describe(run.scene, threads, *run.simulation, run.report);
   if (run.report.info.bodies.size() < body_materials(run.scene).size()) {
     const std::filesystem::path file = run.cache->report_file();

@@ -44,6 +44,11 @@ void BackgroundWriter::add(std::function<void()> job) {
   changed_.notify_all();
 }
 
+bool BackgroundWriter::has_room() {
+  const std::lock_guard lock(mutex_);
+  return jobs_.size() < k_most_jobs || error_;
+}
+
 void BackgroundWriter::finish() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return jobs_.empty(); });

@@ -21,6 +21,8 @@ class BackgroundWriter {
 
   /// Takes a job, after a wait for room. Throws what an earlier job has thrown, and takes none then.
   void add(std::function<void()> job);
+  /// Whether add() would take a job without a wait.
+  bool has_room();
   /// Waits until all jobs are done. Throws what one of them has thrown.
   void finish();
 

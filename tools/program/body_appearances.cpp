@@ -1,5 +1,6 @@
 #include "program/body_appearances.h"
 
+#include <algorithm>
 #include <array>
 
 namespace mallow::program {
@@ -12,15 +13,25 @@ const std::array<Vec3, 8> k_palette = {
     Vec3{0.75f, 0.30f, 0.34f}, Vec3{0.35f, 0.25f, 0.16f},
 };
 
+/// Of what no scene has.
+const Appearance k_thrown{Vec3(0.05f, 0.30f, 0.55f), Finish::gloss};
+
 }  // namespace
 
-std::vector<Appearance> body_appearances(const Scene& scene) {
+std::vector<Appearance> body_appearances(const Scene& scene, std::size_t bodies) {
   std::vector<Appearance> appearances;
   for (const std::size_t index : body_materials(scene)) {
     const SceneMaterial& material = scene.materials[index];
     appearances.push_back({material.color.value_or(k_palette[index % k_palette.size()]), material.finish});
   }
+  if (appearances.size() < bodies) appearances.resize(bodies, k_thrown);
   return appearances;
+}
+
+std::size_t body_slots(const Simulation& simulation) {
+  std::size_t slots = 0;
+  for (const BodyId body : simulation.bodies()) slots = std::max<std::size_t>(slots, slot_of(body) + 1);
+  return slots;
 }
 
 }  // namespace mallow::program

@@ -190,4 +190,12 @@ RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> sk
   return RunEnd::complete;
 }
 
+std::string nothing_left(const RunPlan& plan, const RunReport& report) {
+  if (plan.steps ? report.steps < *plan.steps : report.frames < plan.frames) return {};
+  const std::string more = plan.steps ? "--steps " + std::to_string(2 * report.steps)
+                                      : "--frames " + std::to_string(report.frames + plan.frames);
+  return "nothing is left to run: there are " + std::to_string(report.frames) + " frames in " +
+         std::to_string(report.steps) + " steps already; to go on ask for more, as " + more;
+}
+
 }  // namespace mallow::program

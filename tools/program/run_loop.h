@@ -32,4 +32,7 @@ RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> sk
                   const Cache* cache, RunReport& report, const RunCallbacks& callbacks = {},
                   Series* series = nullptr);
 
+/// What to say where a run that goes on has already taken all that it is asked for; else empty.
+std::string nothing_left(const RunPlan& plan, const RunReport& report);
+
 }  // namespace mallow::program

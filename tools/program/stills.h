@@ -35,7 +35,7 @@ class Stills {
   const Scene& scene_;
   render::Renderer renderer_;
   render::Camera camera_;
-  std::vector<Appearance> palette_;  ///< appearance of each body
+  std::vector<Appearance> palette_;  ///< appearance of each body, so far
   float ball_radius_;                ///< [m]
 };
 

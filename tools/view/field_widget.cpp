@@ -124,7 +124,7 @@ struct Widget {
   }
 };
 
-void tooltip(const BoundField& field, bool waits) {
+void tooltip(const BoundField& field, const char* remark) {
   if (!ImGui::IsItemHovered()) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(360);
@@ -132,25 +132,25 @@ void tooltip(const BoundField& field, bool waits) {
   ImGui::TextWrapped("%s", field.doc);
   ImGui::TextDisabled("%s", scene_file::allowed(field).c_str());
   if (*field.left_out && !field.required()) ImGui::TextDisabled("left out: %s", field.left_out);
-  if (waits) ImGui::TextColored(ImVec4(1, 0.75f, 0.35f, 1), "a change waits until the scene is built anew");
+  if (remark) ImGui::TextColored(ImVec4(1, 0.75f, 0.35f, 1), "%s", remark);
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
 }
 
 }  // namespace
 
-bool field_widget(const BoundField& field, bool waits) {
+bool field_widget(const BoundField& field, const char* remark) {
   ImGui::PushID(field.name);
   ImGui::AlignTextToFramePadding();
-  if (waits)
+  if (remark)
     ImGui::TextDisabled("%s", field.name);
   else
     ImGui::TextUnformatted(field.name);
-  tooltip(field, waits);
+  tooltip(field, remark);
   if (*field.unit) {
     ImGui::SameLine();
     ImGui::TextDisabled("%s", field.unit);
-    tooltip(field, waits);
+    tooltip(field, remark);
   }
   ImGui::SameLine(0.52f * ImGui::GetWindowContentRegionMax().x);
   ImGui::SetNextItemWidth(-1);
@@ -158,7 +158,7 @@ bool field_widget(const BoundField& field, bool waits) {
   ImGui::SetNextItemWidth(-1);
   const bool changed = std::visit(Widget{field}, field.target);
   ImGui::EndGroup();
-  tooltip(field, waits);
+  tooltip(field, remark);
   ImGui::PopID();
   return changed;
 }

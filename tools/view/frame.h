@@ -60,16 +60,17 @@ struct FrameStats {
 
 /// All that the window shows of a moment.
 struct Frame {
-  std::uint64_t number = 0;           ///< counts what is published, from 1
+  std::uint64_t number = 0;  ///< counts what is published, from 1
+  bool has_scene = false;
   int scene = 0;                      ///< counts scenes that were built; colliders and camera belong to it
   render::Camera camera;              ///< as `mallow render` looks at the scene
   Aabb bounds{{0, 0, 0}, {1, 1, 1}};  ///< what is to be seen of it [m]
   bool building = false;              ///< the scene is being built, and nothing else counts
   bool paused = false;
-  bool finished = false;              ///< a frame of the scene ended here: what a film holds
-  Mesh mesh;                          ///< surface and skins; material ids are slots of bodies
-  bool has_skins = false;             ///< which may be open: their insides are seen
-  std::vector<Vec3> positions;        ///< of particles [m], where they are drawn
+  bool finished = false;        ///< a frame of the scene ended here, of which a film waits for a picture
+  Mesh mesh;                    ///< surface and skins; material ids are slots of bodies
+  bool has_skins = false;       ///< which may be open: their insides are seen
+  std::vector<Vec3> positions;  ///< of particles [m], where they are drawn
   std::vector<std::uint32_t> bodies;  ///< slot of the body of each
   std::vector<float> values;          ///< what is shown of each, empty for appearances
   std::vector<float> radii;           ///< of each body, by slot [m]
@@ -80,9 +81,13 @@ struct Frame {
   std::vector<std::uint32_t> collider_slots;  ///< of each, which tells whether its form is known
   std::optional<std::array<Vec3, 2>> grab;    ///< from what is held to where it is pulled [m]
   PlacedMarks marks;
-  std::string message;  ///< why it stands still, with advice; or what a verb could not do
-  bool failed = false;  ///< the message is an error, and the scene stands at its last good state
+  int camera_number = 0;   ///< counts when the scene was told to be looked at from elsewhere
+  int message_number = 0;  ///< counts messages
+  std::string message;     ///< why it stands still, with advice; or what a verb could not do
+  bool failed = false;     ///< the message is an error, and the scene stands at its last good state
   FrameStats stats;
+  bool touched = false;             ///< the mouse has changed what no setting tells
+  bool waits = false;               ///< some of `materials` waits for the scene to be built anew
   int settings_number = 0;          ///< counts when settings became others by themselves
   SolverConfig solver;              ///< as set, without what the rung makes of it
   std::vector<Material> materials;  ///< the same, of the scene's

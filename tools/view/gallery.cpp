@@ -125,7 +125,8 @@ Gallery::Gallery(const fs::path& folder, bool plain)
       plain_(plain),
       scenes_(find_scenes(folder)),
       pictures_(scenes_.size(), 0),
-      tried_(scenes_.size(), false) {
+      tried_(scenes_.size(), false),
+      why_not_(scenes_.size()) {
   for (std::size_t k = 0; k < scenes_.size(); ++k)
     if (const auto picture = read_picture(thumbnail_file(scenes_[k]))) pictures_[k] = texture_of(*picture);
 }
@@ -156,6 +157,7 @@ void Gallery::make_thumbnails(double wall) {
     }
     const bool late = wall - maker_->started > k_patience && maker_->built >= 0;
     if (fresh && frame.failed) {
+      why_not_[maker_->scene] = frame.message;
       maker_.reset();
     } else if (fresh && maker_->built >= 0 && (frame.stats.frame >= maker_->pictured_frame || late)) {
       finish_thumbnail();
@@ -177,8 +179,9 @@ void Gallery::make_thumbnails(double wall) {
       maker_->thread.open(scene);
       maker_->thread.send(
           [](Session& session) { session.set_speed(std::numeric_limits<double>::infinity()); });
-    } catch (const Error&) {
-      maker_.reset();  // a scene that lacks a mesh has no picture; it says so when it is opened
+    } catch (const Error& error) {  // it lacks a mesh, say
+      why_not_[k] = error.what();
+      maker_.reset();
     }
     return;
   }
@@ -222,11 +225,15 @@ std::optional<fs::path> Gallery::draw(double) {
         pictures_[k] != 0
             ? ImGui::ImageButton(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(pictures_[k])),
                                  form, ImVec2(0, 0), ImVec2(1, 1), 2)
-            : ImGui::Button(tried_[k] ? "..." : scenes_[k].name.c_str(), ImVec2(k_width + 4, k_height + 4));
-    if (ImGui::IsItemHovered() && !scenes_[k].about.empty()) {
+            : ImGui::Button(!why_not_[k].empty() ? "cannot be opened"
+                            : tried_[k]          ? "..."
+                                                 : scenes_[k].name.c_str(),
+                            ImVec2(k_width + 4, k_height + 4));
+    if (ImGui::IsItemHovered() && !(scenes_[k].about.empty() && why_not_[k].empty())) {
       ImGui::BeginTooltip();
       ImGui::PushTextWrapPos(420);
       ImGui::TextUnformatted(scenes_[k].about.c_str());
+      ImGui::TextUnformatted(why_not_[k].c_str());
       ImGui::PopTextWrapPos();
       ImGui::EndTooltip();
     }

@@ -55,6 +55,7 @@ class Gallery {
   std::vector<GalleryScene> scenes_;
   std::vector<GLuint> pictures_;  ///< of each scene; 0: none yet
   std::vector<bool> tried_;
+  std::vector<std::string> why_not_;  ///< there is no picture of it
   std::unique_ptr<Maker> maker_;
 };
 

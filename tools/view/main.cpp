@@ -30,7 +30,7 @@ int play(const mallow::view::ViewerOptions& options, const std::filesystem::path
   std::unique_ptr<mallow::view::Script> script;
   if (!script_file.empty()) script = std::make_unique<mallow::view::Script>(script_file);
   while (viewer.is_open()) {
-    viewer.draw_next(!script);
+    viewer.draw_next(!script || script->may_wait());
     if (script && !script->advance(viewer)) break;
   }
   return mallow::program::k_exit_done;

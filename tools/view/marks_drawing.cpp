@@ -52,6 +52,9 @@ void draw_marks_panel(ViewState& state, const Send& send) {
       box("contacts", &state.marks.contacts,
           "forces on bodies from colliders and from each other, the largest as long as a quarter of what "
           "is seen");
+  ImGui::SameLine();
+  if (ImGui::SmallButton("let go of pins")) state.release_pins = true;
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("U: what the mouse has pinned moves again");
   if (changed) send([marks = state.marks](Session& session) { session.show_marks(marks); });
 }
 

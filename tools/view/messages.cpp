@@ -1,3 +1,4 @@
+#include <array>
 #include <string>
 
 #include <imgui.h>
@@ -9,14 +10,40 @@ namespace {
 constexpr ImGuiWindowFlags k_quiet = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
                                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing;
 
+/// Two keys a line, each with what it does.
+constexpr std::array<std::array<const char*, 4>, 12> k_help = {{
+    {"left button", "the tool at hand: 1 grab  2 throw  3 poke  4 cut  5 heat  6 pin  7 choose", "", ""},
+    {"", "beside matter it turns the view", "", ""},
+    {"right button", "turn the view; with shift, or the middle button: move it", "", ""},
+    {"wheel", "nearer and farther", "Home", "the view as it was"},
+    {"Space", "pause and play", ". (period)", "one step"},
+    {"Backspace", "back, held: ever farther", "R", "to the start"},
+    {"[  ]", "slower and faster", "=", "as fast as it goes"},
+    {"P", "surface or particles", "K", "what particles are coloured by"},
+    {"F", "record a film, and end it", "S", "save the scene as it stands"},
+    {"C", "copy the command line that repeats it", "", ""},
+    {"U", "let go of what is pinned", "Tab", "panels on and off"},
+    {"Escape", "scenes", "H", "this"},
+}};
+
 }  // namespace
+
+std::string message_shown(const Frame& frame, const ViewState& state, double wall) {
+  const bool stays = frame.building || frame.failed;
+  const bool has_notice = wall < state.notice_since + k_message_seconds;
+  const bool has_message = stays || wall < state.message_since + k_message_seconds;
+  const std::string said = frame.building ? "building the scene ..." : has_message ? frame.message : "";
+  if (!has_notice || state.notice.empty()) return said;
+  if (said.empty() || (!stays && state.notice_since > state.message_since)) return state.notice;
+  return stays ? said + "\n\n" + state.notice : said;
+}
 
 void draw_message(const Frame& frame, const ViewState& state, double wall) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  std::string text = frame.building ? "building the scene ..." : frame.message;
-  if (text.empty() && wall < state.notice_until) text = state.notice;
+  const std::string text = message_shown(frame, state, wall);
   if (text.empty()) return;
-  ImGui::SetNextWindowPos(ImVec2(16, size.y - 84), ImGuiCond_Always, ImVec2(0, 1));
+  ImGui::SetNextWindowPos(ImVec2(16, size.y - static_cast<float>(state.time_height) - 16), ImGuiCond_Always,
+                          ImVec2(0, 1));
   if (frame.failed) ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.42f, 0.10f, 0.08f, 0.95f));
   ImGui::Begin("message", nullptr, k_quiet | ImGuiWindowFlags_NoInputs);
   ImGui::PushTextWrapPos(std::min(640.0f, size.x - 360));
@@ -30,18 +57,15 @@ void draw_help(ViewState& state) {
   if (!state.help) return;
   ImGui::SetNextWindowPos(ImVec2(16, 64));
   ImGui::Begin("help", nullptr, k_quiet);
-  ImGui::TextUnformatted(
-      "left button      the tool at hand: 1 grab  2 throw  3 poke  4 cut  5 heat  6 pin  7 choose\n"
-      "                 beside matter it turns the view\n"
-      "right button     turn the view       middle button, or shift and right: move it\n"
-      "wheel            nearer and farther  Home: the view as it was\n"
-      "Space            pause and play      .  one step\n"
-      "Backspace        back, held: ever farther          R  to the start\n"
-      "[  ]             slower and faster   =  as fast as it goes\n"
-      "P                surface or particles               K  what particles are coloured by\n"
-      "F                record a film       S  save the scene as it stands\n"
-      "C                copy the command line that repeats it\n"
-      "Tab              panels on and off   Escape: scenes  H: this");
+  for (const auto& [key, about, other_key, about_other] : k_help) {
+    ImGui::TextUnformatted(key);
+    ImGui::SameLine(110);
+    ImGui::TextUnformatted(about);
+    ImGui::SameLine(330);
+    ImGui::TextUnformatted(other_key);
+    ImGui::SameLine(420);
+    ImGui::TextUnformatted(about_other);
+  }
   if (ImGui::Button("Close")) state.help = false;
   ImGui::End();
 }

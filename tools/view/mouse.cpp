@@ -63,7 +63,9 @@ void Mouse::press(const Frame& frame, const OrbitCamera& camera, ViewState& stat
       });
       break;
     case Tool::pin:
-      send([ray](Session& session) { session.pin(ray, 0.7f * reach_of(session.simulation())); });
+      send([ray](Session& session) {
+        if (session.has_scene()) session.pin(ray, 0.7f * reach_of(session.simulation()));
+      });
       break;
     case Tool::choose:
       state.marks.region = true;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "view/session.h"
 #include "view/settings_model.h"
@@ -10,7 +11,7 @@
 namespace mallow::view {
 
 /// Pixels that panels take at the edges of the window.
-inline constexpr int k_top_height = 52, k_time_height = 68, k_settings_width = 320;
+inline constexpr int k_top_height = 52, k_least_time_height = 68, k_settings_width = 320;
 
 using Send = std::function<void(std::function<void(Session&)>)>;
 
@@ -22,6 +23,10 @@ void draw_time_bar(const Frame& frame, ViewState& state, bool recording, const S
 void draw_settings(const Frame& frame, SettingsModel& settings, ViewState& state, const Send& send);
 /// Boxes that ask for marks.
 void draw_marks_panel(ViewState& state, const Send& send);
+/// How long a message is seen that is no error [s].
+inline constexpr double k_message_seconds = 8;
+/// What is said now of the session's message and the viewer's notice: the newer one; an error stays.
+std::string message_shown(const Frame& frame, const ViewState& state, double wall);
 /// Messages of the session, and of the viewer.
 void draw_message(const Frame& frame, const ViewState& state, double wall);
 void draw_help(ViewState& state);

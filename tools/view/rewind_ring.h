@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "mallow/ids.h"
@@ -19,14 +20,24 @@ struct Settings {
   int rung = 0;                     ///< see frame_governor.h
 };
 
+/// What the mouse has pinned at one stroke.
+struct HandPin {
+  PinId pin{};
+  std::vector<ParticleId> ids = {};
+};
+
 /// A moment to go back to.
 struct Moment {
   double time = 0;        ///< [s]
   std::int64_t step = 0;  ///< steps taken
   int frame = 0;          ///< frames of the scene that were finished
+  double frame_time = 0;  ///< that they are counted by [s]
   Settings settings;
   SavedState state;
   std::vector<ParticleId> pinned = {};
+  std::vector<HandPin> hand_pins = {};
+  std::optional<MaterialId> ball_material = {};
+  bool touched = false;  ///< by the mouse
 };
 
 /// Saved states by time, the newest last. What a simulation does after one of them is restored is what it

@@ -1,10 +1,10 @@
 // A session as it stands, in a folder, and back.
 #include "mallow/files.h"
-#include "program/body_appearances.h"
 #include "program/cache.h"
 #include "program/checkpoint.h"
 #include "program/run_plan.h"
 #include "program/run_report.h"
+#include "program/shell_word.h"
 #include "view/session.h"
 
 namespace mallow::view {
@@ -17,7 +17,7 @@ void Session::save_run(const std::string& folder) {
   report.scene = scene_.file.string();
   report.threads = options_.threads;
   report.info = simulation_->info();
-  report.appearances = program::body_appearances(scene_);
+  report.appearances = palette();
   report.frame_time = frame_time_;
   report.frames = frame_;
   report.steps = simulation_->step_count();
@@ -30,18 +30,18 @@ void Session::save_run(const std::string& folder) {
   write_particles(cache.particles_file(0), snapshot(*simulation_));
   program::Checkpoints checkpoints(scene_, plan, cache);
   write_checkpoint(cache.checkpoint_file(), checkpoints.take(*simulation_, skins_, report, nullptr));
-  say("saved in " + folder + "; it goes on with: mallow run --resume " + folder + "  or  mallow view " +
-      folder);
+  const std::string word = program::shell_word(folder);
+  // A scene that was played for longer than it is long asks for more.
+  const std::string more =
+      frame_ < scene_.run.frames ? "" : " --frames " + std::to_string(frame_ + scene_.run.frames);
+  say("saved in " + folder + "; it goes on with: mallow run --resume " + word + more + "  or  mallow view " +
+      word);
 }
 
 void Session::open_run(const std::string& folder) {
   const program::Cache cache = program::Cache::open_to_resume(folder);
   program::CheckpointedRun saved = program::load_newest_checkpoint(cache, options_.threads);
-  grab_.reset();
-  surface_.reset();
-  simulation_.emplace(std::move(saved.simulation));
-  skins_ = std::move(saved.skins);
-  frame_ = first_frame_ = saved.report.frames;
+  take_over(std::move(saved.simulation), std::move(saved.skins), saved.report.frames);
   begin(std::move(saved.scene));
 }
 

@@ -65,7 +65,8 @@ void Script::begin(Viewer& viewer, std::vector<std::string> words) {
   words.resize(3);
   const auto number = [&](std::size_t k) { return words[k].empty() ? 0.0f : std::stof(words[k]); };
   Window& window = viewer.window();
-  if (what == "frames" || what == "pictures" || what == "ready" || what == "sweep" || what == "thumbnails") {
+  if (what == "frames" || what == "pictures" || what == "ready" || what == "sweep" || what == "thumbnails" ||
+      what == "joined") {
     waiting_ = what;
     const auto count = static_cast<std::uint64_t>(number(1));
     goal_ = count +
@@ -115,6 +116,22 @@ void Script::begin_other(Viewer& viewer, const std::vector<std::string>& words) 
     const auto [wall, processor] = viewer.measure_drawing(std::stoi(words[1]));
     std::printf("measure %zu triangles %d x %d %.2f ms %.2f processor_ms %s\n", viewer.triangles(),
                 window.width(), window.height(), 1e3 * wall, 1e3 * processor, window.renderer().c_str());
+  } else if (what == "rebuild") {
+    viewer.state().rebuild = true;
+  } else if (what == "rung") {
+    viewer.send([rung = std::stoi(words[1])](Session& session) { session.set_rung(rung); });
+  } else if (what == "preset") {
+    if (auto command = viewer.settings()->take_preset(0, words[1])) viewer.send(std::move(command));
+  } else if (what == "message") {
+    std::printf("shown %s\n", message_shown(viewer.frame(), viewer.state(), wall_seconds()).c_str());
+  } else if (what == "copied") {
+    std::printf("copied %s\n", window.copied().c_str());
+  } else if (what == "hand") {
+    may_wait_ = true;
+  } else if (what == "film") {
+    const FilmRecorder* const film = viewer.film();
+    std::printf("film pictures %d first %d last %d of %d\n", film ? film->frames() : 0,
+                film ? film->first() : 0, film ? film->last() : 0, viewer.frame().stats.frame);
   } else if (what == "mark") {
     Marks& marks = viewer.state().marks;
     bool& one = words[1] == "pins" ? marks.pins : words[1] == "region" ? marks.region : marks.contacts;
@@ -145,6 +162,7 @@ bool Script::is_done(Viewer& viewer) {
   if (waiting_ == "ready") return !frame.building && frame.number > 0 && viewer.triangles() > 0;
   if (waiting_ == "frames") return frame.failed || static_cast<std::uint64_t>(frame.stats.frame) >= goal_;
   if (waiting_ == "pictures") return viewer.pictures() >= goal_;
+  if (waiting_ == "joined") return !viewer.joins_films();
   if (waiting_ == "thumbnails") return viewer.gallery().missing() == 0;
   sweep_next(viewer);
   return swept_section_ >= viewer.settings()->sections().size();

@@ -28,11 +28,20 @@ namespace mallow::view {
 ///   mark NAME            a box of marks: pins, region or contacts; marks: prints how many are shown
 ///   status               prints time, frame, message
 ///   thumbnails           until all pictures of the gallery are made
+///   rebuild              builds the scene anew
+///   rung K               a place between accurate (0) and realtime
+///   preset NAME          a material of data/materials in place of the first one
+///   message              prints what the window says; copied: what the clipboard holds
+///   hand                 from here on the window waits and draws as for a hand, where something has changed
+///   film                 prints how many pictures a film has so far, and of which frames of the scene
+///   joined               until films are written
 class Script {
  public:
   explicit Script(const std::filesystem::path& file);
   /// Goes on; false after the last line. Throws ConfigError at a line that is none.
   bool advance(Viewer& viewer);
+  /// Whether the window is to wait as for a hand.
+  bool may_wait() const { return may_wait_; }
 
  private:
   void begin(Viewer& viewer, std::vector<std::string> words);
@@ -41,6 +50,7 @@ class Script {
   void sweep_next(Viewer& viewer);
 
   std::deque<std::string> lines_;
+  bool may_wait_ = false;
   std::string waiting_;  ///< the command that is not done yet
   std::uint64_t goal_ = 0;
   double started_ = 0;

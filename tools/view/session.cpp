@@ -36,14 +36,36 @@ std::string advice(const Error& error) {
 }  // namespace
 
 void Session::open(const Scene& scene) {
+  // All that may refuse the scene comes first: until then what was there stands as it stood.
+  Simulation built = build(scene, options_.threads);
+  std::vector<Skin> followers = skins(scene, built, options_.threads);
+  std::vector<ParticleId> pinned = pinned_by(scene, built);
+  built.prepare();
+  take_over(std::move(built), std::move(followers), 0);
+  pinned_ = std::move(pinned);
+  begin(scene);
+}
+
+void Session::take_over(Simulation simulation, std::vector<Skin> skins, int frame) {
+  grab_.reset();  // its force refers to the simulation that goes
+  surface_.reset();
+  pinned_.clear();
+  hand_pins_.clear();
+  simulation_.emplace(std::move(simulation));
+  skins_ = std::move(skins);
+  frame_ = first_frame_ = frame;
+}
+
+void Session::close() {
+  grab_.reset();
+  surface_.reset();
   simulation_.reset();
   skins_.clear();
-  grab_.reset();
-  simulation_.emplace(build(scene, options_.threads));
-  skins_ = skins(scene, *simulation_, options_.threads);
-  pinned_ = pinned_by(scene, *simulation_);
-  frame_ = first_frame_ = 0;
-  begin(scene);
+  ring_.clear();
+  governor_.set_rung(k_as_written);
+  failed_ = finished_ = false;
+  message_.clear();
+  changed_ = true;
 }
 
 void Session::begin(Scene scene) {
@@ -66,6 +88,7 @@ void Session::begin(Scene scene) {
   frames_rate_.clear();
   time_rate_.clear();
   phases_.clear();
+  wishes_.clear();
   message_.clear();
   failed_ = finished_ = touched_ = false;
   single_steps_ = 0;
@@ -101,6 +124,7 @@ void Session::set_paused(bool paused) {
 
 void Session::set_recording(bool recording) {
   recording_ = recording;
+  finished_ = false;  // that one ended before
   if (simulation_) make_surface();
 }
 
@@ -120,7 +144,7 @@ bool Session::advance(double wall) {
     take_step(wall);
   } catch (const Error& error) {
     failed_ = paused_ = true;
-    message_ = advice(error);
+    say(advice(error));
   }
   single_steps_ = std::max(0, single_steps_ - 1);
   changed_ = true;
@@ -147,8 +171,16 @@ void Session::take_step(double wall) {
 void Session::keep_moment(double wall) {
   if (wall - last_save_ < save_time_.mean() / k_save_share) return;
   const auto started = Clock::now();
-  Moment moment{simulation_->time(), simulation_->step_count(), frame_,
-                settings(),          simulation_->save(),       pinned_};
+  Moment moment{.time = simulation_->time(),
+                .step = simulation_->step_count(),
+                .frame = frame_,
+                .frame_time = frame_time_,
+                .settings = settings(),
+                .state = simulation_->save(),
+                .pinned = pinned_,
+                .hand_pins = hand_pins_,
+                .ball_material = ball_material_,
+                .touched = touched_};
   for (std::size_t k = 0; k < skins_.size(); ++k)
     moment.state.chunks.push_back({skin_chunk(k), skins_[k].save()});
   ring_.add(std::move(moment));
@@ -179,11 +211,14 @@ void Session::restore(const Moment& moment) {
   skins_.clear();
   while (const std::string* bytes = moment.state.find(skin_chunk(skins_.size())))
     skins_.push_back(Skin::restore(*bytes, options_.threads));
-  frame_ = moment.frame;
+  frame_ = moment.frame_time == frame_time_ ? moment.frame : frames_until(moment.time);
   take_settings(moment.settings);
   make_surface();
   values_ = {};
   pinned_ = moment.pinned;
+  hand_pins_ = moment.hand_pins;
+  ball_material_ = moment.ball_material;
+  touched_ = moment.touched;
   last_ = {};
   report_contacts();
   samples_.clear();
@@ -214,6 +249,7 @@ void Session::reset() {
   // Settings of now are kept: they are what somebody wants to see from the start.
   const Scene settings = scene_;
   const int rung = governor_.rung();
+  const auto wishes = wishes_;
   const Moment start = ring_[0];
   restore(start);
   ring_.clear();
@@ -222,6 +258,7 @@ void Session::reset() {
   for (std::size_t k = 0; k < settings.materials.size(); ++k) set_material(k, settings.materials[k]);
   set_solver(settings.solver);
   set_rung(rung);
+  wishes_ = wishes;
   keep_moment(0);
 }
 
@@ -240,60 +277,6 @@ void Session::show_marks(const Marks& marks) {
   marks_ = marks;
   if (simulation_ && others) report_contacts();
   changed_ = true;
-}
-
-void Session::choose(const Ray& ray) {
-  if (!simulation_) return;
-  chosen_ = hit_of(*simulation_, ray).particle;
-  changed_ = true;
-}
-
-void Session::pin(const Ray& ray, float radius) {
-  act([&](Simulation& simulation) {
-    const std::vector<ParticleId> ids = view::pin(simulation, ray, radius);
-    pinned_.insert(pinned_.end(), ids.begin(), ids.end());
-    return "pinned " + std::to_string(ids.size()) + (ids.size() == 1 ? " particle" : " particles");
-  });
-}
-
-void Session::grab(const Vec3& at, float strength) {
-  if (!simulation_) return;
-  release();
-  grab_.emplace(*simulation_, at, 1.3f * reach_of(*simulation_), strength);
-  touched_ = true;
-}
-
-void Session::release() {
-  if (!grab_) return;
-  Grab::release(*simulation_);
-  grab_.reset();
-}
-
-void Session::act(const std::function<std::string(Simulation&)>& verb) {
-  if (!simulation_) return;
-  say(verb(*simulation_));
-  touched_ = true;
-}
-
-void Session::throw_ball(const Ray& ray, float speed) {
-  if (!simulation_) return;
-  const std::vector<BodyId> bodies = simulation_->bodies();
-  if (bodies.empty()) throw ConfigError("throw", "there is no body that tells how large a ball should be");
-  if (!ball_material_) {
-    Material rubber = simulation_->material_settings(simulation_->material(bodies.front()));
-    rubber.alpha = 0;
-    rubber.alpha_by_temperature.reset();
-    rubber.plastic_yield.reset();
-    rubber.plastic_yield_by_temperature.reset();
-    rubber.plastic_creep.reset();
-    rubber.update_threshold.reset();
-    ball_material_ = simulation_->add_material(rubber, "ball");
-  }
-  const float spacing = simulation_->spacing(bodies.front());
-  const float radius = std::max(3.6f * spacing, 0.6f * reach_of(*simulation_));
-  view::throw_ball(*simulation_, *ball_material_, ray, spacing, {.radius = radius, .speed = speed});
-  say("threw a ball");
-  touched_ = true;
 }
 
 }  // namespace mallow::view

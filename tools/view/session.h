@@ -35,8 +35,10 @@ class Session {
  public:
   explicit Session(const SessionOptions& options) : options_(options), ring_(options.rewind_bytes) {}
 
-  /// Builds a scene and begins at its start. Throws ConfigError or IoError; then the session has none.
+  /// Builds a scene and begins at its start. Throws ConfigError or IoError; then all stands as it stood.
   void open(const Scene& scene);
+  /// Has no scene from now on, and its place between realtime and accurate is as the next one says.
+  void close();
   /// Goes on where a run in a folder stood: what save_run() wrote, or `mallow run`. Throws IoError.
   void open_run(const std::string& folder);
   bool has_scene() const { return simulation_.has_value(); }
@@ -55,6 +57,7 @@ class Session {
   void run(const std::function<void(Session&)>& command);
   void say(const std::string& message) {
     message_ = message;
+    ++message_number_;
     changed_ = true;
   }
 
@@ -86,7 +89,12 @@ class Session {
   // Settings, as a scene holds them. What cannot change while it runs waits for rebuild().
   void set_solver(const SolverConfig& solver);
   void set_material(std::size_t index, const SceneMaterial& material);
+  /// A material by name, with all of its numbers. What a running scene cannot take waits for it to be built
+  /// anew, and is shown meanwhile.
+  void take_preset(std::size_t index, const SceneMaterial& material);
   void set_surface(const SurfaceConfig& surface);
+  /// How the scene is looked at; the rest is for pictures of `mallow run`.
+  void set_render(const RenderConfig& render);
   void set_run(const RunConfig& run);
   void set_rung(int rung);
   void set_target(std::optional<double> frames_per_second) { governor_.set_target(frames_per_second); }
@@ -100,15 +108,19 @@ class Session {
   void throw_ball(const Ray& ray, float speed);
   void act(const std::function<std::string(Simulation&)>& verb);
   void pin(const Ray& ray, float radius);
+  /// Of all that pin() has pinned; those of the scene stay.
+  void release_pins();
 
   const Scene& scene() const { return scene_; }
   Simulation& simulation() { return *simulation_; }
   const RewindRing& ring() const { return ring_; }
-  bool touched() const { return touched_; }
+  /// A step could not be taken, and it stands at its last good state.
+  bool has_failed() const { return failed_; }
   /// Writes a folder that `mallow run --resume` and `mallow view` go on from. Throws IoError.
   void save_run(const std::string& folder);
 
  private:
+  void take_over(Simulation simulation, std::vector<Skin> skins, int frame);
   void begin(Scene scene);
   void take_step(double wall);
   void keep_moment(double wall);
@@ -128,6 +140,8 @@ class Session {
   std::vector<Appearance> palette() const;
   void report_contacts();
   MaterialId material_id(std::size_t index) const;
+  /// Frames of the scene that have ended by then.
+  int frames_until(double time) const;
   double frame_end() const { return (frame_ + 1) * frame_time_; }
 
   SessionOptions options_;
@@ -135,6 +149,7 @@ class Session {
   std::optional<Simulation> simulation_;  ///< at one place while there is one: the grab's force refers to it
   std::vector<std::optional<MaterialId>> materials_;  ///< of the scene's, where bodies have them
   std::optional<MaterialId> ball_material_;
+  std::map<std::size_t, SceneMaterial> wishes_;  ///< materials that wait for the scene to be built anew
   std::vector<Skin> skins_;
   std::optional<program::FrameSurface> surface_;
   ParticleValues values_;
@@ -146,7 +161,7 @@ class Session {
   double frame_time_ = 1;  ///< [s]
   int frame_ = 0;          ///< of the scene, finished
   int first_frame_ = 0;    ///< with which it was opened
-  int scene_number_ = 0, settings_number_ = 0;
+  int scene_number_ = 0, settings_number_ = 0, message_number_ = 0, camera_number_ = 0;
   bool paused_ = false, failed_ = false, finished_ = false, recording_ = false, touched_ = false;
   int single_steps_ = 0;
   double speed_ = 1;
@@ -166,7 +181,8 @@ class Session {
   bool changed_ = true, hash_asked_ = false;
   std::uint64_t frames_filled_ = 0;
   Marks marks_;
-  std::vector<ParticleId> pinned_;
+  std::vector<ParticleId> pinned_;  ///< by the scene and by the mouse
+  std::vector<HandPin> hand_pins_;
   std::optional<ParticleId> chosen_;
   StepReport last_;
   Rate steps_rate_, frames_rate_, time_rate_, surface_time_, save_time_;

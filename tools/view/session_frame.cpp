@@ -14,8 +14,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double k_plot_seconds = 10, k_sample_seconds = 0.1;
-/// Of what is thrown.
-const Appearance k_ball{Vec3(0.05f, 0.30f, 0.55f), Finish::gloss};
 
 /// What holds nearly all values: single ones that are far off would take all the colours.
 std::array<float, 2> range_of_values(std::vector<float> values) {
@@ -33,12 +31,7 @@ std::array<float, 2> range_of_values(std::vector<float> values) {
 }  // namespace
 
 std::vector<Appearance> Session::palette() const {
-  std::vector<Appearance> palette = program::body_appearances(scene_);
-  for (const BodyId body : simulation_->bodies()) {
-    if (slot_of(body) < palette.size()) continue;
-    palette.resize(slot_of(body) + 1, k_ball);
-  }
-  return palette;
+  return program::body_appearances(scene_, program::body_slots(*simulation_));
 }
 
 void Session::draw_mesh(Mesh& mesh) {
@@ -141,8 +134,11 @@ void Session::fill(double wall, Frame& frame) {
   frame.camera = camera_;
   frame.bounds = bounds_;
   frame.paused = paused_;
-  frame.finished = std::exchange(finished_, false);
+  frame.finished = std::exchange(finished_, false) && recording_;
   changed_ = false;
+  frame.message_number = message_number_;
+  frame.camera_number = camera_number_;
+  frame.has_scene = simulation_.has_value();
   if (!simulation_) {
     frame.message = message_;
     frame.failed = !message_.empty();
@@ -150,6 +146,11 @@ void Session::fill(double wall, Frame& frame) {
     frame.positions.clear();
     frame.colliders.clear();
     frame.marks = {};
+    frame.grab.reset();
+    frame.samples.clear();
+    frame.stats = {};
+    frame.stats.threads = options_.threads;
+    frame.stats.rung = governor_.rung();
     return;
   }
   const bool moves = !paused_ && !failed_;
@@ -159,7 +160,9 @@ void Session::fill(double wall, Frame& frame) {
       draw_mesh(frame.mesh);
     } catch (const ConfigError& error) {
       frame.mesh = {};
-      message_ = error.what();
+      if (message_ != error.what()) say(error.what());
+      frame.message_number = message_number_;
+      changed_ = false;
     }
   } else {
     frame.mesh = {};
@@ -178,6 +181,9 @@ void Session::fill(double wall, Frame& frame) {
   Settings now = settings();
   frame.solver = now.solver;
   frame.materials = std::move(now.materials);
+  for (const auto& [index, wish] : wishes_) frame.materials[index] = wish.material;
+  frame.waits = !wishes_.empty();
+  frame.touched = touched_;
   frame.message = message_;
   frame.failed = failed_;
 }

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "config/field_tables.h"
+#include "program/film_bounds.h"
 #include "simulation/settings.h"
 #include "view/session.h"
 
@@ -132,12 +134,34 @@ void Session::set_material(std::size_t index, const SceneMaterial& material) {
       simulation_->prepare();
     } catch (const ConfigError&) {
       simulation_->set_material(*materials_[index], kept);
+      if (wishes_.contains(index)) wishes_[index] = material;
       throw;
     }
   }
+  wishes_.erase(index);
   scene_.materials[index].material = material.material;
   scene_.materials[index].color = material.color;
   scene_.materials[index].finish = material.finish;
+  changed_ = true;
+}
+
+void Session::take_preset(std::size_t index, const SceneMaterial& material) try {
+  set_material(index, material);
+} catch (const ConfigError& error) {
+  wishes_[index] = material;
+  ++settings_number_;
+  say("It waits until the scene is built anew, as it cannot change to this while it runs: " +
+      std::string(error.what()));
+}
+
+void Session::set_render(const RenderConfig& render) {
+  if (!simulation_) return;
+  if (render.eye && render.target && *render.eye == *render.target)
+    throw ConfigError("render.target", "is not allowed where render.eye is: the camera stands at eye");
+  const RenderConfig before = std::exchange(scene_.render, render);
+  camera_ = render::frame_camera(bounds_, scene_.render, program::visible_colliders(scene_));
+  if (render.eye != before.eye || render.target != before.target) ++camera_number_;
+  set_speed(speed_);
   changed_ = true;
 }
 
@@ -158,8 +182,13 @@ void Session::set_run(const RunConfig& run) {
   scene_.run = run;
   const double frame_time_before = frame_time_;
   frame_time_ = frame_time(scene_, simulation_->info());
-  if (frame_time_ != frame_time_before) frame_ = static_cast<int>(simulation_->time() / frame_time_);
+  if (frame_time_ != frame_time_before) frame_ = frames_until(simulation_->time());
   set_speed(speed_);
+}
+
+int Session::frames_until(double time) const {
+  // A moment at the end of a frame is not before it by a rounding.
+  return static_cast<int>(time / frame_time_ * (1 + 1e-12) + 1e-9);
 }
 
 }  // namespace mallow::view

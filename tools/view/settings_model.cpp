@@ -5,8 +5,8 @@
 #include <string_view>
 #include <type_traits>
 
-#include "program/scene_changes.h"
 #include "mallow/materials.h"
+#include "program/scene_changes.h"
 #include "program/shell_word.h"
 #include "scene/scene_fields.h"
 #include "simulation/settings.h"
@@ -30,7 +30,8 @@ std::string element(const char* list, std::size_t index) {
 
 }  // namespace
 
-SettingsModel::SettingsModel(const Scene& scene) : original_(scene), scene_(scene) {
+SettingsModel::SettingsModel(const Scene& scene, std::vector<std::string> overrides)
+    : original_(scene), scene_(scene), overrides_(std::move(overrides)) {
   const auto add = [&](Kind kind, std::size_t index, std::string path, std::string title,
                        BoundFields fields) {
     sections_.push_back({kind, index, std::move(path), std::move(title), std::move(fields)});
@@ -58,27 +59,30 @@ SettingsModel::SettingsModel(const Scene& scene) : original_(scene), scene_(scen
            [](SceneSink& sink) { return joined(scene_file::fields(sink), scene_file::fields(sink.box)); });
 }
 
-bool SettingsModel::acts_at_once(const SettingsSection& section, const BoundField& field) {
+SettingsModel::Acts SettingsModel::acts(const SettingsSection& section, const BoundField& field) {
   const std::string_view name = field.name;
+  const auto at_once = [](bool yes) { return yes ? Acts::at_once : Acts::when_built_anew; };
   switch (section.kind) {
     case Kind::solver:
-      return changes_while_running(name);
+      return at_once(changes_while_running(name));
     case Kind::material:
-      return name != "name" && name != "temperature";
+      return at_once(name != "name" && name != "temperature");
     case Kind::surface:
     case Kind::run:
-      return true;
+      return Acts::at_once;
     case Kind::render:
-      return name == "field_of_view";
+      for (const char* const seen : {"eye", "target", "field_of_view", "frames_per_second"})
+        if (name == seen) return Acts::at_once;
+      return Acts::in_pictures_of_runs;
     default:
-      return false;
+      return Acts::when_built_anew;
   }
 }
 
 std::function<void(Session&)> SettingsModel::command(const SettingsSection& section,
                                                      const BoundField& field) {
-  if (!acts_at_once(section, field)) {
-    waits_ = waits_ || section.kind != Kind::render;
+  if (acts(section, field) == Acts::when_built_anew) {
+    ++waiting_;
     return {};
   }
   switch (section.kind) {
@@ -92,6 +96,8 @@ std::function<void(Session&)> SettingsModel::command(const SettingsSection& sect
       return [surface = scene_.surface](Session& session) { session.set_surface(surface); };
     case Kind::run:
       return [run = scene_.run](Session& session) { session.set_run(run); };
+    case Kind::render:  // what a run's pictures have is there to be saved
+      return [render = scene_.render](Session& session) { session.set_render(render); };
     default:
       return {};
   }
@@ -100,6 +106,7 @@ std::function<void(Session&)> SettingsModel::command(const SettingsSection& sect
 void SettingsModel::take(const Frame& frame) {
   if (frame.settings_number == settings_number_) return;
   settings_number_ = frame.settings_number;
+  if (frame.waits) ++waiting_;
   // What waits to be rebuilt is kept: the frame does not know of it.
   for_fields<SolverConfig>([&](const auto& setting) {
     if (changes_while_running(setting.name)) scene_.solver.*setting.member = frame.solver.*setting.member;
@@ -118,7 +125,7 @@ std::function<void(Session&)> SettingsModel::take_preset(std::size_t material, c
   target.material = found->material;
   target.color = found->appearance.color;
   target.finish = found->appearance.finish;
-  return [material, settings = target](Session& session) { session.set_material(material, settings); };
+  return [material, settings = target](Session& session) { session.take_preset(material, settings); };
 }
 
 bool SettingsModel::set_share(const BoundField& field, double share) {
@@ -157,13 +164,37 @@ bool SettingsModel::set_share(const BoundField& field, double share) {
       field.target);
 }
 
-std::string SettingsModel::command_line() const {
-  std::string line = "mallow run " + program::shell_word(scene_.file.string());
+/// By the material's name, as a scene may have it from data/materials alone, where there is no list.
+std::string SettingsModel::key_of_file(const std::string& key) const {
+  constexpr std::string_view k_list = "material[";
+  if (!key.starts_with(k_list)) return key;
+  const std::size_t number = std::stoul(key.substr(k_list.size()));
+  if (number >= original_.materials.size()) return key;
+  const std::string& name = original_.materials[number].name;
+  if (name.find_first_of(".[]") != name.npos) return key;
+  return "material." + name + key.substr(key.find(']') + 1);
+}
+
+std::string SettingsModel::command_line(const std::string& run, std::vector<std::string> without) const {
+  std::string line = "mallow run " + (run.empty() ? program::shell_word(scene_.file.string())
+                                                  : "--resume " + program::shell_word(run));
+  const auto set = [&](const std::string& change) { line += " --set " + program::shell_word(change); };
+  if (run.empty())
+    for (const std::string& own : overrides_) set(own);
+  bool acts_no_more = false;
   for (const program::SceneChange& change : program::scene_changes(original_, scene_)) {
-    if (change.now.empty()) continue;  // left out again: no --set says that
-    line += " --set " + program::shell_word(change.key + "=" + change.now);
+    if (change.now.empty())
+      without.push_back(change.key + " left out");
+    else if (!run.empty() && !change.key.starts_with("surface.") && !change.key.starts_with("render.") &&
+             change.key != "run.frames")
+      acts_no_more = true;
+    else
+      set(key_of_file(change.key) + "=" + change.now);
   }
-  return line;
+  if (acts_no_more) without.insert(without.begin(), "settings of the motion that were changed here");
+  std::string lacks;
+  for (const std::string& one : without) lacks += (lacks.empty() ? "" : ", ") + one;
+  return lacks.empty() ? line : line + "  # without " + lacks + ": S saves the scene as it stands";
 }
 
 }  // namespace mallow::view

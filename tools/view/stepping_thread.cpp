@@ -28,11 +28,20 @@ void SteppingThread::publish() {
 
 void SteppingThread::announce_building() {
   frames_.back().building = true;
+  frames_.back().finished = false;
   frames_.back().message.clear();
   publish();
 }
 
 void SteppingThread::open(const Scene& scene) {
+  send([this, scene](Session& session) {
+    announce_building();
+    session.close();
+    session.open(scene);
+  });
+}
+
+void SteppingThread::rebuild(const Scene& scene) {
   send([this, scene](Session& session) {
     announce_building();
     session.open(scene);
@@ -42,6 +51,7 @@ void SteppingThread::open(const Scene& scene) {
 void SteppingThread::open_run(const std::string& folder) {
   send([this, folder](Session& session) {
     announce_building();
+    session.close();
     session.open_run(folder);
   });
 }

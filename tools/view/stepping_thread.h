@@ -27,12 +27,16 @@ class SteppingThread {
 
   /// Runs before the next step.
   void send(std::function<void(Session&)> command) { commands_.add(std::move(command)); }
-  /// Builds a scene and shows that it does; the folder of a run goes on where it stood.
+  /// Builds a scene and shows that it does; the folder of a run goes on where it stood. What was there before
+  /// is gone.
   void open(const Scene& scene);
+  /// Builds it anew with other settings. Where they are refused the scene goes on as it was.
+  void rebuild(const Scene& scene);
   void open_run(const std::string& folder);
 
   /// Takes the newest frame; false where there is none since the last time.
   bool take_frame() { return frames_.take(); }
+  bool has_frame() const { return !frames_.is_taken(); }
   /// The one that was taken last.
   const Frame& frame() { return frames_.front(); }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -15,17 +16,27 @@ bool toggle(const char* label, bool is_on) {
   return pressed;
 }
 
+float width_of(const char* label) {
+  return ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x;
+}
+
+/// The next thing is on the line of the last one where so many pixels are left, else on the next line.
+void beside(float width, float gap = 4) {
+  const float end = ImGui::GetItemRectMax().x + gap + width;
+  if (end <= ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine(0, gap);
+}
+
 void help_of(const char* text) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
 }
 
 void draw_tools(ViewState& state) {
   for (std::size_t k = 0; k < k_tool_names.size(); ++k) {
-    if (k > 0) ImGui::SameLine(0, 4);
+    if (k > 0) beside(width_of(k_tool_names[k]));
     if (toggle(k_tool_names[k], state.tool == static_cast<Tool>(k))) state.tool = static_cast<Tool>(k);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%zu: %s", k + 1, k_tool_docs[k]);
   }
-  ImGui::SameLine();
+  beside(90, 8);
   ImGui::SetNextItemWidth(90);
   ImGui::SliderFloat("##strength", &state.strength, 0.1f, 10, "x %.2g", ImGuiSliderFlags_Logarithmic);
   help_of("strength of what the mouse does");
@@ -35,10 +46,10 @@ void draw_shown(ViewState& state, const Send& send) {
   const Drawn drawn = state.drawn;
   const Shown shown = state.shown;
   if (toggle("surface", drawn == Drawn::surface)) state.drawn = Drawn::surface;
-  ImGui::SameLine(0, 4);
+  beside(width_of("particles"));
   if (toggle("particles", drawn == Drawn::particles)) state.drawn = Drawn::particles;
   help_of("P: surface or particles");
-  ImGui::SameLine(0, 4);
+  beside(110);
   ImGui::SetNextItemWidth(110);
   int number = static_cast<int>(shown);
   if (ImGui::Combo("##shown", &number, k_shown_names.data(), static_cast<int>(k_shown_names.size()))) {
@@ -61,53 +72,62 @@ void draw_rewind(const Frame& frame, ViewState& state, float width) {
                       stats.moments, static_cast<double>(stats.moment_bytes) / 1e6);
 }
 
-}  // namespace
-
-void draw_time_bar(const Frame& frame, ViewState& state, bool recording, const Send& send) {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(0, size.y - k_time_height));
-  ImGui::SetNextWindowSize(ImVec2(size.x, k_time_height));
-  ImGui::Begin(
-      "time", nullptr,
-      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings);
-  if (toggle(frame.paused ? "Play" : "Pause", !frame.paused)) state.pause = true;
-  help_of("Space");
-  ImGui::SameLine(0, 4);
-  state.step |= ImGui::Button("Step");
-  help_of(". (period): one step");
-  ImGui::SameLine(0, 4);
-  state.back |= ImGui::Button("Back");
-  help_of("Backspace: to the saved state before this one");
-  ImGui::SameLine(0, 4);
-  state.reset |= ImGui::Button("Reset");
-  help_of("R: to the start, with the settings as they are now");
-  ImGui::SameLine();
-  draw_rewind(frame, state, std::max(120.0f, size.x - 620));
-  ImGui::SameLine();
+void draw_pace(ViewState& state, const Send& send) {
+  beside(110, 8);
   ImGui::SetNextItemWidth(110);
   float speed = static_cast<float>(state.speed);
   bool changed = ImGui::SliderFloat("##speed", &speed, 0.05f, 4, "speed %.2f", ImGuiSliderFlags_Logarithmic);
   help_of("[ and ]: slow motion; 1 is the pace of a film");
   state.speed = static_cast<double>(speed);
-  ImGui::SameLine();
-  changed |= ImGui::Checkbox("as fast as it goes", &state.as_fast_as_possible);
+  const char* const fastest = "as fast as it goes";
+  beside(width_of(fastest) + ImGui::GetFrameHeight(), 8);
+  changed |= ImGui::Checkbox(fastest, &state.as_fast_as_possible);
   if (changed)
     send([now = state.as_fast_as_possible ? std::numeric_limits<double>::infinity()
                                           : state.speed](Session& session) { session.set_speed(now); });
+}
+
+}  // namespace
+
+void draw_time_bar(const Frame& frame, ViewState& state, bool recording, const Send& send) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const auto height = static_cast<float>(state.time_height);
+  ImGui::SetNextWindowPos(ImVec2(0, size.y - height));
+  ImGui::SetNextWindowSize(ImVec2(size.x, height));
+  ImGui::Begin(
+      "time", nullptr,
+      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings);
+  if (toggle(frame.paused ? "Play" : "Pause", !frame.paused)) state.pause = true;
+  help_of("Space");
+  beside(width_of("Step"));
+  state.step |= ImGui::Button("Step");
+  help_of(". (period): one step");
+  beside(width_of("Back"));
+  state.back |= ImGui::Button("Back");
+  help_of("Backspace: to the saved state before this one");
+  beside(width_of("Reset"));
+  state.reset |= ImGui::Button("Reset");
+  help_of("R: to the start, with the settings as they are now");
+  const float rewind = std::max(120.0f, size.x - 620);
+  beside(rewind, 8);
+  draw_rewind(frame, state, rewind);
+  draw_pace(state, send);
   draw_tools(state);
-  ImGui::SameLine(0, 24);
+  beside(width_of("surface"), 24);
   draw_shown(state, send);
-  ImGui::SameLine(0, 24);
-  if (toggle(recording ? "Stop film" : "Film", recording)) state.film = true;
+  const char* const film = recording ? "Stop film" : "Film";
+  beside(width_of(film), 24);
+  if (toggle(film, recording)) state.film = true;
   help_of("F: record a film, every frame of the scene once");
-  ImGui::SameLine(0, 4);
+  beside(width_of("Save"));
   state.save |= ImGui::Button("Save");
   help_of("S: the scene as it stands, in a folder that mallow run --resume goes on from");
-  ImGui::SameLine(0, 4);
+  beside(width_of("Copy command"));
   state.copy |= ImGui::Button("Copy command");
   help_of("C: the command line that repeats this scene with these settings");
-  ImGui::SameLine(0, 4);
+  beside(width_of("?"));
   if (ImGui::Button("?")) state.help = !state.help;
+  state.time_height = std::max(k_least_time_height, static_cast<int>(ImGui::GetCursorPosY()) + 6);
   ImGui::End();
 }
 

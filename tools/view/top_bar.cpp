@@ -51,15 +51,34 @@ void phase_strip(const FrameStats& stats, float width) {
 
 /// One quantity over the last ten seconds, with its last value.
 template <class Value>
-void plot(const char* label, const char* unit, const std::vector<Sample>& samples, const Value& value) {
+void plot(const char* label, const char* unit, const std::vector<Sample>& samples, float width,
+          const Value& value) {
   std::vector<float> values;
   for (const Sample& sample : samples) values.push_back(value(sample));
   char text[64];
   std::snprintf(text, sizeof text, "%s %.3g %s", label,
                 values.empty() ? 0.0 : static_cast<double>(values.back()), unit);
   ImGui::PlotLines((std::string("##") + label).c_str(), values.data(), static_cast<int>(values.size()), 0,
-                   text, FLT_MAX, FLT_MAX, ImVec2(168, 34));
+                   text, FLT_MAX, FLT_MAX, ImVec2(width, 34));
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s [%s], the last ten seconds", label, unit);
+}
+
+/// As many as there is room for.
+void draw_plots(const Frame& frame, float room) {
+  constexpr float k_least = 124, k_most = 168, k_gap = 8;
+  const int count = std::min(3, static_cast<int>(room / (k_least + k_gap)));
+  if (count == 0) return;
+  const float width = std::min(k_most, room / static_cast<float>(count) - k_gap - 4);
+  const std::vector<Sample>& samples = frame.samples;
+  const float lowest = samples.empty() ? 0 : std::ranges::min(samples, {}, &Sample::potential).potential;
+  ImGui::SameLine();
+  plot("moving", "J", samples, width, [](const Sample& sample) { return sample.kinetic; });
+  if (count == 1) return;
+  ImGui::SameLine();
+  plot("gravity", "J", samples, width, [&](const Sample& sample) { return sample.potential - lowest; });
+  if (count == 2) return;
+  ImGui::SameLine();
+  plot("momentum", "N s", samples, width, [](const Sample& sample) { return sample.momentum; });
 }
 
 }  // namespace
@@ -89,20 +108,7 @@ void draw_top_bar(const Frame& frame, ViewState& state, double drawn_per_second)
   ImGui::Text("%.3f s, frame %d", stats.time, stats.frame);
   ImGui::Text("%d thread%s", stats.threads, stats.threads == 1 ? "" : "s");
   ImGui::EndGroup();
-  if (size.x > 1150) {
-    const float lowest =
-        frame.samples.empty() ? 0 : std::ranges::min(frame.samples, {}, [](const Sample& sample) {
-                                      return sample.potential;
-                                    }).potential;
-    ImGui::SameLine();
-    plot("moving", "J", frame.samples, [](const Sample& sample) { return sample.kinetic; });
-    ImGui::SameLine();
-    plot("gravity", "J", frame.samples, [&](const Sample& sample) { return sample.potential - lowest; });
-    if (size.x > 1320) {
-      ImGui::SameLine();
-      plot("momentum", "N s", frame.samples, [](const Sample& sample) { return sample.momentum; });
-    }
-  }
+  draw_plots(frame, size.x - ImGui::GetItemRectMax().x);
   ImGui::End();
 }
 

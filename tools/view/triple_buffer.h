@@ -17,7 +17,7 @@ class TripleBuffer {
   T& back() { return places_[back_]; }
   /// The writer's place becomes the newest value.
   void publish() { back_ = between_.exchange(back_ | k_fresh, std::memory_order_acq_rel) & k_place; }
-  /// Whether the reader has taken what was published last. May be asked by the writer.
+  /// Whether the reader has taken what was published last.
   bool is_taken() const { return (between_.load(std::memory_order_acquire) & k_fresh) == 0; }
 
   /// The reader takes the newest value; false where there is none since the last time.

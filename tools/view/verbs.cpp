@@ -118,11 +118,11 @@ std::string heat(Simulation& simulation, const Ray& ray, float radius, float kel
                       : "melted " + count_text(count, "(alpha rises, as this material carries no heat)");
 }
 
-std::vector<ParticleId> pin(Simulation& simulation, const Ray& ray, float radius) {
+HandPin pin(Simulation& simulation, const Ray& ray, float radius) {
   const BodyHit hit = hit_of(simulation, ray);
   std::vector<ParticleId> ids = simulation.particles_in(hit.position, radius);
-  simulation.pin(ids);
-  return ids;
+  const PinId pin = simulation.pin(ids);
+  return {pin, std::move(ids)};
 }
 
 }  // namespace mallow::view

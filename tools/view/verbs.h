@@ -7,6 +7,7 @@
 
 #include "mallow/simulation.h"
 #include "view/camera.h"
+#include "view/rewind_ring.h"
 
 /// What the mouse does to matter, beside the grab. Each returns what it did in a sentence, and throws what
 /// the simulation throws.
@@ -28,7 +29,7 @@ std::string cut(Simulation& simulation, const Ray& from, const Ray& to);
 /// its alpha rises by up to `softer`.
 std::string heat(Simulation& simulation, const Ray& ray, float radius, float kelvins, float softer);
 /// Holds what is around the place that the ray meets where it is, and gives it.
-std::vector<ParticleId> pin(Simulation& simulation, const Ray& ray, float radius);
+HandPin pin(Simulation& simulation, const Ray& ray, float radius);
 /// What the ray meets first. Throws ConfigError where that is nothing.
 BodyHit hit_of(const Simulation& simulation, const Ray& ray);
 /// Where a particle is, if it is still there.

@@ -34,11 +34,14 @@ struct ViewState {
   double speed = 1;    ///< of the pace of a film
   bool as_fast_as_possible = false;
   bool panels = true, help = false;
-  int rung = k_as_written;
+  int time_height = 68;     ///< of the bar at the bottom, which has more lines in a narrow window [pixels]
+  int rung = k_as_written;  ///< that the hand drags to
+  bool drags_rung = false;
   bool keeps_rate = false;  ///< the governor holds target
   float target = 30;        ///< frames a second
   std::string notice;       ///< a line at the bottom, for some seconds
-  double notice_until = 0;  ///< [s] of wall time
+  double notice_since = -1e9,
+         message_since = -1e9;  ///< when it was said, and Frame::message [s of wall time]
 
   // Asked for in this picture; the viewer clears them.
   bool pause = false, step = false, reset = false, back = false, film = false, save = false, copy = false,

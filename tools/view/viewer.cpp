@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <utility>
 
 #include <imgui.h>
 
@@ -27,7 +28,6 @@ Viewer::Viewer(const ViewerOptions& options)
       drawer_(window_.draws_in_software() && options.samples <= 1),
       stepping_(std::make_unique<SteppingThread>(SessionOptions{.threads = options.threads}, Window::wake)) {
   if (options_.samples == 0) options_.samples = window_.draws_in_software() ? 1 : 4;
-  if (options.paused) send([](Session& session) { session.set_paused(true); });
   if (!options.scene.empty()) open(options.scene);
 }
 
@@ -62,16 +62,19 @@ WindowEvents Viewer::events() {
 }
 
 void Viewer::open(const std::filesystem::path& scene) {
-  is_run_ = std::filesystem::is_directory(scene);
-  const std::filesystem::path file = is_run_ ? scene / "scene.toml" : scene;
-  const Scene read = read_scene(file, options_.overrides, {.allow_outside_paths = is_run_});
-  settings_ = std::make_unique<SettingsModel>(read);
-  if (is_run_)
+  const bool is_run = std::filesystem::is_directory(scene);
+  const std::filesystem::path file = is_run ? scene / "scene.toml" : scene;
+  const Scene read = read_scene(file, options_.overrides, {.allow_outside_paths = is_run});
+  end_film();
+  is_rebuilt_ = false;
+  run_folder_ = is_run ? scene.string() : "";
+  settings_ = std::make_unique<SettingsModel>(read, options_.overrides);
+  send([paused = options_.paused](Session& session) { session.set_paused(paused); });
+  if (is_run)
     stepping_->open_run(scene.string());
   else
     stepping_->open(read);
   if (gallery_) gallery_->rest();
-  state_.rung = k_as_written;
   window_.set_title("mallow: " + scene.filename().string());
 }
 
@@ -81,6 +84,7 @@ Gallery& Viewer::gallery() {
 }
 
 void Viewer::show_gallery() {
+  end_film();
   settings_.reset();
   stale_ = true;
   send([](Session& session) { session.set_paused(true); });
@@ -89,14 +93,15 @@ void Viewer::show_gallery() {
 
 void Viewer::notice(const std::string& text) {
   state_.notice = text;
-  state_.notice_until = wall_seconds() + 8;
+  state_.notice_since = wall_seconds();
+  quiet_at_ = state_.notice_since + k_message_seconds;
 }
 
 Viewer::Area Viewer::area() const {
   const int width = window_.width(), height = window_.height();
-  if (!state_.panels || width <= 2 * k_settings_width || height <= 2 * (k_top_height + k_time_height))
+  if (!state_.panels || width <= 2 * k_settings_width || height <= 2 * (k_top_height + state_.time_height))
     return {0, 0, width, height};
-  return {0, k_top_height, width - k_settings_width, height - k_top_height - k_time_height};
+  return {0, k_top_height, width - k_settings_width, height - k_top_height - state_.time_height};
 }
 
 void Viewer::tell_mouse(float x, float y) {
@@ -111,11 +116,20 @@ bool Viewer::take_frame() {
   ++frames_taken_;
   const Frame& taken = frame();
   if (taken.building || !settings_) return true;
+  if (taken.message_number != message_) {
+    message_ = taken.message_number;
+    state_.message_since = wall_seconds();
+    quiet_at_ = state_.message_since + k_message_seconds;
+  }
+  if (taken.scene != scene_ || taken.camera_number != camera_number_)
+    camera_ = OrbitCamera(taken.camera, taken.bounds);
+  camera_.set_field_of_view(taken.camera.field_of_view);
+  camera_number_ = taken.camera_number;
   if (taken.scene != scene_) {
     scene_ = taken.scene;
-    camera_ = OrbitCamera(taken.camera, taken.bounds);
     drawer_.begin_scene(camera_, taken.bounds);
     settings_->was_rebuilt();
+    if (std::exchange(is_rebuilt_, false)) run_folder_.clear();
   }
   settings_->take(taken);
   drawer_.take(taken);
@@ -123,24 +137,57 @@ bool Viewer::take_frame() {
   return true;
 }
 
+void Viewer::draw_scene(int width, int height) {
+  picture_.resize(width, height, options_.samples);
+  camera_.set_aspect(static_cast<float>(width) / static_cast<float>(height));
+  picture_.bind();
+  drawer_.draw(camera_, width, height);
+}
+
 void Viewer::draw_scene() {
   const Area seen = area();
-  picture_.resize(seen.width, seen.height, options_.samples);
-  camera_.set_aspect(static_cast<float>(seen.width) / static_cast<float>(seen.height));
-  picture_.bind();
-  drawer_.draw(camera_, seen.width, seen.height);
-  if (film_ && frame().finished) film_->add(picture_.read());
+  draw_scene(seen.width, seen.height);
   stale_ = false;
+}
+
+/// The picture that a film waits for, which has its own size: the window may change, or lie in the dock.
+void Viewer::film_frame() {
+  const Frame& taken = frame();
+  if (!film_ || shows_gallery() || taken.building || !taken.finished || taken.number == filmed_) return;
+  filmed_ = taken.number;
+  const Area seen = area();
+  draw_scene(film_->width(), film_->height());
+  stale_ = seen.width != film_->width() || seen.height != film_->height();
+  try {
+    film_->add(picture_.read(), taken.stats.frame);
+  } catch (const std::exception& error) {
+    notice(std::string("no film: ") + error.what());
+    film_.reset();
+    send([](Session& session) { session.set_recording(false); });
+  }
 }
 
 void Viewer::draw_next(bool may_wait) {
   const double rest = last_picture_ + k_picture_seconds - wall_seconds();
-  const bool works = shows_gallery() && gallery().missing() > 0;
-  window_.poll(!may_wait ? 0 : busy_pictures_ > 0 || stale_ || works ? std::max(0.0, rest) : k_idle_wait);
-  const bool fresh = take_frame();
-  if (fresh) busy_pictures_ = std::max(busy_pictures_, 1);
+  // While a film's pictures are being written the next frame is left where it is: the scene waits for it.
+  const bool film_is_busy = film_ && film_->is_busy();
+  const bool works = (shows_gallery() && gallery().missing() > 0) || film_is_busy || joins_films();
+  // One that lies there already wakes nobody.
+  const bool film_goes_on = film_ && !film_is_busy && stepping_->has_frame();
+  const double wait = busy_pictures_ > 0 || stale_ || works ? std::max(0.0, rest) : k_idle_wait;
+  window_.poll(!may_wait || film_goes_on ? 0 : wait);
+  const bool fresh = !film_is_busy && take_frame();
+  if (fresh) {
+    busy_pictures_ = std::max(busy_pictures_, 1);
+    film_frame();
+  }
+  take_joined_films();
+  if (wall_seconds() > quiet_at_) {
+    quiet_at_ = std::numeric_limits<double>::infinity();
+    busy_pictures_ = std::max(busy_pictures_, 1);
+  }
   if (window_.width() == 0 || window_.height() == 0) {  // minimised
-    window_.poll(k_idle_wait);
+    if (!film_) window_.poll(k_idle_wait);
     return;
   }
   if (const Area seen = area(); picture_.width() != seen.width || picture_.height() != seen.height)
@@ -182,13 +229,14 @@ void Viewer::draw_gui() {
       }
     }
     draw_message({}, state_, last_picture_);
+    draw_help(state_);
     window_.end_gui();
     return;
   }
   const Send send_command = [this](auto command) { send(std::move(command)); };
   if (state_.panels) {
     draw_top_bar(frame(), state_, drawn_.per_second(last_picture_));
-    draw_time_bar(frame(), state_, film_.has_value(), send_command);
+    draw_time_bar(frame(), state_, film_ != nullptr, send_command);
     draw_settings(frame(), *settings_, state_, send_command);
     draw_legend(frame(), state_);
   }

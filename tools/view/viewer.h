@@ -1,9 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <future>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "view/camera.h"
 #include "view/film_recorder.h"
@@ -33,6 +36,8 @@ struct ViewerOptions {
 class Viewer {
  public:
   explicit Viewer(const ViewerOptions& options);
+  /// Closed while a film is recorded, it makes the film of what there is, and prints where it is.
+  ~Viewer();
 
   bool is_open() const { return !window_.should_close(); }
   /// Takes events and draws a picture where something has changed. may_wait: until then.
@@ -55,6 +60,9 @@ class Viewer {
   /// Frames that were taken from the stepping thread, and pictures that were drawn.
   std::uint64_t frames_taken() const { return frames_taken_; }
   std::uint64_t pictures() const { return pictures_; }
+  /// That is being recorded, or null.
+  const FilmRecorder* film() const { return film_.get(); }
+  bool joins_films() const { return !joining_.empty(); }
   /// Of the scene alone, without panels.
   render::Image scene_picture() { return picture_.read(); }
   /// Draws the scene again and again, and gives wall and processor time of one picture [s].
@@ -66,12 +74,16 @@ class Viewer {
   void on_key(int key, bool shift, bool repeated);
   bool take_frame();
   void draw_scene();
+  void draw_scene(int width, int height);
+  void film_frame();
   void show_picture();
   void draw_gui();
   void draw_marks();
   void draw_placed_marks();
   void do_what_was_asked();
-  void toggle_film();
+  void begin_film();
+  void end_film();
+  void take_joined_films();
   void notice(const std::string& text);
   void show_gallery();
   Vec3 on_screen(const Vec3& x) const;
@@ -86,13 +98,18 @@ class Viewer {
   ViewState state_;
   std::unique_ptr<Gallery> gallery_;
   std::unique_ptr<SettingsModel> settings_;
-  std::optional<FilmRecorder> film_;
+  std::unique_ptr<FilmRecorder> film_;
+  std::vector<std::future<std::string>> joining_;  ///< films that are not written yet
+  std::uint64_t filmed_ = 0;                       ///< number of the last frame in a film, see Frame
   Rate drawn_;
-  int scene_ = -1;         ///< that is drawn, see Frame
-  bool is_run_ = false;    ///< the scene is the folder of a run
-  bool stale_ = true;      ///< the picture of the scene is
-  int busy_pictures_ = 0;  ///< that are drawn after the last event, so that panels settle
+  int scene_ = -1;           ///< that is drawn, see Frame
+  bool is_rebuilt_ = false;  ///< the next scene is the same one, from its start
+  std::string run_folder_;   ///< that the scene was opened from; empty: from its file
+  bool stale_ = true;        ///< the picture of the scene is
+  int busy_pictures_ = 0;    ///< that are drawn after the last event, so that panels settle
   double last_picture_ = 0;
+  double quiet_at_ = std::numeric_limits<double>::infinity();  ///< a message goes then [s]
+  int message_ = 0, camera_number_ = 0;                        ///< see Frame
   std::uint64_t frames_taken_ = 0, pictures_ = 0;
   std::unique_ptr<SteppingThread> stepping_;  // last: its thread wakes the window
 };

@@ -4,6 +4,8 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -41,6 +43,9 @@ void Viewer::on_key(int key, bool, bool repeated) {
     case GLFW_KEY_H:
       state_.help = !state_.help;
       break;
+    case GLFW_KEY_U:
+      state_.release_pins = true;
+      break;
     case GLFW_KEY_TAB:
       state_.panels = !state_.panels;
       break;
@@ -75,18 +80,45 @@ void Viewer::on_key(int key, bool, bool repeated) {
   }
 }
 
-void Viewer::toggle_film() {
-  if (film_) {
-    send([](Session& session) { session.set_recording(false); });
-    notice(film_->finish());
-    film_.reset();
-    return;
-  }
-  film_.emplace(free_name("view", ".mp4"), settings_->scene().render.frames_per_second);
+void Viewer::begin_film() {
+  const Area seen = area();
+  film_ = std::make_unique<FilmRecorder>(
+      free_name("view", ".mp4"), settings_->scene().render.frames_per_second, seen.width, seen.height);
   send([](Session& session) {
     session.set_recording(true);
     session.set_paused(false);
   });
+}
+
+void Viewer::end_film() {
+  if (!film_) return;
+  send([](Session& session) { session.set_recording(false); });
+  joining_.push_back(FilmRecorder::finish(std::move(film_)));
+}
+
+/// Says where films are that have been joined meanwhile.
+void Viewer::take_joined_films() {
+  std::erase_if(joining_, [this](std::future<std::string>& film) {
+    if (film.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    try {
+      notice(film.get());
+    } catch (const std::exception& error) {
+      notice(error.what());
+    }
+    busy_pictures_ = std::max(busy_pictures_, 1);
+    return true;
+  });
+}
+
+Viewer::~Viewer() {
+  if (film_) joining_.push_back(FilmRecorder::finish(std::move(film_)));
+  for (std::future<std::string>& film : joining_) {
+    try {
+      std::puts(film.get().c_str());
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+    }
+  }
 }
 
 void Viewer::do_what_was_asked() try {
@@ -107,21 +139,24 @@ void Viewer::do_what_was_asked() try {
     stale_ = true;
   }
   if (asked(state_.rebuild)) {
-    settings_->was_rebuilt();
-    stepping_->open(settings_->scene());
+    is_rebuilt_ = true;
+    stepping_->rebuild(settings_->to_rebuild());
   }
+  if (asked(state_.release_pins)) send([](Session& session) { session.release_pins(); });
   if (asked(state_.save)) {
     const std::string folder = free_name("view_" + settings_->scene().file.stem().string(), "").string();
     send([folder](Session& session) { session.save_run(folder); });
   }
   if (asked(state_.copy)) {
-    const std::string line = settings_->command_line();
+    std::vector<std::string> without;
+    if (frame().touched) without.emplace_back("what the mouse did");
+    if (frame().stats.rung != k_as_written) without.emplace_back("its place between realtime and accurate");
+    const std::string line = settings_->command_line(run_folder_, without);
     window_.copy(line);
     notice("copied: " + line);
   }
-  if (asked(state_.film)) toggle_film();
+  if (asked(state_.film)) film_ ? end_film() : begin_film();
 } catch (const std::exception& error) {
-  film_.reset();
   notice(error.what());
 }
 
