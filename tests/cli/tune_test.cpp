@@ -20,14 +20,60 @@ class cli_tune : public CliTest {
   }
 };
 
-TEST_F(cli_tune, writes_a_scene_at_a_pick_that_holds) {
-  const Outcome outcome = tune({"--error", "5h", "--write", at("tuned.toml"), "--out", at("study")});
+/// The error of a setting in a study [h].
+double error_of(const nlohmann::json& study, const std::string& setting) {
+  for (const nlohmann::json& row : study.at("settings"))
+    if (row.at("setting") == setting) return row.at("error_h");
+  ADD_FAILURE() << "no " << setting;
+  return 0;
+}
+
+TEST_F(cli_tune, writes_a_scene_at_a_pick_that_holds_a_limit_that_others_miss) {
+  ASSERT_EQ(run_mallow({"tradeoff", scene_, "--budget", "3s", "--repeats", "1", "--threads", "1",
+                        "--no-surface", "--out", at("before")})
+                .exit_code,
+            0);
+  const nlohmann::json before = read_json(at("before/tradeoff.json"));
+  const double fine = error_of(before, "as it is"), coarse = error_of(before, "time_step_factor x 2");
+  ASSERT_LT(1.3 * fine, coarse);
+  const double limit = 0.5 * (fine + coarse);
+  const Outcome outcome =
+      tune({"--error", std::to_string(limit) + "h", "--write", at("tuned.toml"), "--out", at("study")});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json study = read_json(at("study/tradeoff.json"));
   EXPECT_TRUE(study.at("pick").at("holds").get<bool>());
-  EXPECT_LE(study.at("pick").at("error_h").get<double>(), 5);
+  EXPECT_EQ(study.at("pick").at("run_again"), 1);
+  EXPECT_LE(study.at("pick").at("error_h").get<double>(), limit);
+  EXPECT_EQ(study.at("pick").at("error_h").get<double>(), error_of(study, study.at("pick").at("setting")));
   EXPECT_NO_THROW(read_scene(at("tuned.toml")));
   EXPECT_EQ(names_in(at("study")), (std::vector<std::string>{"index.html", "tradeoff.csv", "tradeoff.json"}));
+}
+
+TEST_F(cli_tune, picks_the_most_accurate_that_is_fast_enough_by_the_median_of_its_runs) {
+  const Outcome outcome = tune({"--frame", "10s", "--write", at("tuned.toml"), "--out", at("study")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json study = read_json(at("study/tradeoff.json"));
+  const nlohmann::json& pick = study.at("pick");
+  EXPECT_TRUE(pick.at("holds").get<bool>());
+  EXPECT_EQ(pick.at("run_again"), 3);
+  // All are fast enough: so it is the one that is least off.
+  for (const nlohmann::json& row : study.at("settings"))
+    EXPECT_LE(pick.at("error_h").get<double>(), row.at("error_h").get<double>()) << row.at("setting");
+  EXPECT_TRUE(pick.at("dropped").empty());
+  EXPECT_NE(outcome.out.find("ms a frame (median of "), std::string::npos) << outcome.out;
+  EXPECT_NO_THROW(read_scene(at("tuned.toml")));
+}
+
+TEST_F(cli_tune, scene_longer_than_the_budget_is_tuned_by_its_first_frames_and_the_file_says_so) {
+  const Outcome outcome = tune(
+      {"--frame", "10s", "--write", at("tuned.toml"), "--out", at("study"), "--set", "run.frames=1000000"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const int frames = read_json(at("study/tradeoff.json")).at("frames");
+  const std::string part = "judged by the first " + std::to_string(frames) + " of 1000000 frames";
+  EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  EXPECT_NE(read_text(at("tuned.toml")).find(part), std::string::npos);
+  EXPECT_NE(read_text(at("study/index.html")).find(part), std::string::npos);
+  EXPECT_EQ(read_scene(at("tuned.toml")).run.frames, 1000000);
 }
 
 TEST_F(cli_tune, nothing_that_holds_is_a_failure_that_names_the_nearest) {

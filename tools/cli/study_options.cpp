@@ -65,7 +65,7 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
       .add_option(
           "--measure", arguments.measures,
           "Tell the error of this too: height, top, extent_x, extent_y, center_x, center_y, center_z, "
-          "speed or kinetic_energy of a body, by name or number: --measure \"height(0)\"")
+          "volume, speed or kinetic_energy of a body, by name or number: --measure \"height(0)\"")
       ->allow_extra_args(false);
   command.add_option("--repeats", arguments.repeats, "Timed runs of every setting, at most")
       ->check(CLI::Range(1, 1000))

@@ -172,6 +172,23 @@ std::vector<Setting> turned(const Scene& scene, const Knob& knob, const std::vec
   return settings;
 }
 
+namespace {
+
+/// Where lines belong: the header of a table, or, as TOML has no name for one of several tables, a comment.
+std::string heading(const Scene& scene, const std::string& where) {
+  const std::size_t bracket = where.find('[');
+  if (bracket == where.npos) return "[" + where + "]\n";
+  const std::string table = where.substr(0, bracket);
+  const std::size_t index = std::stoul(where.substr(bracket + 1));
+  const std::string name = table == "material" && index < scene.materials.size()
+                               ? ", \"" + scene.materials[index].name + "\""
+                               : "";
+  return "# below the [[" + table + "]] that is number " + std::to_string(index + 1) + " in the file" + name +
+         ":\n";
+}
+
+}  // namespace
+
 std::string lines_to_paste(const Scene& scene, const Scene& setting) {
   std::string text, section;
   for (const program::SceneChange& change : program::scene_changes(scene, setting)) {
@@ -179,12 +196,8 @@ std::string lines_to_paste(const Scene& scene, const Scene& setting) {
     const std::string where = change.key.substr(0, dot);
     if (where != section) {
       section = where;
-      const std::size_t bracket = where.find('[');
       if (!text.empty()) text += '\n';
-      text += bracket == where.npos
-                  ? "[" + where + "]\n"
-                  : "# in [[" + where.substr(0, bracket) + "]] " +
-                        std::to_string(std::stoi(where.substr(bracket + 1)) + 1) + " of them\n";
+      text += heading(scene, where);
     }
     const std::string key = change.key.substr(dot + 1);
     text += change.now.empty() ? "# without " + key + "\n" : key + " = " + change.now + "\n";

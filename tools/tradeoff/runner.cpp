@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
+#include <vector>
 
 #include "program/frame_surface.h"
 #include "program/machine.h"
@@ -13,23 +15,40 @@ namespace {
 
 constexpr int k_moments = 24;
 
-/// One particle of each body gets so little speed that the first step moves it by its last bits.
-void move_by_last_bit(Simulation& simulation) {
-  simulation.prepare();
-  const float step = simulation.info().longest_step;
-  for (const BodyId body : simulation.bodies()) {
-    const auto [begin, end] = simulation.rows(body);
-    if (begin == end) continue;
-    const std::size_t row = begin + (end - begin) / 2;
-    const ParticleId id = simulation.ids()[row];
-    Vec3 velocity = simulation.velocities()[row];
-    const float x = std::max(std::abs(simulation.positions()[row].x()), simulation.spacing(body));
-    velocity.x() += 2 * (std::nextafter(x, std::numeric_limits<float>::infinity()) - x) / step;
-    simulation.set_velocity(std::vector<ParticleId>{id}, velocity);
+/// The one in the middle of its body that no nozzle holds: what is held moves as the nozzle says.
+std::optional<std::size_t> free_row(const Simulation& simulation, BodyId body) {
+  std::set<ParticleId> held;
+  for (const EmitterId emitter : simulation.emitter_ids()) {
+    const std::vector<ParticleId> ids = simulation.held(emitter);
+    held.insert(ids.begin(), ids.end());
   }
+  const auto [begin, end] = simulation.rows(body);
+  const std::size_t middle = begin + (end - begin) / 2;
+  for (std::size_t k = 0; k < end - begin; ++k) {
+    const std::size_t row = middle + k < end ? middle + k : begin + (middle + k - end);
+    if (!held.contains(simulation.ids()[row])) return row;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
+
+/// It gets so little speed that the next step moves it by its last bits.
+void LastBit::move(Simulation& simulation) {
+  const float step = simulation.info().longest_step;
+  for (const BodyId body : simulation.bodies()) {
+    if (moved_.contains(body)) continue;
+    const std::optional<std::size_t> row = free_row(simulation, body);
+    if (!row) continue;
+    const ParticleId id = simulation.ids()[*row];
+    Vec3 velocity = simulation.velocities()[*row];
+    const float x = std::max(std::abs(simulation.positions()[*row].x()), simulation.spacing(body));
+    velocity.x() += 2 * (std::nextafter(x, std::numeric_limits<float>::infinity()) - x) / step;
+    simulation.set_velocity(std::vector<ParticleId>{id}, velocity);
+    moved_.insert(body);
+    if (!begin_) begin_ = simulation.time();
+  }
+}
 
 double wall_clock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -42,23 +61,31 @@ Runner::Runner(const StudyOptions& options, int frames, double frame_time)
   plan_.moments = k_moments;
 }
 
-Motion Runner::run(const Scene& scene, double deadline, bool drawn, bool last_bit) {
+Motion Runner::run(const Scene& scene, const RunHow& how) {
   MotionPlan plan = plan_;
+  std::optional<double> built;
   plan.stop = [&] {
     if (options_.stop && options_.stop()) throw Stopped{};
-    return wall_clock() > deadline;
+    const double now = wall_clock();
+    if (!built) built = now;
+    return now > how.deadline || now - *built > how.running;
   };
+  // Measures are taken at every moment, the begin too, and may change what they measure.
+  if (how.last_bit)
+    plan.measures.emplace_back([&](Simulation& simulation) {
+      how.last_bit->move(simulation);
+      return 0.0;
+    });
   std::vector<Skin> skins;
   std::optional<program::FrameSurface> surface;
-  if (drawn) plan.draw = [&](const Simulation& simulation) { surface->draw(simulation); };
+  if (how.drawn) plan.draw = [&](const Simulation& simulation) { surface->draw(simulation); };
   return record_motion(
       [&] {
         Simulation simulation = build(scene, threads_);
-        if (drawn) {
+        if (how.drawn) {
           skins = mallow::skins(scene, simulation, threads_);
           surface.emplace(scene.surface, skins, threads_);
         }
-        if (last_bit) move_by_last_bit(simulation);
         return simulation;
       },
       plan);
