@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -13,8 +14,8 @@ namespace {
 class cli_tune : public CliTest {
  protected:
   Outcome tune(std::vector<std::string> more) const {
-    std::vector<std::string> all = {"tune", scene_,      "--budget", "2s",          "--repeats",
-                                    "1",    "--threads", "1",        "--no-surface"};
+    std::vector<std::string> all = {"tune", scene_,      "--budget", "2s",           "--repeats",
+                                    "1",    "--threads", "1",        "--no-surface", "--no-film"};
     all.insert(all.end(), more.begin(), more.end());
     return run_mallow(all);
   }
@@ -74,6 +75,28 @@ TEST_F(cli_tune, scene_longer_than_the_budget_is_tuned_by_its_first_frames_and_t
   EXPECT_NE(read_text(at("tuned.toml")).find(part), std::string::npos);
   EXPECT_NE(read_text(at("study/index.html")).find(part), std::string::npos);
   EXPECT_EQ(read_scene(at("tuned.toml")).run.frames, 1000000);
+}
+
+TEST_F(cli_tune, page_shows_the_scene_as_it_is_beside_a_setting_in_one_film) {
+  if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  const auto tradeoff = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = {"tradeoff", scene_,      "--budget", "20s",   "--repeats",
+                                    "1",        "--threads", "1",        "--out", at("study")};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_mallow(all);
+  };
+  const Outcome outcome = tradeoff({});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string page = read_text(at("study/index.html"));
+  EXPECT_NE(page.find("<video src=\"side_by_side.mp4\""), std::string::npos);
+  EXPECT_NE(page.find("<td>as it is: "), std::string::npos);
+  const std::string film = read_text(at("study/side_by_side.mp4"));
+  EXPECT_NE(film.find("ftyp"), std::string::npos);
+  EXPECT_GT(film.size(), 2000u);
+  // Left out, and that of before is gone.
+  ASSERT_EQ(tradeoff({"--no-film"}).exit_code, 0);
+  EXPECT_EQ(read_text(at("study/index.html")).find("<video"), std::string::npos);
+  EXPECT_EQ(names_in(at("study")), (std::vector<std::string>{"index.html", "tradeoff.csv", "tradeoff.json"}));
 }
 
 TEST_F(cli_tune, nothing_that_holds_is_a_failure_that_names_the_nearest) {

@@ -59,9 +59,10 @@ void require_pick(const TuneOptions& options, const tradeoff::Limit& limit, cons
         " cannot be judged, as no halving of the steps fitted into the budget: give more "
         "by --budget; nothing is written");
   if (!limit.is_time && study.reference_error() > limit.most)
-    throw program::RunFailure(
-        "--error " + options.error + " cannot be judged, as the reference itself is off by about " +
-        tradeoff::number(study.reference_error()) + " h: give more by --budget; nothing is written");
+    throw program::RunFailure("--error " + options.error +
+                              " cannot be judged, as the reference itself is off by about " +
+                              tradeoff::number(study.reference_error()) +
+                              " h: give more by --budget, or ask for no less than that; nothing is written");
   if (!picked.holds)
     throw program::RunFailure(
         "no setting holds " + (limit.is_time ? "--frame " + options.frame : "--error " + options.error) +
@@ -94,11 +95,12 @@ void tune(const TuneOptions& options, const Scene& scene, const tradeoff::StudyO
           const tradeoff::Limit& limit) {
   const double deadline = tradeoff::wall_clock() + study_with.budget;
   tradeoff::Study study = tradeoff::study(scene, study_with);
-  const auto picked = tradeoff::confirm(study, limit, study_with, deadline);
+  const double film = film_share(options.study, !options.out.empty()) * study_with.budget;
+  const auto picked = tradeoff::confirm(study, limit, study_with, deadline - film);
   if (!picked) throw program::RunFailure("no setting could be measured");
   const tradeoff::Row& row = study.rows[picked->row];
   print(study, *picked, tradeoff::lines_to_paste(scene, row.setting.scene));
-  if (!options.out.empty()) write_study(options.out, study, picked);
+  if (!options.out.empty()) write_study(options.out, study, options.study, study_with, deadline, picked);
   require_pick(options, limit, study, *picked);
   warn(limit, study);
   if (!options.write.empty()) write(options.write, study, row);
@@ -112,7 +114,7 @@ void run(const TuneOptions& options) {
                                     : tradeoff::Limit{true, seconds_of(options.frame, "--frame")};
   const Scene scene = read_scene(options.study.scene);
   tradeoff::StudyOptions study_with = study_options(options.study, scene);
-  study_with.kept = k_confirm_share;
+  study_with.kept = k_confirm_share + film_share(options.study, !options.out.empty());
   study_with.limit = limit;
   if (!options.write.empty()) {
     program::InputFiles(scene).refuse(options.write, "--write");

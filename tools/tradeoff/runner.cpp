@@ -78,7 +78,11 @@ Motion Runner::run(const Scene& scene, const RunHow& how) {
     });
   std::vector<Skin> skins;
   std::optional<program::FrameSurface> surface;
-  if (how.drawn) plan.draw = [&](const Simulation& simulation) { surface->draw(simulation); };
+  if (how.drawn)
+    plan.draw = [&](const Simulation& simulation) {
+      const Mesh mesh = surface->draw(simulation);
+      if (how.show) how.show(simulation, mesh);
+    };
   return record_motion(
       [&] {
         Simulation simulation = build(scene, threads_);

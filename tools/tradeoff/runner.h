@@ -25,6 +25,8 @@ struct RunHow {
   double running = std::numeric_limits<double>::infinity();   ///< wall time of the same once it is built [s]
   bool drawn = false;           ///< its surface is drawn, and timed, at each moment
   LastBit* last_bit = nullptr;  ///< where it is to be moved
+  /// Called with each surface that is drawn; may be empty.
+  std::function<void(const Simulation& simulation, const Mesh& surface)> show = {};
 };
 
 /// Runs settings of one scene, all in the same way.
