@@ -59,10 +59,12 @@ void require_pick(const TuneOptions& options, const tradeoff::Limit& limit, cons
         " cannot be judged, as no halving of the steps fitted into the budget: give more "
         "by --budget; nothing is written");
   if (!limit.is_time && study.reference_error() > limit.most)
-    throw program::RunFailure("--error " + options.error +
-                              " cannot be judged, as the reference itself is off by about " +
-                              tradeoff::number(study.reference_error()) +
-                              " h: give more by --budget, or ask for no less than that; nothing is written");
+    throw program::RunFailure(
+        "--error " + options.error + " cannot be judged, as the reference itself is off by about " +
+        tradeoff::number(study.reference_error()) + " h: ask for no less than that, or give " +
+        // More budget would be spent on more frames first.
+        (tradeoff::stretch(study).empty() ? "more by --budget" : "less run.frames, or far more by --budget") +
+        "; nothing is written");
   if (!picked.holds)
     throw program::RunFailure(
         "no setting holds " + (limit.is_time ? "--frame " + options.frame : "--error " + options.error) +

@@ -1,5 +1,6 @@
 #include "tradeoff/runner.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -14,6 +15,7 @@ namespace mallow::tradeoff {
 namespace {
 
 constexpr int k_moments = 24;
+constexpr int k_timed_surfaces = 8;  ///< of a run: all of them would take the time of other settings
 
 /// The one in the middle of its body that no nozzle holds: what is held moves as the nozzle says.
 std::optional<std::size_t> free_row(const Simulation& simulation, BodyId body) {
@@ -78,12 +80,17 @@ Motion Runner::run(const Scene& scene, const RunHow& how) {
     });
   std::vector<Skin> skins;
   std::optional<program::FrameSurface> surface;
+  const int every = how.show ? 1 : std::max(1, std::min(plan.moments, plan.frames) / k_timed_surfaces);
+  int moment = 0;
+  std::vector<bool> timed;
   if (how.drawn)
     plan.draw = [&](const Simulation& simulation) {
+      timed.push_back(moment++ % every == every / 2);
+      if (!timed.back()) return;
       const Mesh mesh = surface->draw(simulation);
       if (how.show) how.show(simulation, mesh);
     };
-  return record_motion(
+  Motion motion = record_motion(
       [&] {
         Simulation simulation = build(scene, threads_);
         if (how.drawn) {
@@ -93,6 +100,11 @@ Motion Runner::run(const Scene& scene, const RunHow& how) {
         return simulation;
       },
       plan);
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < motion.draw_seconds.size(); ++k)
+    if (timed[k]) motion.draw_seconds[kept++] = motion.draw_seconds[k];
+  motion.draw_seconds.resize(kept);
+  return motion;
 }
 
 }  // namespace mallow::tradeoff

@@ -23,9 +23,9 @@ class LastBit {
 struct RunHow {
   double deadline = std::numeric_limits<double>::infinity();  ///< wall_clock() at which it ends as it is
   double running = std::numeric_limits<double>::infinity();   ///< wall time of the same once it is built [s]
-  bool drawn = false;           ///< its surface is drawn, and timed, at each moment
+  bool drawn = false;           ///< its surface is drawn, and timed, at some moments
   LastBit* last_bit = nullptr;  ///< where it is to be moved
-  /// Called with each surface that is drawn; may be empty.
+  /// Called with the surface of each moment; empty: fewer are drawn.
   std::function<void(const Simulation& simulation, const Mesh& surface)> show = {};
 };
 

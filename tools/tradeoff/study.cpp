@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "program/failure.h"
@@ -18,12 +19,15 @@ constexpr double k_reference_share = 0.5;  ///< of the budget
 constexpr double k_first_share = 0.06;     ///< that the scene as it is may take, once it is built
 constexpr int k_handful = 4;               ///< frames that are worth to be judged by
 constexpr double k_handful_share = 0.1;    ///< that they may take
-constexpr double k_fewest_builds = 12;     ///< of the scene that a study needs
-constexpr double k_settings_share = 0.7;   ///< by which first runs of settings have begun
-constexpr std::size_t k_few = 5;           ///< rows that are worth more than times of several runs
-constexpr double k_few_share = 0.95;       ///< by which first runs of so few have begun
-constexpr double k_search_share = 0.8;     ///< by which those that lead on from the best have begun
-constexpr int k_most_rounds = 8;           ///< of turning knobs on
+/// Of the frames that the budget carries, where an error is to be held that needs a reference in shorter
+/// steps.
+constexpr double k_judged_share = 0.4;
+constexpr double k_fewest_builds = 12;    ///< of the scene that a study needs
+constexpr double k_settings_share = 0.7;  ///< by which first runs of settings have begun
+constexpr std::size_t k_few = 5;          ///< rows that are worth more than times of several runs
+constexpr double k_few_share = 0.95;      ///< by which first runs of so few have begun
+constexpr double k_search_share = 0.8;    ///< by which those that lead on from the best have begun
+constexpr int k_most_rounds = 8;          ///< of turning knobs on
 /// The reference is converged where its last halving moved particles by less than this share of what the
 /// scene as it is is off.
 constexpr double k_little = 0.1;
@@ -123,8 +127,10 @@ class Maker {
       motion = run(k_handful_share);
       if (study_.frames < fewest) throw too_small(motion, fewest);
     } else if (study_.frames < study_.all_frames) {
-      runner_->plan().frames = study_.frames;
-      const int reached = study_.frames;
+      const bool is_error = options_.limit && !options_.limit->is_time;
+      const int reached =
+          is_error ? std::max(fewest, static_cast<int>(k_judged_share * study_.frames)) : study_.frames;
+      runner_->plan().frames = reached;
       motion = run(1);  // with moments at its end
       if (study_.frames < reached) throw too_small(motion, fewest);
     }
@@ -158,7 +164,8 @@ class Maker {
     Reference& reference = study_.reference;
     const bool is_finest = print_scene(finest(scene_, 1)) == print_scene(scene_);
     const double begin = wall_clock();
-    double factor = 1, cost = plain_cost_;
+    const std::vector<double>& drawing = study_.rows.front().motion.draw_seconds;
+    double factor = 1, cost = plain_cost_ - std::accumulate(drawing.begin(), drawing.end(), 0.0);
     Motion before = is_finest ? study_.rows.front().motion : run_finest(1);
     if (!is_finest) cost = wall_clock() - begin;
     const double building = std::min(cost, before.other_seconds);  // of which shorter steps need no more
