@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "mallow/errors.h"
 #include "program/scene_changes.h"
@@ -36,8 +37,19 @@ Scene at_iterations(Scene scene, int iterations) {
   return scene;
 }
 
-/// Bodies that are boxes and balls with cells `factor` times as large, in the same box; nothing where there
-/// are others.
+/// How a shape or a mesh is filled with points; null for bodies that are not.
+Sampling* sampling_of(SceneBody& body) {
+  return std::visit(
+      [](auto& source) -> Sampling* {
+        if constexpr (requires { source.sampling; })
+          return &source.sampling;
+        else
+          return nullptr;
+      },
+      body.source);
+}
+
+/// Boxes, shapes and meshes with cells `factor` times as large; nothing where there are other bodies.
 std::optional<Scene> coarser(Scene scene, float factor) {
   if (!scene.emitters.empty() || scene.bodies.empty()) return std::nullopt;
   for (SceneBody& body : scene.bodies) {
@@ -48,14 +60,16 @@ std::optional<Scene> coarser(Scene scene, float factor) {
         const float size = static_cast<float>(before.count[a]) * before.spacing;
         box->count[a] = static_cast<int>(std::lround(size / box->spacing));
         if (box->count[a] < 2) return std::nullopt;
-        box->corner[static_cast<Eigen::Index>(a)] +=
-            0.5f * (size - static_cast<float>(box->count[a]) * box->spacing);
+        // In the middle of where it was, but never through the floor that it stands on.
+        if (a < 2)
+          box->corner[static_cast<Eigen::Index>(a)] +=
+              0.5f * (size - static_cast<float>(box->count[a]) * box->spacing);
       }
-    } else if (auto* ball = std::get_if<SphereSource>(&body.source)) {
-      if (ball->sampling.spacing) *ball->sampling.spacing *= factor;
-      if (ball->sampling.count)
-        *ball->sampling.count =
-            std::max(8, static_cast<int>(static_cast<float>(*ball->sampling.count) / std::pow(factor, 3.0f)));
+    } else if (Sampling* sampling = sampling_of(body)) {
+      if (sampling->spacing) *sampling->spacing *= factor;
+      if (sampling->count)
+        *sampling->count =
+            std::max(8, static_cast<int>(static_cast<float>(*sampling->count) / std::pow(factor, 3.0f)));
     } else {
       return std::nullopt;
     }
