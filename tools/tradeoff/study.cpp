@@ -92,8 +92,10 @@ class Maker {
 
   /// What the scene has, and what is to be measured of it.
   void look() {
+    const double begin = wall_clock();
     Simulation simulation = build(scene_, program::resolve_threads(options_.threads));
     simulation.prepare();
+    building_ = wall_clock() - begin;
     const SimulationInfo info = simulation.info();
     traits_ = traits(info);
     study_.scene = scene_.file.string();
@@ -123,6 +125,7 @@ class Maker {
     Motion motion = run(k_first_share);
     const int fewest = std::min(k_handful, study_.all_frames);
     if (study_.frames < fewest) {
+      if (plain_cost_ > left()) throw too_small(motion, fewest);
       runner_->plan().frames = fewest;
       motion = run(k_handful_share);
       if (study_.frames < fewest) throw too_small(motion, fewest);
@@ -139,16 +142,16 @@ class Maker {
 
   /// What to say where not even `fewest` frames were reached.
   program::RunFailure too_small(const Motion& motion, int fewest) const {
-    const double building = std::min(plain_cost_, motion.other_seconds);
-    const double step =
-        (plain_cost_ - building) / static_cast<double>(std::max<std::int64_t>(1, motion.steps));
+    // The frame that was not ended is in no time of the motion.
+    const double running = std::max(plain_cost_ - building_, k_first_share * budget());
+    const double step = running / static_cast<double>(std::max<std::int64_t>(1, motion.steps));
     const double frame = step * steps_of_frame_;
-    const double needed = std::max(fewest * frame / k_handful_share, k_fewest_builds * (building + frame)) /
+    const double needed = std::max(fewest * frame / k_handful_share, k_fewest_builds * (building_ + frame)) /
                           (1 - options_.kept);
     const double digit = std::pow(10, std::floor(std::log10(needed)) - 1);
     return program::RunFailure(
         "the budget is too small: a frame takes about " + number(frame, 2) + " s, and building the scene " +
-        number(building, 2) + " s; to be judged by its first " + std::to_string(fewest) +
+        number(building_, 2) + " s; to be judged by its first " + std::to_string(fewest) +
         " frames this scene needs about --budget " + number(digit * std::ceil(needed / digit), 6) + "s");
   }
 
@@ -319,6 +322,7 @@ class Maker {
   std::size_t listed_ = 0;  ///< rows before any search
   double plain_cost_ = 0;   ///< wall time of a run as it is [s]
   double steps_of_frame_ = 1;
+  double building_ = 0;  ///< wall time [s]
   PixelOf pixel_;
   std::size_t compared_ = 0;  ///< rows that have their errors
   Study study_;
