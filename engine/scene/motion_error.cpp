@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 
 #include "mallow/errors.h"
 #include "mallow/tuning.h"
+#include "surface/nearest_points.h"
 
 namespace mallow {
 namespace {
@@ -43,28 +43,32 @@ std::size_t match_by_id(const ParticleFrame& a, const ParticleFrame& b, const Mo
 }
 
 /// For each particle of another sampling those of the reference that were nearest to it at the begin, and
-/// their weights.
-struct Neighbourhood {
-  std::array<std::size_t, k_nearest> particles{};
-  std::array<double, k_nearest> weights{};
+/// their weights, in a row.
+struct Neighbourhoods {
+  std::size_t count = 0;  ///< of each
+  std::vector<std::uint32_t> particles = {};
+  std::vector<double> weights = {};
 };
 
-Neighbourhood neighbourhood(const Vec3& x, const ParticleFrame& reference) {
-  std::vector<std::pair<float, std::size_t>> distances(reference.positions.size());
-  for (std::size_t j = 0; j < distances.size(); ++j)
-    distances[j] = {(reference.positions[j] - x).squaredNorm(), j};
-  const std::size_t count = std::min(k_nearest, distances.size());
-  std::partial_sort(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(count),
-                    distances.end());
-  Neighbourhood result;
-  double sum = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    result.particles[k] = distances[k].second;
-    result.weights[k] = 1 / (1e-6 * static_cast<double>(distances.back().first) +
-                             static_cast<double>(distances[k].first) + 1e-30);
-    sum += result.weights[k];
+float least_spacing(const Motion& motion) {
+  return motion.spacings.empty() ? 1.0f : *std::ranges::min_element(motion.spacings);
+}
+
+Neighbourhoods neighbourhoods(const ParticleFrame& frame, const ParticleFrame& reference, float spacing) {
+  // The eighth of a lattice's points is within 1.5 spacings.
+  const std::vector<NearestPoint> found =
+      find_several_nearest(frame.positions, reference.positions, k_nearest, 1.5f * spacing, 1);
+  Neighbourhoods result{.count = std::min(k_nearest, reference.positions.size())};
+  for (const NearestPoint& near : found) result.particles.push_back(near.index);
+  result.weights.resize(found.size());
+  const auto square = [](float x) { return static_cast<double>(x) * static_cast<double>(x); };
+  for (std::size_t i = 0; i < found.size(); i += result.count) {
+    double sum = 0;
+    const double farthest = square(found[i + result.count - 1].distance);
+    for (std::size_t k = i; k < i + result.count; ++k)
+      sum += result.weights[k] = 1 / (1e-6 * farthest + square(found[k].distance) + 1e-30);
+    for (std::size_t k = i; k < i + result.count; ++k) result.weights[k] /= sum;
   }
-  for (double& weight : result.weights) weight /= sum;
   return result;
 }
 
@@ -77,7 +81,7 @@ class Sums {
     const ParticleFrame& a = motion.moments.front().particles;
     const ParticleFrame& b = reference.moments.front().particles;
     if (a.positions.size() == b.positions.size() || b.positions.empty()) return;
-    for (const Vec3& x : a.positions) near_.push_back(neighbourhood(x, b));
+    near_ = neighbourhoods(a, b, least_spacing(reference));
   }
 
   void add(std::size_t k) {
@@ -85,12 +89,11 @@ class Sums {
     const Visit visit = [&](const Vec3& x, const Vec3& wanted, float spacing) {
       add_particle(x, wanted, spacing, b.particles.time);
     };
-    if (near_.empty())
+    if (near_.particles.empty())
       error_.unmatched += match_by_id(a.particles, b.particles, reference_, visit);
     else
       match_by_place(a.particles, b.particles, visit);
-    const double h =
-        reference_.spacings.empty() ? 1 : static_cast<double>(*std::ranges::min_element(reference_.spacings));
+    const double h = static_cast<double>(least_spacing(reference_));
     const auto square = [](double x) { return x * x; };
     error_.height += square((a.height - b.height) / h);
     error_.spread += square((a.spread - b.spread) / h);
@@ -149,21 +152,23 @@ class Sums {
   void match_by_place(const ParticleFrame& a, const ParticleFrame& b, const Visit& visit) {
     const ParticleFrame& first_a = motion_.moments.front().particles;
     const ParticleFrame& first_b = reference_.moments.front().particles;
-    for (std::size_t i = 0; i < std::min(near_.size(), a.positions.size()); ++i) {
+    const std::size_t particles = near_.particles.size() / near_.count;
+    for (std::size_t i = 0; i < std::min(particles, a.positions.size()); ++i) {
       Vec3 moved = Vec3::Zero();
-      for (std::size_t k = 0; k < k_nearest; ++k) {
-        const std::size_t j = near_[i].particles[k];
+      for (std::size_t k = i * near_.count; k < (i + 1) * near_.count; ++k) {
+        const std::size_t j = near_.particles[k];
         if (j < b.positions.size())
-          moved += static_cast<float>(near_[i].weights[k]) * (b.positions[j] - first_b.positions[j]);
+          moved += static_cast<float>(near_.weights[k]) * (b.positions[j] - first_b.positions[j]);
       }
-      visit(a.positions[i], first_a.positions[i] + moved, spacing_at(reference_, b, near_[i].particles[0]));
+      visit(a.positions[i], first_a.positions[i] + moved,
+            spacing_at(reference_, b, near_.particles[i * near_.count]));
     }
   }
 
   const Motion& motion_;
   const Motion& reference_;
   const PixelOf& pixel_;
-  std::vector<Neighbourhood> near_;
+  Neighbourhoods near_;
   std::vector<double> distances_, pixels_;
   double squares_ = 0, largest_kinetic_ = 0;
   std::size_t moments_ = 0;

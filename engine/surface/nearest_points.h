@@ -22,5 +22,10 @@ struct NearestPoint {
 MALLOW_EXPORT std::vector<NearestPoint> find_nearest(std::span<const Vec3> points,
                                                      std::span<const Vec3> others, float spacing,
                                                      const Threads& threads);
+/// The `count` nearest, >= 1, or as many as there are: those of each point in a row, the nearest first, of
+/// two at one distance that of the lower index.
+MALLOW_EXPORT std::vector<NearestPoint> find_several_nearest(std::span<const Vec3> points,
+                                                             std::span<const Vec3> others, std::size_t count,
+                                                             float spacing, const Threads& threads);
 
 }  // namespace mallow

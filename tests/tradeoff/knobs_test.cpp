@@ -39,6 +39,11 @@ TEST(tradeoff_knobs, lines_to_paste_lead_to_the_setting) {
     if (setting.name == "time_step_factor x 2") {
       EXPECT_EQ(tradeoff::lines_to_paste(before, setting.scene), "[solver]\ntime_step_factor = 2.0\n");
     }
+    if (setting.name == "region_stride x 2") {
+      EXPECT_EQ(tradeoff::lines_to_paste(before, setting.scene),
+                "# below the [[material]] that is number 1 in the file, \"" + before.materials.front().name +
+                    "\":\nregion_stride = 2\n");
+    }
     EXPECT_NE(tradeoff::lines_to_paste(before, setting.scene), "") << setting.name;
   }
 }
@@ -57,6 +62,17 @@ TEST(tradeoff_knobs, a_coarser_body_fills_the_same_box) {
   const auto& box = std::get<Lattice>(coarse->scene.bodies.front().source);
   EXPECT_EQ(box.spacing, 1.25f);
   EXPECT_NEAR(static_cast<double>(box.corner.x()) + 0.5 * box.count[0] * 1.25, 0, 1e-6);
+  EXPECT_EQ(box.corner.z(), std::get<Lattice>(scene().bodies.front().source).corner.z()) << "on its floor";
+}
+
+TEST(tradeoff_knobs, a_mesh_is_filled_with_coarser_cells_too) {
+  Scene mesh = scene();
+  mesh.bodies.front().source =
+      MeshSource{.file = "bunny.obj", .sampling = {.spacing = 0.5f}, .placement = {}};
+  const std::vector<tradeoff::Setting> settings = tradeoff::settings_around(mesh, {});
+  const auto coarse = std::ranges::find(settings, "spacing x 1.25", &tradeoff::Setting::name);
+  ASSERT_NE(coarse, settings.end());
+  EXPECT_EQ(std::get<MeshSource>(coarse->scene.bodies.front().source).sampling.spacing, 0.625f);
 }
 
 }  // namespace mallow::knobs_test

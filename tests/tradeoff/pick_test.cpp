@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ctime>
 #include <vector>
 
 #include "mallow/errors.h"
@@ -66,6 +67,42 @@ TEST(tradeoff_pick, errors_are_distances_by_id_in_spacings) {
   EXPECT_DOUBLE_EQ(error.worst, 2);
   EXPECT_DOUBLE_EQ(error.rms, std::sqrt(2.0));
   EXPECT_THROW(motion_error(reference, reference, 1), ConfigError);
+}
+
+/// A cube of n^3 particles of 1 m, at the begin and after a stretch along x by a fifth.
+Motion stretched_cube(int n, float more = 0) {
+  Motion motion;
+  const float h = 1 / static_cast<float>(n);
+  motion.spacings = {h};
+  for (const float stretch : {0.0f, 0.2f}) {
+    ParticleFrame frame;
+    for (int i = 0; i < n * n * n; ++i) {
+      const Vec3 cell{static_cast<float>(i % n), static_cast<float>(i / n % n),
+                      static_cast<float>(i / n / n)};
+      Vec3 x = h * (cell + Vec3::Constant(0.5f));
+      x.x() *= 1 + stretch;
+      if (stretch > 0) x.z() += more;
+      frame.positions.push_back(x);
+      frame.bodies.push_back(0);
+    }
+    motion.moments.push_back({.particles = std::move(frame)});
+  }
+  return motion;
+}
+
+TEST(tradeoff_pick, another_sampling_is_compared_by_what_its_neighbours_of_the_begin_have_moved) {
+  const Motion reference = stretched_cube(20), coarse = stretched_cube(15);
+  EXPECT_LT(motion_error(coarse, reference).rms, 0.05) << "the same motion: what weights leave of it";
+  const MotionError shifted = motion_error(stretched_cube(15, 0.15f), reference, 0.5);
+  EXPECT_NEAR(shifted.median, 3, 0.02) << "0.15 m in spacings of the reference";
+}
+
+TEST(tradeoff_pick, another_sampling_takes_time_as_its_particles_not_as_pairs_of_them) {
+  const Motion reference = stretched_cube(50), coarse = stretched_cube(40);
+  const std::clock_t start = std::clock();
+  motion_error(coarse, reference);
+  // All pairs, 8 thousand millions of them, take half a minute.
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 3);
 }
 
 TEST(tradeoff_pick, plans_out_of_range_are_refused_by_name) {

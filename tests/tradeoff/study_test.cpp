@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -47,6 +48,30 @@ box = { min = [0.0, 0.0, 0.0], max = [0.4, 0.25, 9.0], inside = true }
 frames = 90
 frame_time = 0.033
 )";
+
+/// A nozzle that lets out a strand: there is nothing but what it holds at the begin.
+const char* const k_nozzle = R"(
+[solver]
+gravity = [0.0, 0.0, -9.81]
+[[material]]
+name = "paste"
+alpha = 0.2
+youngs_modulus = 8000.0
+rest_density = 1300.0
+[[emitter]]
+material = "paste"
+radius = 0.0045
+spacing = 0.0015
+translate = [0.0, 0.0, 0.03]
+rotate = [180.0, 0.0, 0.0]
+speed = 0.09
+[[collider]]
+plane = {}
+[run]
+frames = 12
+frame_time = 0.033
+)";
+constexpr double k_never = std::numeric_limits<double>::infinity();
 
 Scene scene(const char* text, std::vector<std::string> overrides = {}) {
   return parse_scene(text, "scene.toml", overrides);
@@ -111,6 +136,59 @@ TEST(tradeoff_study, every_column_is_explained) {
     }
 }
 
+TEST(tradeoff_study, last_bit_of_what_a_nozzle_lets_out_is_moved) {
+  const tradeoff::Study study =
+      tradeoff::study(scene(k_nozzle), {.budget = 4, .threads = 1, .repeats = 1, .surface = false});
+  ASSERT_TRUE(study.last_bit) << study.no_last_bit;
+  EXPECT_GT(study.last_bit->rms, 0);
+}
+
+TEST(tradeoff_study, without_anything_to_be_moved_chaos_is_not_known) {
+  const tradeoff::Study study = tradeoff::study(scene(k_nozzle, {"emitter[0].start=9.0", "run.frames=5"}),
+                                                {.budget = 1, .threads = 1, .repeats = 1, .surface = false});
+  EXPECT_FALSE(study.last_bit);
+  EXPECT_NE(tradeoff::to_text(study).find(
+                "whether it is chaotic is not known: there was nothing to be moved by its last bit"),
+            std::string::npos)
+      << tradeoff::to_text(study);
+}
+
+/// 12^3 particles for so many frames.
+Scene large(int frames) {
+  return scene(k_smooth, {"body[0].box.count=[12, 12, 12]", "run.frames=" + std::to_string(frames)});
+}
+
+TEST(tradeoff_study, scene_longer_than_the_budget_is_judged_by_its_first_frames_and_that_is_said) {
+  const tradeoff::Study study =
+      tradeoff::study(large(4000), {.budget = 3, .threads = 1, .repeats = 1, .surface = false});
+  EXPECT_GE(study.frames, 4);
+  EXPECT_LT(study.frames, study.all_frames);
+  EXPECT_GT(study.rows.size(), 1u);
+  const std::string part = "the first " + std::to_string(study.frames) + " of 4000 frames";
+  EXPECT_EQ(tradeoff::stretch(study), part);
+  EXPECT_NE(tradeoff::to_text(study).find("judged by " + part), std::string::npos);
+  EXPECT_NE(tradeoff::to_page(study).find("judged by " + part), std::string::npos);
+  EXPECT_NE(tradeoff::to_csv(study).find("\"as it is\"," + std::to_string(study.frames) + ",4000,"),
+            std::string::npos)
+      << tradeoff::to_csv(study);
+}
+
+TEST(tradeoff_study, budget_below_a_handful_of_frames_is_refused_with_one_that_carries_them) {
+  std::string text;
+  try {
+    tradeoff::study(large(4000), {.budget = 0.002, .threads = 1, .surface = false});
+    FAIL();
+  } catch (const program::RunFailure& failure) {
+    text = failure.what();
+  }
+  const std::size_t place = text.find("needs about --budget ");
+  ASSERT_NE(place, std::string::npos) << text;
+  const double needed = std::stod(text.substr(place + 21));
+  // Other programs run beside this one.
+  EXPECT_NO_THROW(tradeoff::study(large(4000), {.budget = 3 * needed, .threads = 1, .surface = false}))
+      << text;
+}
+
 TEST(tradeoff_study, budget_is_kept_and_what_it_left_out_is_said) {
   const auto start = std::chrono::steady_clock::now();
   const tradeoff::Study study =
@@ -126,17 +204,23 @@ TEST(tradeoff_study, same_setting_again_is_off_by_the_same_bits) {
   const tradeoff::StudyOptions options{.budget = 1, .threads = 1, .repeats = 1, .surface = true};
   const tradeoff::Study study = tradeoff::study(scene(k_smooth), options);
   const tradeoff::Row& row = study.rows.back();
-  EXPECT_EQ(tradeoff::run_again(study, row.setting, options).error.rms, row.error.rms);
+  const auto again = tradeoff::run_again(study, row.setting, options, k_never);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->error.rms, row.error.rms);
+  EXPECT_FALSE(tradeoff::run_again(study, row.setting, options, 0)) << "it is too late";
 }
 
 TEST(tradeoff_study, measures_and_settings_of_users_are_told) {
   const Scene smooth = scene(k_smooth);
   Scene denser = smooth;
   denser.solver.rotation_iterations = 1;
-  const tradeoff::Study study = tradeoff::study(
-      smooth,
-      {.budget = 1, .threads = 1, .repeats = 1, .extra = {{"fewer", denser}}, .measures = {"height(0)"}});
+  const tradeoff::Study study = tradeoff::study(smooth, {.budget = 1,
+                                                         .threads = 1,
+                                                         .repeats = 1,
+                                                         .extra = {{"fewer", denser}},
+                                                         .measures = {"height(0)", "volume(0)"}});
   EXPECT_NE(tradeoff::to_csv(study).find("\"height(0)\""), std::string::npos);
+  EXPECT_NE(tradeoff::to_csv(study).find("\"volume(0)\""), std::string::npos);
   EXPECT_NE(tradeoff::to_csv(study).find("\"fewer\""), std::string::npos);
   const std::string page = tradeoff::to_page(study);
   EXPECT_NE(page.find("<svg"), std::string::npos);

@@ -8,13 +8,18 @@
 
 #include "mallow/errors.h"
 #include "mallow/files.h"
+#include "program/film.h"
 #include "program/interrupt.h"
 #include "program/output_files.h"
 #include "program/threads_option.h"
+#include "tradeoff/films.h"
 #include "tradeoff/page.h"
 
 namespace mallow::cli {
 namespace {
+
+constexpr const char* k_film = "side_by_side.mp4";
+constexpr double k_film_share = 0.1;
 
 /// A number > 0 before `unit`; NaN where it is none.
 double value_before(const std::string& text, const std::string& unit) {
@@ -65,13 +70,16 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
       .add_option(
           "--measure", arguments.measures,
           "Tell the error of this too: height, top, extent_x, extent_y, center_x, center_y, center_z, "
-          "speed or kinetic_energy of a body, by name or number: --measure \"height(0)\"")
+          "volume, speed or kinetic_energy of a body, by name or number: --measure \"height(0)\"")
       ->allow_extra_args(false);
   command.add_option("--repeats", arguments.repeats, "Timed runs of every setting, at most")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   program::add_threads_option(command, arguments.threads);
   command.add_flag("--no-surface", arguments.no_surface, "Draw no surface: a frame is its steps alone");
+  command.add_flag(
+      "--no-film", arguments.no_film,
+      "Make no film of the scene as it is beside another setting; it takes a tenth of the budget");
 }
 
 tradeoff::StudyOptions study_options(const StudyArguments& arguments, const Scene& scene) {
@@ -97,18 +105,33 @@ void check_study_files(const std::filesystem::path& folder, const Scene& scene) 
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw IoError({folder.string(), 0, 0, "--out", "cannot be made: " + error.message()});
-  for (const char* name : {"tradeoff.csv", "tradeoff.json", "index.html"}) {
+  for (const char* name : {"tradeoff.csv", "tradeoff.json", "index.html", k_film}) {
     program::check_writable(folder / name);
     inputs.refuse(folder / name, "--out");
   }
 }
 
+double film_share(const StudyArguments& arguments, bool has_folder) {
+  return has_folder && !arguments.no_film && program::can_make_films() ? k_film_share : 0;
+}
+
 void write_study(const std::filesystem::path& folder, const tradeoff::Study& study,
+                 const StudyArguments& arguments, const tradeoff::StudyOptions& options, double deadline,
                  const std::optional<tradeoff::Picked>& picked) {
   write_whole(folder / "tradeoff.csv", tradeoff::to_csv(study));
   write_whole(folder / "tradeoff.json", tradeoff::to_json(study, picked));
-  write_whole(folder / "index.html",
-              tradeoff::to_page(study, picked ? std::optional(picked->row) : std::nullopt));
+  const std::optional<std::size_t> row = picked ? std::optional(picked->row) : std::nullopt;
+  const auto shown = tradeoff::row_to_show(study, row);
+  std::optional<tradeoff::SideBySide> film;
+  if (!arguments.no_film && shown) {
+    if (options.progress) options.progress("a film, side by side");
+    film = tradeoff::film_side_by_side(study, *shown, options, deadline, folder / k_film);
+  }
+  if (!film || film->file.empty()) {  // one of an earlier study
+    std::error_code ignored;
+    std::filesystem::remove(folder / k_film, ignored);
+  }
+  write_whole(folder / "index.html", tradeoff::to_page(study, row, film));
 }
 
 }  // namespace mallow::cli

@@ -20,16 +20,20 @@ struct StudyArguments {
   int repeats = 9;
   int threads = 0;
   bool no_surface = false;
+  bool no_film = false;
 };
 /// What the columns mean, for the end of a command's help.
 std::string study_columns();
 void add_study_options(CLI::App& command, StudyArguments& arguments);
 /// Throws ConfigError where --budget and the like are wrong.
 tradeoff::StudyOptions study_options(const StudyArguments& arguments, const Scene& scene);
+/// Share of the budget that is kept for the film of a study.
+double film_share(const StudyArguments& arguments, bool has_folder);
 /// Makes the folder of --out; none of its files is an input. Throws IoError.
 void check_study_files(const std::filesystem::path& folder, const Scene& scene);
-/// The page, the CSV and the JSON of a study.
+/// The page with its film, the CSV and the JSON of a study. deadline: wall_clock() at which the film ends.
 void write_study(const std::filesystem::path& folder, const tradeoff::Study& study,
+                 const StudyArguments& arguments, const tradeoff::StudyOptions& options, double deadline,
                  const std::optional<tradeoff::Picked>& picked = {});
 /// "60s", "5m", "16ms" or "60" in seconds. Throws ConfigError that names `option`.
 double seconds_of(const std::string& text, const std::string& option);

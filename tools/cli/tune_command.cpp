@@ -12,6 +12,8 @@
 #include "program/failure.h"
 #include "program/interrupt.h"
 #include "program/output_files.h"
+#include "tradeoff/confirm.h"
+#include "tradeoff/runner.h"
 #include "tradeoff/tables.h"
 
 namespace mallow::cli {
@@ -24,63 +26,86 @@ struct TuneOptions {
   std::string write, out;
 };
 
-/// Share of the budget that the study gets; the run that confirms gets the rest.
-constexpr double k_study_share = 0.9;
+/// Share of the budget that the runs that confirm get.
+constexpr double k_confirm_share = 0.1;
 
-std::string described(const tradeoff::Study& study, const tradeoff::Row& row) {
-  return tradeoff::number(1e3 * row.frame_seconds()) + " ms a frame, " + tradeoff::number(study.error(row)) +
-         " h off";
+std::string described(const tradeoff::Study& study, const tradeoff::Picked& picked) {
+  const tradeoff::Row& row = study.rows[picked.row];
+  const std::size_t runs = row.seconds.size();
+  return tradeoff::number(1e3 * row.frame_seconds()) + " ms a frame (median of " + std::to_string(runs) +
+         (runs == 1 ? " run, " : " runs, ") + tradeoff::number(1e3 * row.least_frame_seconds()) + " to " +
+         tradeoff::number(1e3 * row.most_frame_seconds()) + "), " + tradeoff::number(study.error(row)) +
+         " h off" +
+         (picked.more > 0 ? "; run again " + tradeoff::number(picked.error) + " h off"
+                          : "; not run again, as the budget ended");
 }
 
-void tune(const TuneOptions& options, const Scene& scene, const tradeoff::StudyOptions& study_with,
-          const tradeoff::Limit& limit) {
-  const tradeoff::Study study = tradeoff::study(scene, study_with);
+/// What `tune` says of its pick.
+void print(const tradeoff::Study& study, const tradeoff::Picked& picked, const std::string& lines) {
   std::fputs(tradeoff::to_text(study).c_str(), stdout);
-  std::vector<Trade> trades = study.trades();
-  std::optional<Pick> pick;
-  tradeoff::Row again;
-  bool confirmed = false;
-  // What does not hold on a second run is no pick.
-  for (std::size_t tries = 0; tries < trades.size() && !confirmed; ++tries) {
-    const auto next = limit.pick(trades);
-    if (pick && (!next || !next->holds)) break;
-    pick = next;
-    if (!pick) break;
-    again = tradeoff::run_again(study, study.rows[pick->index].setting, study_with);
-    const double found = limit.is_time ? again.frame_seconds() : study.error(again);
-    confirmed = pick->holds && found <= limit.most;
-    if (!pick->holds) break;
-    if (!confirmed) trades[pick->index].cost = std::nan("");
-  }
-  if (!pick) throw program::RunFailure("no setting could be measured");
-  const tradeoff::Row& row = study.rows[pick->index];
-  std::printf("%s: %s: %s; on a second run %s\n", confirmed ? "pick" : "nearest", row.setting.name.c_str(),
-              described(study, row).c_str(), described(study, again).c_str());
-  if (!options.out.empty()) write_study(options.out, study, tradeoff::Picked{pick->index, confirmed, again});
-  const std::string lines = tradeoff::lines_to_paste(scene, row.setting.scene);
+  for (const std::string& text : picked.dropped) std::printf("dropped: %s\n", text.c_str());
+  std::printf("%s: %s: %s\n", picked.holds ? "pick" : "nearest", study.rows[picked.row].setting.name.c_str(),
+              described(study, picked).c_str());
   std::printf("%s", lines.empty() ? "# the scene as it is\n" : lines.c_str());
-  // What the study could not see is no promise: matter that falls tells nothing of how it lands.
-  if (study.frames < study.all_frames)
-    throw program::RunFailure(
-        "judged by the first " + std::to_string(study.frames) + " of " + std::to_string(study.all_frames) +
-        " frames alone, as the budget ended: give more by --budget, or less run.frames; "
-        "nothing is written");
   std::fflush(stdout);  // before what is told on the other stream
+}
+
+/// Throws RunFailure where the pick is not to be written.
+void require_pick(const TuneOptions& options, const tradeoff::Limit& limit, const tradeoff::Study& study,
+                  const tradeoff::Picked& picked) {
+  if (!limit.is_time && study.reference.differences.empty())
+    throw program::RunFailure(
+        "--error " + options.error +
+        " cannot be judged, as no halving of the steps fitted into the budget: give more "
+        "by --budget; nothing is written");
   if (!limit.is_time && study.reference_error() > limit.most)
     throw program::RunFailure(
         "--error " + options.error + " cannot be judged, as the reference itself is off by about " +
-        tradeoff::number(study.reference_error()) + " h: give more by --budget; nothing is written");
-  if (!confirmed)
-    throw program::RunFailure("no setting holds " +
-                              (limit.is_time ? "--frame " + options.frame : "--error " + options.error) +
-                              "; the nearest is " + row.setting.name + ", " + described(study, row));
+        tradeoff::number(study.reference_error()) + " h: ask for no less than that, or give " +
+        // More budget would be spent on more frames first.
+        (tradeoff::stretch(study).empty() ? "more by --budget" : "less run.frames, or far more by --budget") +
+        "; nothing is written");
+  if (!picked.holds)
+    throw program::RunFailure(
+        "no setting holds " + (limit.is_time ? "--frame " + options.frame : "--error " + options.error) +
+        "; the nearest is " + study.rows[picked.row].setting.name + ", " + described(study, picked));
+}
+
+/// What the user has to know of a pick that holds.
+void warn(const tradeoff::Limit& limit, const tradeoff::Study& study) {
+  if (!tradeoff::stretch(study).empty())
+    std::fprintf(
+        stderr,
+        "mallow: warning: judged by %s alone, which the budget carries: what comes later may cost and "
+        "err more; more --budget, or less run.frames, judges more\n",
+        tradeoff::stretch(study).c_str());
   if (!limit.is_time && study.reference_error() > 0.5 * limit.most)
     std::fprintf(stderr,
                  "mallow: warning: the reference itself is off by about %s h: more --budget tells more\n",
                  tradeoff::number(study.reference_error()).c_str());
-  if (!options.write.empty())
-    write_whole(options.write,
-                program::Cache::scene_text(fs::absolute(options.write).parent_path(), row.setting.scene));
+}
+
+void write(const fs::path& file, const tradeoff::Study& study, const tradeoff::Row& row) {
+  const std::string part = tradeoff::stretch(study);
+  write_whole(
+      file,
+      (part.empty() ? "" : "# " + row.setting.name + ": picked by mallow tune, judged by " + part + "\n") +
+          program::Cache::scene_text(fs::absolute(file).parent_path(), row.setting.scene));
+}
+
+void tune(const TuneOptions& options, const Scene& scene, const tradeoff::StudyOptions& study_with,
+          const tradeoff::Limit& limit) {
+  const double deadline = tradeoff::wall_clock() + study_with.budget;
+  tradeoff::Study study = tradeoff::study(scene, study_with);
+  const double film = film_share(options.study, !options.out.empty()) * study_with.budget;
+  const auto picked = tradeoff::confirm(study, limit, study_with, deadline - film);
+  if (!picked) throw program::RunFailure("no setting could be measured");
+  const tradeoff::Row& row = study.rows[picked->row];
+  print(study, *picked, tradeoff::lines_to_paste(scene, row.setting.scene));
+  if (!options.out.empty()) write_study(options.out, study, options.study, study_with, deadline, picked);
+  require_pick(options, limit, study, *picked);
+  warn(limit, study);
+  if (!options.write.empty()) write(options.write, study, row);
 }
 
 void run(const TuneOptions& options) {
@@ -91,7 +116,7 @@ void run(const TuneOptions& options) {
                                     : tradeoff::Limit{true, seconds_of(options.frame, "--frame")};
   const Scene scene = read_scene(options.study.scene);
   tradeoff::StudyOptions study_with = study_options(options.study, scene);
-  study_with.budget *= k_study_share;
+  study_with.kept = k_confirm_share + film_share(options.study, !options.out.empty());
   study_with.limit = limit;
   if (!options.write.empty()) {
     program::InputFiles(scene).refuse(options.write, "--write");
@@ -124,7 +149,10 @@ void add_tune_command(CLI::App& app) {
   command->footer(
       "Measures as 'mallow tradeoff' does, turns knobs on from the best setting as long as that gets better, "
       "picks,\n"
-      "and runs the pick once more. How well a surface follows its particles is not measured: a quality with "
+      "and runs the pick again: times are medians of all runs. A scene that is longer than the budget is "
+      "judged by\n"
+      "its first frames, and that is said. How well a surface follows its particles is not measured: a "
+      "quality with "
       "a coarser\n"
       "one is the cheaper for it, but with --no-surface.\n"
       "'mallow tradeoff --help' explains the columns.\n"

@@ -70,10 +70,14 @@ std::string missing_picture(const Cache& cache, int frame) {
 
 void make_film(const Cache& cache, const std::filesystem::path& film, int frames_per_second) {
   require_all_pictures(cache);
-  const int first = cache.image_frames().front();
+  make_film(cache.images_folder(), cache.image_frames().front(), film, frames_per_second);
+}
+
+void make_film(const std::filesystem::path& pictures, int first, const std::filesystem::path& film,
+               int frames_per_second) {
   write_whole(film, [&](const std::filesystem::path& beside) {
     const std::string name = std::filesystem::absolute(beside).string();  // ffmpeg runs in another folder
-    const int status = run_program(command_line(first, name, frames_per_second), cache.images_folder());
+    const int status = run_program(command_line(first, name, frames_per_second), pictures);
     if (status != 0) throw RunFailure("ffmpeg failed with exit status " + std::to_string(status));
   });
 }

@@ -16,5 +16,8 @@ std::string missing_picture(const Cache& cache, int frame);
 /// Joins the pictures of a run to a film (H.264), an MP4 file. Throws RunFailure where ffmpeg fails or a
 /// picture between two others is missing. The same pictures make the same bytes.
 void make_film(const Cache& cache, const std::filesystem::path& film, int frames_per_second);
+/// The same of the pictures frame_000000.png and so on of a folder, from `first` to the last that follows.
+void make_film(const std::filesystem::path& pictures, int first, const std::filesystem::path& film,
+               int frames_per_second);
 
 }  // namespace mallow::program

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "mallow/errors.h"
 #include "program/scene_changes.h"
@@ -36,8 +37,19 @@ Scene at_iterations(Scene scene, int iterations) {
   return scene;
 }
 
-/// Bodies that are boxes and balls with cells `factor` times as large, in the same box; nothing where there
-/// are others.
+/// How a shape or a mesh is filled with points; null for bodies that are not.
+Sampling* sampling_of(SceneBody& body) {
+  return std::visit(
+      [](auto& source) -> Sampling* {
+        if constexpr (requires { source.sampling; })
+          return &source.sampling;
+        else
+          return nullptr;
+      },
+      body.source);
+}
+
+/// Boxes, shapes and meshes with cells `factor` times as large; nothing where there are other bodies.
 std::optional<Scene> coarser(Scene scene, float factor) {
   if (!scene.emitters.empty() || scene.bodies.empty()) return std::nullopt;
   for (SceneBody& body : scene.bodies) {
@@ -48,14 +60,16 @@ std::optional<Scene> coarser(Scene scene, float factor) {
         const float size = static_cast<float>(before.count[a]) * before.spacing;
         box->count[a] = static_cast<int>(std::lround(size / box->spacing));
         if (box->count[a] < 2) return std::nullopt;
-        box->corner[static_cast<Eigen::Index>(a)] +=
-            0.5f * (size - static_cast<float>(box->count[a]) * box->spacing);
+        // In the middle of where it was, but never through the floor that it stands on.
+        if (a < 2)
+          box->corner[static_cast<Eigen::Index>(a)] +=
+              0.5f * (size - static_cast<float>(box->count[a]) * box->spacing);
       }
-    } else if (auto* ball = std::get_if<SphereSource>(&body.source)) {
-      if (ball->sampling.spacing) *ball->sampling.spacing *= factor;
-      if (ball->sampling.count)
-        *ball->sampling.count =
-            std::max(8, static_cast<int>(static_cast<float>(*ball->sampling.count) / std::pow(factor, 3.0f)));
+    } else if (Sampling* sampling = sampling_of(body)) {
+      if (sampling->spacing) *sampling->spacing *= factor;
+      if (sampling->count)
+        *sampling->count =
+            std::max(8, static_cast<int>(static_cast<float>(*sampling->count) / std::pow(factor, 3.0f)));
     } else {
       return std::nullopt;
     }
@@ -172,6 +186,23 @@ std::vector<Setting> turned(const Scene& scene, const Knob& knob, const std::vec
   return settings;
 }
 
+namespace {
+
+/// Where lines belong: the header of a table, or, as TOML has no name for one of several tables, a comment.
+std::string heading(const Scene& scene, const std::string& where) {
+  const std::size_t bracket = where.find('[');
+  if (bracket == where.npos) return "[" + where + "]\n";
+  const std::string table = where.substr(0, bracket);
+  const std::size_t index = std::stoul(where.substr(bracket + 1));
+  const std::string name = table == "material" && index < scene.materials.size()
+                               ? ", \"" + scene.materials[index].name + "\""
+                               : "";
+  return "# below the [[" + table + "]] that is number " + std::to_string(index + 1) + " in the file" + name +
+         ":\n";
+}
+
+}  // namespace
+
 std::string lines_to_paste(const Scene& scene, const Scene& setting) {
   std::string text, section;
   for (const program::SceneChange& change : program::scene_changes(scene, setting)) {
@@ -179,12 +210,8 @@ std::string lines_to_paste(const Scene& scene, const Scene& setting) {
     const std::string where = change.key.substr(0, dot);
     if (where != section) {
       section = where;
-      const std::size_t bracket = where.find('[');
       if (!text.empty()) text += '\n';
-      text += bracket == where.npos
-                  ? "[" + where + "]\n"
-                  : "# in [[" + where.substr(0, bracket) + "]] " +
-                        std::to_string(std::stoi(where.substr(bracket + 1)) + 1) + " of them\n";
+      text += heading(scene, where);
     }
     const std::string key = change.key.substr(dot + 1);
     text += change.now.empty() ? "# without " + key + "\n" : key + " = " + change.now + "\n";

@@ -12,7 +12,7 @@ namespace {
 
 using Of = double (*)(Simulation&, BodyId);
 
-const std::array<std::pair<const char*, Of>, 9> k_measures = {{
+const std::array<std::pair<const char*, Of>, 10> k_measures = {{
     {"height", [](Simulation& s, BodyId b) { return double(s.bounds(b).max.z() - s.bounds(b).min.z()); }},
     {"top", [](Simulation& s, BodyId b) { return double(s.bounds(b).max.z()); }},
     {"extent_x", [](Simulation& s, BodyId b) { return double(s.bounds(b).max.x() - s.bounds(b).min.x()); }},
@@ -20,6 +20,7 @@ const std::array<std::pair<const char*, Of>, 9> k_measures = {{
     {"center_x", [](Simulation& s, BodyId b) { return s.motion(b).center_of_mass.x(); }},
     {"center_y", [](Simulation& s, BodyId b) { return s.motion(b).center_of_mass.y(); }},
     {"center_z", [](Simulation& s, BodyId b) { return s.motion(b).center_of_mass.z(); }},
+    {"volume", [](Simulation& s, BodyId b) { return s.volume(b); }},
     {"speed", [](Simulation& s, BodyId b) { return s.motion(b).velocity.norm(); }},
     {"kinetic_energy", [](Simulation& s, BodyId b) { return s.motion(b).kinetic_energy; }},
 }};

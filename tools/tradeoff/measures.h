@@ -13,7 +13,7 @@ struct Measure {
   std::string name;
   std::function<double(Simulation&)> value;
 };
-/// "what(body)" or "what" of all bodies. simulation: of the scene, whose bodies the text may name by name or
+/// "what(body)". simulation: of the scene, whose bodies the text may name by name or
 /// number. Throws ConfigError that names what there is.
 Measure parse_measure(const std::string& text, const Simulation& simulation);
 

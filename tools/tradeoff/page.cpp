@@ -125,9 +125,23 @@ std::string table(const Study& study, std::optional<std::size_t> picked) {
   return html + "</table>\n";
 }
 
+/// Both at once: one film holds them, so they stay in step.
+std::string side_by_side(const Study& study, const SideBySide& film) {
+  if (film.file.empty()) return "<p>" + html_text(film.why) + "</p>\n";
+  const auto caption = [&](std::size_t row) {
+    return "<td>" + html_text(study.rows[row].setting.name) + ": " +
+           number(1e3 * study.rows[row].frame_seconds()) + " ms a frame, " +
+           number(study.error(study.rows[row])) + " h off</td>";
+  };
+  return "<h2>Side by side</h2>\n<video src=\"" + html_text(film.file) +
+         "\" controls loop muted autoplay></video>\n<table class=\"captions\"><tr>" + caption(0) +
+         caption(film.row) + "</tr></table>\n";
+}
+
 }  // namespace
 
-std::string to_page(const Study& study, std::optional<std::size_t> picked) {
+std::string to_page(const Study& study, std::optional<std::size_t> picked,
+                    const std::optional<SideBySide>& film) {
   const std::string name = std::filesystem::path(study.scene).filename().string();
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + html_text(name) +
@@ -139,11 +153,13 @@ std::string to_page(const Study& study, std::optional<std::size_t> picked) {
       "table { border-collapse: collapse; font-size: 13px; } td, th { padding: 3px 8px; "
       "text-align: left; border-bottom: 1px solid #ddd; vertical-align: top; }\n"
       "tr.front { background: #fdf0ee; } tr.picked { background: #e6f4e6; } pre { margin: 0; }\n"
+      "video, .captions { width: 100%; max-width: 968px; } .captions td { width: 50%; border: 0; }\n"
       "</style></head><body>\n<h1>" +
       html_text(name) + ": speed against accuracy</h1>\n";
   html += plot(study) + "<ul>\n";
   for (const std::string& remark : remarks(study)) html += "<li>" + html_text(remark) + "</li>\n";
-  html += "</ul>\n" + table(study, picked) + "<h2>What the columns mean</h2>\n<ul>\n";
+  html += "</ul>\n" + (film ? side_by_side(study, *film) : "") + table(study, picked) +
+          "<h2>What the columns mean</h2>\n<ul>\n";
   for (const std::string& line : column_help()) html += "<li>" + html_text(line) + "</li>\n";
   return html +
          "</ul>\n<p>In brackets: names in tradeoff.csv. Rows in red are on the front, the green one is the "

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <set>
 
 #include "program/failure.h"
@@ -10,15 +10,24 @@
 #include "program/machine.h"
 #include "render/viewport.h"
 #include "tradeoff/runner.h"
+#include "tradeoff/tables.h"
 
 namespace mallow::tradeoff {
 namespace {
 
 constexpr double k_reference_share = 0.5;  ///< of the budget
-constexpr double k_first_share = 0.06;     ///< that the scene as it is may take
-constexpr double k_settings_share = 0.7;   ///< by which first runs of settings have begun
-constexpr double k_search_share = 0.8;     ///< by which those that lead on from the best have begun
-constexpr int k_most_rounds = 8;           ///< of turning knobs on
+constexpr double k_first_share = 0.06;     ///< that the scene as it is may take, once it is built
+constexpr int k_handful = 4;               ///< frames that are worth to be judged by
+constexpr double k_handful_share = 0.1;    ///< that they may take
+/// Of the frames that the budget carries, where an error is to be held that needs a reference in shorter
+/// steps.
+constexpr double k_judged_share = 0.4;
+constexpr double k_fewest_builds = 12;    ///< of the scene that a study needs
+constexpr double k_settings_share = 0.7;  ///< by which first runs of settings have begun
+constexpr std::size_t k_few = 5;          ///< rows that are worth more than times of several runs
+constexpr double k_few_share = 0.95;      ///< by which first runs of so few have begun
+constexpr double k_search_share = 0.8;    ///< by which those that lead on from the best have begun
+constexpr int k_most_rounds = 8;          ///< of turning knobs on
 /// The reference is converged where its last halving moved particles by less than this share of what the
 /// scene as it is is off.
 constexpr double k_little = 0.1;
@@ -27,15 +36,7 @@ constexpr double k_chaos = 0.5;
 /// Below this order of convergence, halving the step leads nowhere.
 constexpr double k_no_order = 0.5;
 constexpr double k_grown = 1.25;  ///< see parts_again()
-constexpr double k_late = 0.75;
 constexpr float k_shortest_factor = 0.01f;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::ranges::sort(values);
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
 
 /// Whether the last halving moved particles farther than the one before, by more than chance.
 bool parts_again(const std::vector<double>& differences) {
@@ -76,47 +77,82 @@ class Maker {
   }
 
  private:
-  double left(double share = 1) const { return share * options_.budget - (wall_clock() - start_); }
+  double budget() const { return options_.budget * (1 - options_.kept); }
+  double end() const { return start_ + budget(); }
+  double left(double share = 1) const { return share * budget() - (wall_clock() - start_); }
+  /// What a run takes whose steps cost so many times those of the scene as it is: building costs the same
+  /// [s].
+  double expected(double cost) const {
+    const double building = std::min(plain_cost_, study_.rows.front().motion.other_seconds);
+    return building + cost * (plain_cost_ - building);
+  }
   void say(const std::string& what) const {
     if (options_.progress) options_.progress(what);
+  }
+
+  /// What the scene has, and what is to be measured of it.
+  void look() {
+    const double begin = wall_clock();
+    Simulation simulation = build(scene_, program::resolve_threads(options_.threads));
+    simulation.prepare();
+    building_ = wall_clock() - begin;
+    const SimulationInfo info = simulation.info();
+    traits_ = traits(info);
+    study_.scene = scene_.file.string();
+    study_.all_frames = std::max(1, scene_.run.frames);
+    study_.frame_time = frame_time(scene_, info);
+    steps_of_frame_ = std::max(1.0, study_.frame_time / static_cast<double>(info.longest_step));
+    runner_.emplace(options_, study_.all_frames, study_.frame_time);
+    for (const std::string& text : options_.measures) {
+      runner_->plan().measures.push_back(parse_measure(text, simulation).value);
+      study_.measures.push_back(text);
+    }
+    study_.threads = runner_->threads();
   }
 
   /// Begins with all frames; where they would take too long, as many as were reached are all.
   void run_plain() {
     say("the scene as it is");
-    std::vector<std::function<double(Simulation&)>> measures;
-    {
-      Simulation simulation = build(scene_, program::resolve_threads(options_.threads));
-      simulation.prepare();
-      const SimulationInfo info = simulation.info();
-      traits_ = traits(info);
-      study_.frame_time = frame_time(scene_, info);
-      for (const std::string& text : options_.measures) {
-        measures.push_back(parse_measure(text, simulation).value);
-        study_.measures.push_back(text);
-      }
+    look();
+    const auto run = [&](double share) {
+      const double begin = wall_clock();
+      Motion motion = runner_->run(scene_, {.running = share * budget(), .drawn = options_.surface});
+      plain_cost_ = wall_clock() - begin;
+      if (!motion.failure.empty()) throw program::RunFailure(motion.failure);
+      study_.frames = static_cast<int>(motion.frame_seconds.size());
+      return motion;
+    };
+    Motion motion = run(k_first_share);
+    const int fewest = std::min(k_handful, study_.all_frames);
+    if (study_.frames < fewest) {
+      if (plain_cost_ > left()) throw too_small(motion, fewest);
+      runner_->plan().frames = fewest;
+      motion = run(k_handful_share);
+      if (study_.frames < fewest) throw too_small(motion, fewest);
+    } else if (study_.frames < study_.all_frames) {
+      const bool is_error = options_.limit && !options_.limit->is_time;
+      const int reached =
+          is_error ? std::max(fewest, static_cast<int>(k_judged_share * study_.frames)) : study_.frames;
+      runner_->plan().frames = reached;
+      motion = run(1);  // with moments at its end
+      if (study_.frames < reached) throw too_small(motion, fewest);
     }
-    study_.scene = scene_.file.string();
-    study_.all_frames = std::max(1, scene_.run.frames);
-    runner_.emplace(options_, study_.all_frames, study_.frame_time);
-    runner_->plan().measures = std::move(measures);
-    study_.threads = runner_->threads();
-    const double begin = wall_clock();
-    Motion motion = runner_->run(scene_, begin + k_first_share * options_.budget, options_.surface);
-    if (!motion.failure.empty()) throw program::RunFailure(motion.failure);
-    study_.frames = static_cast<int>(motion.frame_seconds.size());
-    if (study_.frames == 0)
-      throw program::RunFailure("the budget is too small: one frame takes longer than " +
-                                std::to_string(k_first_share * options_.budget) +
-                                " s; give more by --budget");
-    if (study_.frames < study_.all_frames) {
-      runner_->plan().frames = study_.frames;
-      motion =
-          runner_->run(scene_, wall_clock() + options_.budget, options_.surface);  // with moments at its end
-    }
-    plain_cost_ = wall_clock() - begin;
-    if (study_.frames < study_.all_frames) plain_cost_ *= 0.5;
     add_row({.name = "as it is", .scene = scene_}, std::move(motion));
+  }
+
+  /// What to say where not even `fewest` frames were reached.
+  program::RunFailure too_small(const Motion& motion, int fewest) const {
+    // The frame that was not ended is in no time of the motion.
+    const double running = std::max(plain_cost_ - building_, k_first_share * budget());
+    const double step = running / static_cast<double>(std::max<std::int64_t>(1, motion.steps));
+    const double frame = step * steps_of_frame_;
+    const double needed = std::max(fewest * frame / k_handful_share, k_fewest_builds * (building_ + frame)) /
+                          (1 - options_.kept);
+    const double digit = std::pow(10, std::floor(std::log10(needed)) - 1);
+    return program::RunFailure(
+        "the budget is too small: a frame takes about " + number(frame, 2) + " s, and building the scene " +
+        number(building_, 2) + " s; to be judged by its first " + std::to_string(fewest) +
+        " frames this scene needs about --budget " + number(digit * std::ceil(needed / digit), 6) + "s");
   }
 
   void add_row(const Setting& setting, Motion motion) {
@@ -131,13 +167,15 @@ class Maker {
     Reference& reference = study_.reference;
     const bool is_finest = print_scene(finest(scene_, 1)) == print_scene(scene_);
     const double begin = wall_clock();
-    double factor = 1, cost = plain_cost_;
+    const std::vector<double>& drawing = study_.rows.front().motion.draw_seconds;
+    double factor = 1, cost = plain_cost_ - std::accumulate(drawing.begin(), drawing.end(), 0.0);
     Motion before = is_finest ? study_.rows.front().motion : run_finest(1);
     if (!is_finest) cost = wall_clock() - begin;
+    const double building = std::min(cost, before.other_seconds);  // of which shorter steps need no more
     reference.factors.push_back(1);
     reference.motion = before;
     while (static_cast<float>(factor) * scene_.solver.time_step_factor > 2 * k_shortest_factor &&
-           2 * cost < left(k_reference_share)) {
+           2 * cost - building < left(k_reference_share)) {
       factor /= 2;
       const double started = wall_clock();
       say("reference, steps of 1/" + std::to_string(static_cast<int>(1 / factor)));
@@ -168,7 +206,7 @@ class Maker {
   }
 
   Motion run_finest(double factor) {
-    return runner_->run(finest(scene_, static_cast<float>(factor)), start_ + options_.budget, false);
+    return runner_->run(finest(scene_, static_cast<float>(factor)), {.deadline = end()});
   }
 
   void run_settings() {
@@ -176,7 +214,8 @@ class Maker {
     for (Setting& setting : settings_around(scene_, traits_)) settings.push_back(std::move(setting));
     for (const Setting& setting : settings) {
       // The last bit is still to come, which is one more run.
-      if (setting.cost * plain_cost_ + plain_cost_ > left(k_settings_share))
+      const bool few = study_.rows.size() < k_few || options_.repeats == 1;
+      if (expected(setting.cost) + expected(1) > left(few ? k_few_share : k_settings_share))
         study_.left_out.push_back(setting.name);
       else
         run_setting(setting);
@@ -186,7 +225,7 @@ class Maker {
 
   void run_setting(const Setting& setting) {
     say(setting.name);
-    Motion motion = runner_->run(setting.scene, start_ + options_.budget, options_.surface);
+    Motion motion = runner_->run(setting.scene, {.deadline = end(), .drawn = options_.surface});
     if (motion.failure.empty() && static_cast<int>(motion.frame_seconds.size()) == study_.frames)
       add_row(setting, std::move(motion));
     else if (motion.failure.empty())
@@ -208,18 +247,25 @@ class Maker {
       if (!best || !turned.insert(best->index).second) return;
       const Setting from = study_.rows[best->index].setting;
       for (const Setting& setting : settings_from(from, traits_))
-        if (setting.cost * plain_cost_ < left(k_search_share) &&
-            known.insert(print_scene(setting.scene)).second)
+        if (expected(setting.cost) < left(k_search_share) && known.insert(print_scene(setting.scene)).second)
           run_setting(setting);
     }
   }
 
   void run_last_bit() {
+    study_.no_last_bit = "the budget was too small to move one position by its last bit";
     if (plain_cost_ > left()) return;
     say("one position moved by its last bit");
     const Motion& plain = study_.rows.front().motion;
-    const Motion moved = runner_->run(scene_, start_ + options_.budget, false, true);
+    LastBit last_bit;
+    const Motion moved = runner_->run(scene_, {.deadline = end(), .last_bit = &last_bit});
     if (!moved.failure.empty() || moved.moments.size() != plain.moments.size()) return;
+    if (!last_bit.begin() || *last_bit.begin() > k_late * study_.frames * study_.frame_time) {
+      study_.no_last_bit = last_bit.begin() ? "there was nothing to be moved by its last bit before " +
+                                                  number(*last_bit.begin()) + " s"
+                                            : "there was nothing to be moved by its last bit";
+      return;
+    }
     study_.last_bit = motion_error(moved, plain);
     study_.last_bit_late = motion_error(moved, plain, k_late);
   }
@@ -235,7 +281,7 @@ class Maker {
         const double cost = row.motion.other_seconds + row.seconds.front() * study_.frames +
                             row.drawing.front() * static_cast<double>(row.motion.draw_seconds.size());
         if (1.2 * cost > left()) continue;
-        const Motion motion = runner_->run(row.setting.scene, start_ + options_.budget, options_.surface);
+        const Motion motion = runner_->run(row.setting.scene, {.deadline = end(), .drawn = options_.surface});
         if (static_cast<int>(motion.frame_seconds.size()) != study_.frames) continue;
         row.seconds.push_back(motion.seconds_per_frame());
         row.drawing.push_back(motion.draw_seconds_per_frame());
@@ -243,23 +289,29 @@ class Maker {
     }
   }
 
-  void judge() {
+  /// The errors of rows that have none yet: those of others stay, as the reference does.
+  void compare() {
     const Motion& reference = study_.reference.motion;
-    const PixelOf pixel = camera_of(scene_, study_.rows.front().motion);
-    std::vector<double> errors;  // of the settings that any study has, wherever a search led
-    for (Row& row : study_.rows) {
-      row.error = motion_error(row.motion, reference, 0, pixel);
-      row.late = motion_error(row.motion, reference, k_late, pixel);
-      row.on_front = false;
-      if (errors.size() < listed_) errors.push_back(row.error.rms);
+    if (!pixel_) pixel_ = camera_of(scene_, study_.rows.front().motion);
+    for (; compared_ < study_.rows.size(); ++compared_) {
+      Row& row = study_.rows[compared_];
+      row.error = motion_error(row.motion, reference, 0, pixel_);
+      row.late = motion_error(row.motion, reference, k_late, pixel_);
     }
+  }
+
+  void judge() {
+    compare();
+    std::vector<double> errors;  // of the settings that any study has, wherever a search led
+    for (const Row& row : study_.rows)
+      if (errors.size() < listed_) errors.push_back(row.error.rms);
     const double typical = k_chaos * median(errors);
     const Reference& found = study_.reference;
     const bool converges =
         found.differences.size() < 2 || found.order.value_or(1) > k_no_order || found.error < typical;
     study_.parts = study_.last_bit && study_.last_bit->rms >= typical;
     study_.chaotic = typical > 0 && (study_.parts || !converges);
-    for (const std::size_t i : pareto_front(study_.trades())) study_.rows[i].on_front = true;
+    mark_front(study_);
   }
 
   const Scene& scene_;
@@ -269,41 +321,17 @@ class Maker {
   SceneTraits traits_;
   std::size_t listed_ = 0;  ///< rows before any search
   double plain_cost_ = 0;   ///< wall time of a run as it is [s]
+  double steps_of_frame_ = 1;
+  double building_ = 0;  ///< wall time [s]
+  PixelOf pixel_;
+  std::size_t compared_ = 0;  ///< rows that have their errors
   Study study_;
 };
 
 }  // namespace
 
-double Row::median_seconds() const {
-  return median(seconds);
-}
-double Row::median_drawing() const {
-  return median(drawing);
-}
-
-double Row::least_frame_seconds() const {
-  return std::ranges::min(seconds) + std::ranges::min(drawing);
-}
-
-std::vector<Trade> Study::trades() const {
-  std::vector<Trade> trades;
-  for (const Row& row : rows) trades.push_back({row.least_frame_seconds(), error(row)});
-  return trades;
-}
-
 Study study(const Scene& scene, const StudyOptions& options) {
   return Maker(scene, options).make();
-}
-
-Row run_again(const Study& study, const Setting& setting, const StudyOptions& options) {
-  Runner runner(options, study.frames, study.frame_time);
-  Row row{.setting = setting,
-          .motion = runner.run(setting.scene, std::numeric_limits<double>::infinity(), options.surface)};
-  row.seconds.push_back(row.motion.seconds_per_frame());
-  row.drawing.push_back(row.motion.draw_seconds_per_frame());
-  row.error = motion_error(row.motion, study.reference.motion);
-  row.late = motion_error(row.motion, study.reference.motion, k_late);
-  return row;
 }
 
 }  // namespace mallow::tradeoff

@@ -11,6 +11,9 @@
 
 namespace mallow::tradeoff {
 
+/// Share of the moments that late errors pass over: they are of the last quarter.
+constexpr double k_late = 0.75;
+
 /// What a setting has to hold.
 struct Limit {
   bool is_time = false;
@@ -24,7 +27,8 @@ struct Limit {
 
 /// What is to be found out.
 struct StudyOptions {
-  double budget = 60;  ///< wall time of all runs [s], > 0
+  double budget = 60;  ///< wall time of all [s], > 0
+  double kept = 0;     ///< share of it, in [0, 1), that is left to what follows the study
   int threads = 0;     ///< as in SolverConfig
   int repeats = 9;     ///< timed runs of a setting, at most, >= 1
   bool surface = true;
@@ -51,6 +55,7 @@ struct Row {
   double median_drawing() const;  ///< [s]
   double frame_seconds() const { return median_seconds() + median_drawing(); }
   double least_frame_seconds() const;
+  double most_frame_seconds() const;
 };
 
 /// The reference and how it was found.
@@ -68,8 +73,10 @@ struct Reference {
 
 struct Study {
   std::string scene;
-  int frames = 0, all_frames = 0;  ///< run of those that the scene has
-  double frame_time = 0;           ///< [s]
+  /// Those that settings are judged by, and those that the scene has: the budget may carry no more than the
+  /// first of them.
+  int frames = 0, all_frames = 0;
+  double frame_time = 0;  ///< [s]
   int threads = 1;
   double spent = 0;  ///< [s]
   Reference reference;
@@ -79,6 +86,7 @@ struct Study {
   bool chaotic = false;
   bool parts = false;                        ///< the former of the two
   std::optional<MotionError> last_bit;       ///< what moving one position by its last bit does
+  std::string no_last_bit;                   ///< why that is not known
   std::optional<MotionError> last_bit_late;  ///< the same in the last quarter
   std::vector<std::string> left_out;         ///< settings that the budget did not reach
   std::vector<std::string> failed;           ///< settings, each with why
@@ -89,14 +97,22 @@ struct Study {
   double error(const Row& row) const { return chaotic ? row.late.shape() : row.error.rms; }
   /// What the reference is off itself, by the same measure [h].
   double reference_error() const { return chaotic ? reference.late_shape : reference.error; }
-  /// Cost: of a frame, the least of its runs [s]. What other programs take away is no part of a setting.
+  /// Cost: of a frame, the median of its runs [s].
   std::vector<Trade> trades() const;
 };
 
-/// Runs a scene at settings around its own. Throws what building the scene as it is throws, and RunFailure
-/// where it cannot be run.
+/// Runs a scene at settings around its own. Where the budget does not carry all its frames, the first of
+/// them are all. Throws what building the scene as it is throws, and RunFailure where it cannot be run, or
+/// the budget carries less than a handful of frames.
 Study study(const Scene& scene, const StudyOptions& options);
-/// One more run of a setting, as those of the study were; error and time of it.
-Row run_again(const Study& study, const Setting& setting, const StudyOptions& options);
+/// One more run of a setting, as those of the study were; error and time of it. deadline: wall_clock() at
+/// which there is nothing.
+std::optional<Row> run_again(const Study& study, const Setting& setting, const StudyOptions& options,
+                             double deadline);
+/// Says of each row whether it is on the front.
+void mark_front(Study& study);
+double median(std::vector<double> values);  ///< 0 of none
+/// "the first 39 of 150 frames", or nothing where settings were judged by all.
+std::string stretch(const Study& study);
 
 }  // namespace mallow::tradeoff

@@ -62,7 +62,7 @@ std::string reference_remark(const Reference& reference) {
 std::string chaos_remark(const Study& study) {
   const std::string moved = study.last_bit ? "one position moved by its last bit moves particles by " +
                                                  number(study.last_bit->rms) + " h"
-                                           : "the budget was too small to move one position by its last bit";
+                                           : study.no_last_bit;
   if (!study.chaotic)
     return (study.last_bit ? "not chaotic: " : "whether it is chaotic is not known: ") + moved;
   // What the last bit does not move may still go elsewhere with each step length, as where contacts differ.
@@ -93,6 +93,9 @@ std::vector<std::size_t> by_cost(const Study& study) {
 
 std::vector<std::string> remarks(const Study& study) {
   std::vector<std::string> lines;
+  if (!stretch(study).empty())
+    lines.push_back("judged by " + stretch(study) +
+                    ": the budget carries no more, so what comes later is not judged");
   lines.push_back(std::to_string(study.frames) + " of " + std::to_string(study.all_frames) + " frames, " +
                   std::to_string(study.threads) + (study.threads == 1 ? " thread, " : " threads, ") +
                   number(study.spent) + " s in all");
@@ -150,13 +153,15 @@ std::vector<std::string> column_help() {
       "volume: of the particles' volume, as a share of the reference's",
       "energy: of kinetic energy and that of gravity and elasticity in sum, as a share of the reference's "
       "largest kinetic energy",
+      "frames, all_frames: the first so many frames, of all that the scene has, are judged",
       "on_front, *: nothing that costs no more is as near to the reference",
-      "those of --measure: root mean square error over moments, in m, m/s or J"};
+      "those of --measure: root mean square error over moments, in m, m³, m/s or J"};
 }
 
 std::string to_csv(const Study& study) {
   std::string text =
-      "setting,on_front,runs,steps_ms,steps_ms_least,steps_ms_most,surface_ms,frame_ms,error_h,median_h,rms_"
+      "setting,frames,all_frames,on_front,runs,steps_ms,steps_ms_least,steps_ms_most,surface_ms,frame_ms,"
+      "error_h,median_h,rms_"
       "h,"
       "worst_h,median_px,worst_px,height_h,spread_h,center_h,late_shape_h,volume,energy";
   for (const std::string& measure : study.measures) text += ',' + program::csv_quoted(measure);
@@ -164,8 +169,10 @@ std::string to_csv(const Study& study) {
   for (const std::size_t i : by_cost(study)) {
     const Row& row = study.rows[i];
     const Range times = range(row);
-    text += program::csv_quoted(row.setting.name) + (row.on_front ? ",1," : ",0,") +
-            std::to_string(row.seconds.size());
+    text += program::csv_quoted(row.setting.name);
+    for (const int count : {study.frames, study.all_frames, row.on_front ? 1 : 0})
+      text += ',' + std::to_string(count);
+    text += ',' + std::to_string(row.seconds.size());
     for (const double value :
          {1e3 * row.median_seconds(), 1e3 * times.least, 1e3 * times.most, 1e3 * row.median_drawing(),
           1e3 * row.frame_seconds(), study.error(row), row.error.median, row.error.rms, row.error.worst})
@@ -220,8 +227,10 @@ std::string to_json(const Study& study, const std::optional<Picked>& picked) {
   if (picked)
     json["pick"] = {{"setting", study.rows[picked->row].setting.name},
                     {"holds", picked->holds},
-                    {"frame_seconds", picked->again.frame_seconds()},
-                    {"error_h", study.error(picked->again)}};
+                    {"frame_seconds", study.rows[picked->row].frame_seconds()},
+                    {"error_h", picked->error},
+                    {"run_again", picked->more},
+                    {"dropped", picked->dropped}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "tradeoff/confirm.h"
 #include "tradeoff/study.h"
 
 namespace mallow::tradeoff {
@@ -15,12 +16,6 @@ std::vector<std::string> remarks(const Study& study);
 std::vector<std::string> column_help();
 /// A row for each setting.
 std::string to_csv(const Study& study);
-/// What `mallow tune` settled on.
-struct Picked {
-  std::size_t row = 0;
-  bool holds = false;  ///< false: the nearest
-  Row again;           ///< a second run of it
-};
 std::string to_json(const Study& study, const std::optional<Picked>& picked = {});
 /// Indices of rows, cheapest first.
 std::vector<std::size_t> by_cost(const Study& study);

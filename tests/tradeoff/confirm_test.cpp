@@ -1,0 +1,106 @@
+#include "tradeoff/confirm.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tradeoff/tables.h"
+
+namespace mallow::confirm_test {
+
+constexpr double k_never = std::numeric_limits<double>::infinity();
+
+/// A jelly cube that hangs from its top and swings.
+Scene scene() {
+  return parse_scene(R"(
+[solver]
+time_step = 0.15
+[[material]]
+name = "jelly"
+elastic_time_step = 0.3
+[[body]]
+material = "jelly"
+box = { count = [4, 4, 4], spacing = 1.0, corner = [0.0, 0.0, 0.0] }
+[[pin]]
+box = { min = [0.0, 0.0, 3.0], max = [4.0, 4.0, 4.0] }
+[run]
+frames = 10
+frame_time = 0.6
+)",
+                     "scene.toml");
+}
+
+const tradeoff::StudyOptions k_options{.budget = 2, .threads = 1, .repeats = 1, .surface = false};
+
+/// A study whose settings have times that were not measured [s]: what a run more takes is far less.
+tradeoff::Study timed(std::vector<std::vector<double>> seconds) {
+  tradeoff::Study study = tradeoff::study(scene(), k_options);
+  study.rows.resize(seconds.size(), study.rows.front());
+  for (std::size_t i = 0; i < seconds.size(); ++i) {
+    study.rows[i].seconds = seconds[i];
+    study.rows[i].drawing.assign(seconds[i].size(), 0);
+    study.rows[i].setting.name = "row " + std::to_string(i);
+    study.rows[i].error.rms = 0.1 * static_cast<double>(i + 1);
+  }
+  study.chaotic = false;
+  return study;
+}
+
+TEST(tradeoff_confirm, time_is_the_median_of_all_runs_and_not_the_least) {
+  // The first is the most accurate, and was fast enough once.
+  tradeoff::Study study = timed({{9, 0.5, 8, 7, 6, 9, 8}, {0.9, 0.8, 0.7, 0.9, 0.9, 0.8, 30}});
+  const auto picked = tradeoff::confirm(study, {.is_time = true, .most = 1}, k_options, k_never);
+  ASSERT_TRUE(picked);
+  EXPECT_EQ(picked->row, 1u);
+  EXPECT_TRUE(picked->holds);
+  EXPECT_EQ(picked->more, 3u);
+  EXPECT_EQ(study.rows[1].seconds.size(), 10u) << "one slow run takes away no pick";
+  ASSERT_EQ(picked->dropped.size(), 1u);
+  EXPECT_EQ(
+      picked->dropped.front(),
+      "row 0: 8e+03 ms a frame in the median of 7 runs (500 ms to 9e+03 ms), where 1e+03 ms are allowed; "
+      "0.1 h off");
+}
+
+TEST(tradeoff_confirm, pick_that_is_too_slow_when_run_again_is_dropped_and_that_is_said) {
+  // A frame takes far longer than the first claims; and far less than the second's.
+  tradeoff::Study study = timed({{1e-9}, {1e-10}});
+  const auto picked = tradeoff::confirm(study, {.is_time = true, .most = 1e-8}, k_options, k_never);
+  ASSERT_TRUE(picked);
+  EXPECT_FALSE(picked->holds);
+  ASSERT_EQ(picked->dropped.size(), 2u);
+  EXPECT_TRUE(picked->dropped[0].starts_with("row 0: ")) << picked->dropped[0];
+  EXPECT_NE(picked->dropped[0].find("in the median of 4 runs (1e-06 ms to "), std::string::npos)
+      << picked->dropped[0];
+}
+
+TEST(tradeoff_confirm, what_the_budget_no_longer_reaches_is_picked_by_the_study_alone) {
+  tradeoff::Study study = timed({{0.9, 0.8, 0.7}});
+  const auto picked = tradeoff::confirm(study, {.is_time = true, .most = 1}, k_options, 0);
+  ASSERT_TRUE(picked);
+  EXPECT_TRUE(picked->holds);
+  EXPECT_EQ(picked->more, 0u);
+}
+
+TEST(tradeoff_confirm, pick_by_error_has_the_limit_between_it_and_what_is_cheaper) {
+  tradeoff::Study study = tradeoff::study(scene(), k_options);
+  const auto row = [&](const std::string& name) {
+    return static_cast<std::size_t>(
+        std::ranges::find(study.rows, name, [](const auto& r) { return r.setting.name; }) -
+        study.rows.begin());
+  };
+  const std::size_t plain = row("as it is"), longer = row("time_step_factor x 2");
+  ASSERT_LT(longer, study.rows.size());
+  // What a setting costs is no part of this: longer steps are the cheaper ones.
+  for (std::size_t i = 0; i < study.rows.size(); ++i)
+    study.rows[i].seconds = {i == longer ? 1.0 : i == plain ? 2.0 : 3.0};
+  const double between = 0.5 * (study.error(study.rows[plain]) + study.error(study.rows[longer]));
+  const auto picked = tradeoff::confirm(study, {.most = between}, k_options, k_never);
+  ASSERT_TRUE(picked && picked->holds);
+  EXPECT_EQ(study.rows[picked->row].setting.name, "as it is") << tradeoff::to_text(study);
+  EXPECT_EQ(picked->error, study.error(study.rows[plain])) << "the same bits";
+  EXPECT_LT(picked->error, between);
+}
+
+}  // namespace mallow::confirm_test
