@@ -56,7 +56,7 @@ int run_program(std::vector<std::string> arguments, const std::filesystem::path&
   return exit_status(status);
 }
 
-int run_logged(std::vector<std::string> arguments, const std::filesystem::path& log) {
+int run_logged(std::vector<std::string> arguments, const std::filesystem::path& log, AtEnd at_end) {
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
@@ -66,7 +66,7 @@ int run_logged(std::vector<std::string> arguments, const std::filesystem::path& 
   int status = 0;
   for (bool asked = false; ::waitpid(child, &status, asked ? 0 : WNOHANG) == 0;) {
     ::usleep(2000);
-    if (interrupted() == 0) continue;
+    if (interrupted() == 0 || at_end == AtEnd::wait) continue;
     ::kill(child, SIGTERM);
     asked = true;
   }

@@ -1,6 +1,9 @@
 #include "program/machine.h"
 
+#include <sched.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -36,8 +39,19 @@ int most_threads() {
   return static_cast<int>(range_of(&SolverConfig::threads).highest);
 }
 
+int own_processors() {
+  // --cpus-per-task where the job asked for it; else what the job has of this machine.
+  for (const char* name : {"SLURM_CPUS_PER_TASK", "SLURM_CPUS_ON_NODE"}) {
+    const char* text = std::getenv(name);
+    if (const int count = text ? std::atoi(text) : 0; count > 0) return std::min(count, most_threads());
+  }
+  cpu_set_t allowed;
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
+  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
 int resolve_threads(int threads) {
-  return threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return threads > 0 ? threads : own_processors();
 }
 
 std::size_t proc_bytes(const char* file, const std::string& line) {
