@@ -90,6 +90,19 @@ TEST_F(sweep_by_parallel, names_hosts_that_it_cannot_reach) {
       << log();
 }
 
+TEST_F(sweep_by_parallel, ends_its_tasks_where_it_is_told_to_end) {
+  if (!has_parallel()) GTEST_SKIP() << k_no_parallel;
+  write_spec(20'000);
+  Running running({"sweep", spec_, "--out", at("out"), "--on", "parallel", "--jobs", "2"});
+  while (shell("ls out/points/*/series.csv >/dev/null 2>&1") != 0 && running.alive())
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  running.send(SIGTERM);
+  const Outcome outcome = running.wait();
+  EXPECT_EQ(outcome.exit_code, 128 + SIGTERM);
+  EXPECT_NE(outcome.err.find("the same command goes on with what is left"), std::string::npos) << outcome.err;
+  EXPECT_EQ(shell("pgrep -f \"[r]un .*$F/out/points\" >/dev/null"), 1) << "nothing runs on";
+}
+
 TEST_F(sweep_by_parallel, draws_takes_and_writes_frames_with_the_bits_of_one_process) {
   if (!has_parallel()) GTEST_SKIP() << k_no_parallel;
   ASSERT_EQ(run({"--out", at("one"), "--frames", "11"}).exit_code, 0);

@@ -194,6 +194,14 @@ TEST_F(sweep_runs, of_a_command_in_point_json_give_its_row) {
   EXPECT_EQ(read_text(at("all/points/00004/series.csv")), before);
 }
 
+TEST_F(sweep_runs, take_the_processors_of_the_slot_that_slurm_gives) {
+  write_spec("[1]", 1);
+  ::setenv("SLURM_CPUS_PER_TASK", "1", 1);
+  sweep("out", {"--jobs", "1"});
+  ::unsetenv("SLURM_CPUS_PER_TASK");
+  EXPECT_EQ(read_json(at("out/points/00000/report.json")).at("threads"), 1);
+}
+
 TEST_F(sweep_runs, have_a_folder_to_themselves_until_they_end_however_that_comes) {
   write_spec("[1]", 400);
   Running running({"sweep", spec_, "--out", at("out"), "--jobs", "1"});

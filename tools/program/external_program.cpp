@@ -94,6 +94,11 @@ int run_logged(std::vector<std::string> arguments, const std::filesystem::path& 
     end.wait_a_little();
     if (interrupted() == 0 || at_end == AtEnd::wait) continue;
     ::kill(child, SIGTERM);
+    if (at_end == AtEnd::end_tasks) {
+      constexpr int k_microseconds = 200'000;  // two signals that come together are one
+      ::usleep(k_microseconds);
+      ::kill(child, SIGTERM);
+    }
     asked = true;
   }
   return exit_status(status);

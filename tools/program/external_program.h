@@ -15,8 +15,9 @@ bool is_installed(const std::string& program);
 int run_program(std::vector<std::string> arguments, const std::filesystem::path& folder);
 /// What becomes of it where this program is asked to end.
 enum class AtEnd {
-  end,   ///< it is asked too
-  wait,  ///< it is waited for
+  end,        ///< it is asked too
+  end_tasks,  ///< it is asked twice: GNU parallel lets its tasks run on at the first time
+  wait,       ///< it is waited for
 };
 /// The same here, with all that it says in a file.
 int run_logged(std::vector<std::string> arguments, const std::filesystem::path& log,

@@ -40,14 +40,16 @@ int most_threads() {
 }
 
 int own_processors() {
+  cpu_set_t allowed;
+  const bool is_known = ::sched_getaffinity(0, sizeof allowed, &allowed) == 0;
+  const int processors =
+      std::max(1, is_known ? CPU_COUNT(&allowed) : static_cast<int>(std::thread::hardware_concurrency()));
   // --cpus-per-task where the job asked for it; else what the job has of this machine.
   for (const char* name : {"SLURM_CPUS_PER_TASK", "SLURM_CPUS_ON_NODE"}) {
     const char* text = std::getenv(name);
-    if (const int count = text ? std::atoi(text) : 0; count > 0) return std::min(count, most_threads());
+    if (const int count = text ? std::atoi(text) : 0; count > 0) return std::min(count, processors);
   }
-  cpu_set_t allowed;
-  if (::sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
-  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return processors;
 }
 
 int resolve_threads(int threads) {

@@ -144,12 +144,14 @@ std::size_t most_slurm_tasks(const Elsewhere& where) {
 std::string run_by_parallel(const Tasks& tasks, const Elsewhere& where) {
   require("parallel", "parallel");
   const fs::path list = write_tasks(tasks, where);
-  std::vector<std::string> all{"parallel", "--will-cite", "--workdir", fs::current_path().string()};
+  // Tasks that are told to end have ten seconds for the step that they are at.
+  std::vector<std::string> all{"parallel",  "--will-cite",       "--workdir", fs::current_path().string(),
+                               "--termseq", "TERM,10000,KILL,25"};
   if (where.jobs > 0) all.insert(all.end(), {"--jobs", std::to_string(where.jobs)});
   if (!where.hosts.empty()) all.insert(all.end(), {"--sshloginfile", where.hosts});
   all.insert(all.end(), {program::shell_line(tasks.command) + " {}", "::::", list.string()});
   const fs::path log = where.folder / "parallel.txt";
-  program::run_logged(all, log);
+  program::run_logged(all, log, program::AtEnd::end_tasks);
   if (program::interrupted()) end_by_signal("");
   return said_of_hosts(log);
 }
