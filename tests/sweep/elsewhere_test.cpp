@@ -67,7 +67,7 @@ TEST_F(sweep_by_parallel, gives_the_table_of_a_serial_one_also_where_a_task_is_k
   // The first run of a point that is seen is killed.
   EXPECT_EQ(
       shell("(until pkill -KILL -f \"[r]un .*$F/out/points\" && touch killed || [ -e stop ]; do sleep 0.01; "
-            "done) & \"$M\" sweep \"$S\" --out \"$F/out\" --on parallel --jobs 2 >log.txt 2>&1; status=$?; "
+            "done) & \"$M\" sweep \"$S\" --out \"$F/out\" --on parallel --jobs 2 --points-per-task 4 >log.txt 2>&1; status=$?; "
             "touch stop; wait; exit $status"),
       0);
   ASSERT_TRUE(fs::exists(at("killed")));
