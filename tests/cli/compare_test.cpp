@@ -116,6 +116,39 @@ TEST_F(cli_compare, takes_frames_of_particles_alone) {
   EXPECT_EQ(compare("x.ply", "x.ply", {"--spacing", "1"}).exit_code, 0);
 }
 
+TEST_F(cli_compare, says_where_two_samplings_of_one_body_are_compared) {
+  make_runs();
+  std::string scene = read_text(scene_);
+  scene.replace(scene.find("count = [5, 5, 5], spacing = 1.0"), 32, "count = [6, 6, 6], spacing = 0.8");
+  write("finer.toml", scene);
+  ASSERT_EQ(
+      run_mallow({"run", at("finer.toml"), "--no-images", "--frames", "1", "--out", at("finer")}).exit_code,
+      0);
+  const Outcome outcome = compare("a", "finer");
+  EXPECT_NE(outcome.err.find(
+                "are of different bodies: particles of cube are 1.000000 m apart in A and 0.800000 m in B"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(compare("a", "b").err, "");
+}
+
+TEST_F(cli_compare, takes_a_picture_of_where_they_differ_most) {
+  make_runs();
+  move("b", 2, 77, 0.25f);
+  move("b", 3, 12, 0.5f);
+  const Outcome outcome = compare("a", "b", {"--picture", at("most.png")});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.err.find("most.png: frame 3 of B, from grey (as in A) to red (0.5 h from there)"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(read_text(at("most.png")).substr(1, 3), "PNG");
+  ASSERT_EQ(compare("a", "b", {"--picture", at("again.png")}).exit_code, 1);
+  EXPECT_TRUE(read_text(at("most.png")) == read_text(at("again.png")));
+  ASSERT_EQ(compare("a", "a", {"--picture", at("same.png")}).exit_code, 0);
+  EXPECT_FALSE(read_text(at("most.png")) == read_text(at("same.png"))) << "one ball is red";
+  EXPECT_EQ(compare("a", "b", {"--picture", at("most.jpg")}).exit_code, 2);
+}
+
 TEST_F(cli_compare, refuses_what_cannot_be_compared) {
   make_runs();
   const auto refused = [&](const Outcome& outcome, const std::string& why) {

@@ -61,7 +61,6 @@ TEST_F(sweep_runs, of_one_point_alone_give_its_row) {
   EXPECT_FALSE(fs::exists(at("alone/table.csv")));
   const auto alone = lines(sweep("alone"));
   EXPECT_EQ(alone[5], rows[5]);
-  // By hand, from the command that its point.json has.
   EXPECT_EQ(read_text(at("alone/points/00004/series.csv")), read_text(at("all/points/00004/series.csv")));
 }
 
@@ -183,6 +182,129 @@ TEST_F(sweep_runs, refuse_what_they_cannot_mean) {
   EXPECT_FALSE(fs::exists(at("plot"))) << "before anything is run";
   write("key.toml", read_text(spec_).replace(read_text(spec_).find("].alpha"), 7, "].alhpa"));
   refused({"sweep", at("key.toml"), "--out", at("key")}, "did you mean 'alpha'?");
+}
+
+TEST_F(sweep_runs, of_a_command_in_point_json_give_its_row) {
+  sweep("all");
+  const nlohmann::json point = read_json(at("all/points/00004/point.json"));
+  EXPECT_EQ(point.at("seed"), 1);
+  const std::string before = read_text(at("all/points/00004/series.csv"));
+  fs::remove(at("all/points/00004/series.csv"));
+  ASSERT_EQ(std::system((point.at("command").get<std::string>() + " >/dev/null 2>&1").c_str()), 0);
+  EXPECT_EQ(read_text(at("all/points/00004/series.csv")), before);
+}
+
+TEST_F(sweep_runs, take_the_processors_of_the_slot_that_slurm_gives) {
+  write_spec("[1]", 1);
+  ::setenv("SLURM_CPUS_PER_TASK", "1", 1);
+  sweep("out", {"--jobs", "1"});
+  ::unsetenv("SLURM_CPUS_PER_TASK");
+  EXPECT_EQ(read_json(at("out/points/00000/report.json")).at("threads"), 1);
+}
+
+TEST_F(sweep_runs, have_a_folder_to_themselves_until_they_end_however_that_comes) {
+  write_spec("[1]", 400);
+  Running running({"sweep", spec_, "--out", at("out"), "--jobs", "1"});
+  while (!fs::exists(at("out/points/00000")) && running.alive())
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  const Outcome other = run_mallow({"sweep", spec_, "--out", at("out")});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.err.find("is in use by another mallow sweep"), std::string::npos) << other.err;
+  running.send(SIGKILL);
+  EXPECT_EQ(running.wait().exit_code, -1) << "it was still at work";
+  write_spec("[1]", 8);
+  EXPECT_EQ(sweep("out"), sweep("fresh")) << "a run that is left over by the dead one is waited for";
+}
+
+TEST_F(sweep_runs, of_one_point_by_two_processes_are_run_once) {
+  write_spec("[1]", 400);
+  const std::vector<std::string> point{"sweep", spec_, "--out", at("out"), "--point", "2"};
+  Running one(point), other(point);
+  const Outcome first = one.wait(), second = other.wait();
+  EXPECT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_NE(first.err.find("point 2 done"), std::string::npos) << first.err;
+  // Who waited says how long the other one took.
+  EXPECT_EQ(first.err, second.err);
+}
+
+TEST_F(sweep_runs, whose_groups_differ_in_case_are_columns_of_both_tables) {
+  std::string scene = read_text(scene_);
+  const std::size_t body = scene.find("[[body]]"), next = scene.find("[[collider]]");
+  std::string second = scene.substr(body, next - body);
+  second.replace(second.find("\"cube\""), 6, "\"CUBE\"").replace(second.find("0.6"), 3, "9.6");
+  std::ofstream(scene_) << scene.insert(next, second);
+  write("case.toml",
+        read_text(spec_).replace(read_text(spec_).find("\"height\""), 8, "\"cube.height\", \"CUBE.height\""));
+  spec_ = at("case.toml");
+  EXPECT_EQ(lines(sweep("out"))[0],
+            "point,material[0].alpha,material[0].region_stride,status,cube.height,CUBE.height,height.max,"
+            "volume.mean,message");
+  EXPECT_TRUE(fs::exists(at("out/table.sqlite")));
+}
+
+TEST_F(sweep_runs, read_points_of_a_table_that_a_spreadsheet_wrote) {
+  write("points.csv", "\xEF\xBB\xBFmaterial[0].alpha,material[0].region_stride\r\n0.5,1\r\n0.25,2\r\n");
+  write("spec.toml", "scene = \"" + fs::path(scene_).filename().string() +
+                         "\"\nframes = 2\nmeasures = [\"height\"]\npoints_file = \"points.csv\"\n");
+  EXPECT_EQ(lines(sweep("out"))[0],
+            "point,material[0].alpha,material[0].region_stride,status,height,message");
+}
+
+/// A small disk of its own, where root may mount one.
+class sweep_runs_on_a_full_disk : public sweep_runs {
+ protected:
+  sweep_runs_on_a_full_disk() {
+    fs::create_directories(at("disk"));
+    mounted_ = std::system(("mount -t tmpfs -o size=2m none '" + at("disk") + "' 2>/dev/null").c_str()) == 0;
+  }
+  ~sweep_runs_on_a_full_disk() override {
+    if (mounted_) [[maybe_unused]]
+      const int code = std::system(("umount '" + at("disk") + "'").c_str());
+  }
+  bool mounted_ = false;
+};
+
+TEST_F(sweep_runs_on_a_full_disk, leave_the_table_of_those_that_had_room) {
+  if (!mounted_) GTEST_SKIP() << "no disk can be mounted here: that takes root's rights";
+  write_spec("[1]", 8);
+  const std::string whole = sweep("disk/whole");
+  const auto used = fs::space(at("disk")).capacity - fs::space(at("disk")).free;
+  fs::remove_all(at("disk/whole"));
+  // Room for the table, which is 68 kB or less, and for half of what the points take.
+  std::ofstream(at("disk/ballast")) << std::string(fs::space(at("disk")).free - 72 * 1024 - used / 2, 'x');
+  const Outcome outcome = run_mallow({"sweep", spec_, "--out", at("disk/out"), "--jobs", "1"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto rows = lines(read_text(at("disk/out/table.csv")));
+  ASSERT_EQ(rows.size(), 5u) << outcome.err;
+  EXPECT_EQ(rows[1], lines(whole)[1]);
+  EXPECT_NE(rows[4].find("failed"), std::string::npos) << rows[4];
+  EXPECT_NE(rows[4].find("No space left"), std::string::npos) << rows[4];
+  EXPECT_TRUE(fs::exists(at("disk/out/table.sqlite")));
+  fs::remove(at("disk/ballast"));
+  EXPECT_EQ(sweep("disk/out"), whole);
+}
+
+TEST_F(sweep_runs, refuse_names_that_cannot_be_before_anything_is_run) {
+  const auto refused = [&](const std::string& from, const std::string& to, const std::string& part,
+                           const std::vector<std::string>& more = {}) {
+    std::string text = read_text(spec_);
+    text.replace(text.find(from), from.size(), to);
+    write("bad.toml", text);
+    std::vector<std::string> arguments{"sweep", at("bad.toml"), "--out", at("bad")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_mallow(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << part;
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+    EXPECT_FALSE(fs::exists(at("bad/points"))) << part;
+  };
+  refused("\"height.max\"", "\"height\"", "bad.toml:3:23: measures: 'height' is a column already");
+  refused("\"height.max\"", "\"hight\"", "'hight' is no column of a series", {"--on", "parallel"});
+  refused("\"material[0].region_stride\"", "\"run.frames\"",
+          "frames: is not allowed where run.frames is varied");
+  refused("[[vary]]", "[[plot]]\nx = \"point\"\ny = \"status\"\n[[vary]]", "plot[0].y: 'status' has texts");
+  refused("frames = 8", "frames = 8", "'0,2,1:4' names point 2 twice", {"--point", "0,2,1:4"});
+  refused("frames = 8", "frames = 8", "--sbatch: is not allowed without --on slurm", {"--sbatch=--hold"});
 }
 
 }  // namespace sweep_test

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,9 +13,11 @@
 #include <string>
 #include <vector>
 
+#include "cli/messages.h"
 #include "mallow/errors.h"
 #include "mallow/files.h"
 #include "program/compare.h"
+#include "program/difference_picture.h"
 #include "program/failure.h"
 #include "program/input_files.h"
 #include "program/machine.h"
@@ -28,7 +31,7 @@ struct CompareOptions {
   std::string a, b;
   std::string tolerance;
   std::optional<float> spacing;
-  std::string csv;
+  std::string csv, picture;
   bool json = false;
   int threads = 0;
 };
@@ -38,6 +41,7 @@ struct Comparison {
   std::vector<program::FrameDifference> frames;
   std::vector<int> only_a, only_b;  ///< frames
   std::size_t surfaces = 0;         ///< frames of which both have one
+  std::string other_bodies;         ///< why ids are not of the same particles; mostly empty
 
   bool same_bits() const {
     return only_a.empty() && only_b.empty() &&
@@ -87,7 +91,6 @@ Comparison compare(const CompareOptions& options, program::ComparedStates& a, pr
                    "is one state and " + run.path().string() +
                        " a run of many frames; compare it with a file of the run's particles/"});
   }
-  settle_spacings(options, a, b);
   Comparison comparison;
   std::ranges::set_difference(a.frames(), b.frames(), std::back_inserter(comparison.only_a));
   std::ranges::set_difference(b.frames(), a.frames(), std::back_inserter(comparison.only_b));
@@ -95,6 +98,8 @@ Comparison compare(const CompareOptions& options, program::ComparedStates& a, pr
   std::ranges::set_intersection(a.frames(), b.frames(), std::back_inserter(both));
   if (both.empty())
     throw IoError({b.path().string(), 0, 0, "", "has no frame of the number of one in " + a.path().string()});
+  comparison.other_bodies = program::told_of_other_bodies(a, b, both.front());
+  settle_spacings(options, a, b);
   const int threads = program::resolve_threads(options.threads);
   for (const int frame : both) {
     comparison.frames.push_back(program::compare_frame(a, b, frame, threads));
@@ -213,17 +218,35 @@ void print_table(const Comparison& comparison, const program::ComparedStates& a)
   }
 }
 
+void check_picture(const std::string& file) {
+  if (file.empty()) return;
+  if (std::filesystem::path(file).extension() != ".png")
+    throw ConfigError("--picture", "'" + file + "' is not allowed: a file that ends in .png");
+  program::check_writable(file);
+}
+
+/// Of the frame where particles are farthest apart.
+void take_picture(const CompareOptions& options, const Comparison& comparison,
+                  const program::ComparedStates& a, const program::ComparedStates& b) {
+  const program::FrameDifference& worst = comparison.worst();
+  render::write_png(options.picture,
+                    program::difference_picture(a, b, worst, program::resolve_threads(options.threads)));
+  std::fprintf(stderr, "%s: frame %d of B, from grey (as in A) to red (%.3g h from there)\n",
+               options.picture.c_str(), worst.frame, worst.largest);
+}
+
 void run(const CompareOptions& options) {
   const std::optional<double> tolerance = tolerance_of(options.tolerance);
+  check_picture(options.picture);
   if (!options.csv.empty()) program::check_writable(options.csv);
   program::ComparedStates a(options.a), b(options.b);
-  if (!options.csv.empty()) {
-    program::InputFiles inputs;
-    for (const auto* states : {&a, &b})
-      for (const auto& file : states->files()) inputs.add(file);
-    inputs.refuse(options.csv, "--csv");
-  }
+  program::InputFiles inputs;
+  for (const auto* states : {&a, &b})
+    for (const auto& file : states->files()) inputs.add(file);
+  if (!options.csv.empty()) inputs.refuse(options.csv, "--csv");
+  if (!options.picture.empty()) inputs.refuse(options.picture, "--picture");
   const Comparison comparison = compare(options, a, b);
+  print_warning(comparison.other_bodies);
   const bool same_frames = comparison.only_a.empty() && comparison.only_b.empty();
   const bool near =
       tolerance && std::ranges::none_of(comparison.frames, [&](const program::FrameDifference& frame) {
@@ -235,6 +258,7 @@ void run(const CompareOptions& options) {
     print_json(comparison, a, b, same);
   else
     print_table(comparison, a);
+  if (!options.picture.empty()) take_picture(options, comparison, a, b);
   if (same) return;
   throw program::RunFailure(options.a + " and " + options.b + " differ" +
                             (near        ? ": one has frames that the other lacks"
@@ -260,6 +284,9 @@ void add_compare_command(CLI::App& app) {
       ->add_option("--spacing", options->spacing, "Spacing of particles [m], where neither A nor B tells it")
       ->check(CLI::PositiveNumber);
   command->add_option("--csv", options->csv, "Write a row for each frame to this CSV file");
+  command->add_option("--picture", options->picture,
+                      "Write a picture (PNG) of the frame where they differ most: B's particles, from grey "
+                      "where A has them to red where they are farthest from there");
   command->add_flag("--json", options->json, "Print JSON in place of a table");
   program::add_threads_option(*command, options->threads);
   command->footer(

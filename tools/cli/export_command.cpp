@@ -79,11 +79,14 @@ void share_export(const ExportOptions& options, const program::CachedRun& run, c
                   const std::vector<int>& chosen, Export& all) {
   const program::SharedFrames shared(out, "export", job_of(options, run),
                                      [&](int number) { return all.files(number); });
-  for_each_frame(chosen, &shared, options.frames.share, "exporting",
-                 [&](int number, const FrameClaim& claim) {
-                   all.write_frame(number);
-                   claim->done();
-                 });
+  if (options.frames.elsewhere.by_scheduler())
+    do_frames_elsewhere(options.frames, chosen, shared, out, options.threads);
+  else
+    for_each_frame(chosen, &shared, options.frames.share, "exporting",
+                   [&](int number, const FrameClaim& claim) {
+                     all.write_frame(number);
+                     claim->done();
+                   });
   const std::vector<int> frames = run.cache.particle_frames();
   std::vector<fs::path> made;
   for (const std::string& format : options.animation) made.push_back(out / animation_name(format));
@@ -171,12 +174,16 @@ void add_export_command(CLI::App& app) {
       "an OBJ and an animation have none.\n"
       "Temperatures [K] where the scene has heat: temperature in csv, Temperature in vtp.\n"
       "Bodies of particles, counted from 0 as in report.json: Group in vtp, body in csv.\n"
-      "Groups and materials have the names of the scene in obj (materials.mtl), glb, usda, vtp (field arrays)\n"
+      "Groups and materials have the names of the scene in obj (materials.mtl), glb, usda, vtp (field "
+      "arrays)\n"
       "and vdb (names and metadata of grids).\n"
       "surface.pvd plays the frames at their simulated times; surface.usda plays them as the film does: a\n"
       "time code is a frame, and velocities are per second of the film.");
   add_frame_options(*command, options->frames);
-  command->callback([options] { export_frames(*options); });
+  command->callback([options] {
+    check(options->frames);
+    export_frames(*options);
+  });
 }
 
 }  // namespace mallow::cli

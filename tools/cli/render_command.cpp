@@ -62,7 +62,9 @@ void share_rendering(const RenderOptions& options, program::CachedRun& run, cons
       });
   program::StageTimes seconds{};
   const std::size_t count =
-      share_pictures(run.scene, cache, picture_run(run), chosen, shared, options.frames.share, seconds);
+      options.frames.elsewhere.by_scheduler()
+          ? do_frames_elsewhere(options.frames, chosen, shared, cache.folder(), options.threads)
+          : share_pictures(run.scene, cache, picture_run(run), chosen, shared, options.frames.share, seconds);
   std::vector<std::filesystem::path> made;
   if (!options.film.no_film && program::can_make_films())
     made.push_back(options.film.file.empty() ? cache.film_file() : std::filesystem::path(options.film.file));
@@ -113,6 +115,7 @@ void add_render_command(CLI::App& app) {
   add_film_options(*command, options->film);
   add_frame_options(*command, options->frames);
   command->callback([options] {
+    check(options->frames);
     options->shared = options->frames.shared();
     render_cache(*options);
   });

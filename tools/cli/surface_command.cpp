@@ -92,7 +92,9 @@ void draw_surfaces(const SurfaceOptions& options) {
           [&](int frame) -> program::SharedFrames::Files {
             return {{run.cache.particles_file(frame)}, {run.cache.surface_file(frame)}};
           });
-      count = draw_frames(options, run, chosen, &shared, seconds);
+      count = options.frames.elsewhere.by_scheduler()
+                  ? do_frames_elsewhere(options.frames, chosen, shared, run.cache.folder(), options.threads)
+                  : draw_frames(options, run, chosen, &shared, seconds);
       left = shared.join(frames, {}, finish);
     } else {
       count = draw_frames(options, run, frames, nullptr, seconds);
@@ -124,6 +126,7 @@ void add_surface_command(CLI::App& app) {
   program::add_threads_option(*command, options->threads);
   add_frame_options(*command, options->frames);
   command->callback([options] {
+    check(options->frames);
     options->shared = options->frames.shared();
     draw_surfaces(*options);
   });

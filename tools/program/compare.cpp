@@ -87,7 +87,52 @@ SurfaceDistance distance_of(const Mesh& a, const Mesh& b, float spacing, int thr
   return distance;
 }
 
+std::uint32_t body_of(const ParticleFrame& frame, std::size_t i) {
+  return frame.bodies.empty() ? 0 : frame.bodies[i];
+}
+
+/// In spacings of A's body. Throws IoError where it has none.
+double distance_of(const ComparedStates& a, const ParticleFrame& in_a, std::size_t i,
+                   const ParticleFrame& in_b, std::size_t j) {
+  const std::uint32_t body = body_of(in_a, i);
+  if (body >= a.spacings().size())
+    throw IoError({a.path().string(), 0, 0, "group",
+                   "no spacing is known of body " + std::to_string(body) + "; give one with --spacing"});
+  const Eigen::Vector3d way = in_b.positions[j].cast<double>() - in_a.positions[i].cast<double>();
+  const double distance = way.norm() / static_cast<double>(a.spacings()[body]);
+  if (std::isfinite(distance)) return distance;
+  // The same place where no number is one.
+  return std::memcmp(&in_a.positions[i], &in_b.positions[j], sizeof(Vec3)) == 0 ? 0 : k_infinity;
+}
+
 }  // namespace
+
+std::vector<double> distances(const ComparedStates& a, const ComparedStates& b, int frame) {
+  const ParticleFrame in_a = a.particles(frame), in_b = b.particles(frame);
+  std::vector<double> all(in_b.positions.size(), k_infinity);
+  for_each_pair(in_a, in_b, [&](std::size_t i, std::size_t j) { all[j] = distance_of(a, in_a, i, in_b, j); });
+  return all;
+}
+
+std::string told_of_other_bodies(const ComparedStates& a, const ComparedStates& b, int first_frame) {
+  const ParticleFrame in_a = a.particles(first_frame), in_b = b.particles(first_frame);
+  std::string what;
+  const std::size_t bodies = std::min(a.spacings().size(), b.spacings().size());
+  for (std::size_t body = 0; body < bodies && what.empty(); ++body)
+    if (std::abs(a.spacings()[body] - b.spacings()[body]) > 1e-6f * a.spacings()[body])
+      what = "particles of " + a.body_name(static_cast<std::uint32_t>(body)) + " are " +
+             std::to_string(a.spacings()[body]) + " m apart in A and " + std::to_string(b.spacings()[body]) +
+             " m in B";
+  // Where ids are written, they tell which particles are gone.
+  if (what.empty() && in_a.ids.empty() && in_b.ids.empty() && in_a.positions.size() != in_b.positions.size())
+    what = "A begins with " + std::to_string(in_a.positions.size()) + " particles and B with " +
+           std::to_string(in_b.positions.size());
+  if (what.empty()) return "";
+  return "A and B are of different bodies: " + what +
+         ", so that particles of the same number are not the same ones. Their distances tell nothing; those "
+         "of "
+         "surfaces do";
+}
 
 bool FrameDifference::is_beyond(double tolerance) const {
   if (only_a > 0 || only_b > 0) return true;
@@ -100,14 +145,8 @@ FrameDifference compare_frame(const ComparedStates& a, const ComparedStates& b, 
   difference.same_bits = same_bits(in_a, in_b);
   double squares = 0;
   for_each_pair(in_a, in_b, [&](std::size_t i, std::size_t j) {
-    const std::uint32_t body = in_a.bodies.empty() ? 0 : in_a.bodies[i];
-    if (body >= a.spacings().size())
-      throw IoError({a.path().string(), 0, 0, "group",
-                     "no spacing is known of body " + std::to_string(body) + "; give one with --spacing"});
-    const Eigen::Vector3d way = in_b.positions[j].cast<double>() - in_a.positions[i].cast<double>();
-    double distance = way.norm() / static_cast<double>(a.spacings()[body]);
-    if (!std::isfinite(distance))  // the same place where no number is one
-      distance = std::memcmp(&in_a.positions[i], &in_b.positions[j], sizeof(Vec3)) == 0 ? 0 : k_infinity;
+    const std::uint32_t body = body_of(in_a, i);
+    const double distance = distance_of(a, in_a, i, in_b, j);
     ++difference.particles;
     squares += distance * distance;
     if (distance > difference.largest || difference.particles == 1) {

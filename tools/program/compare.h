@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "program/compared_states.h"
 
@@ -34,6 +36,14 @@ struct FrameDifference {
   /// Whether anything is farther than `tolerance` [h], or only in one of the two.
   bool is_beyond(double tolerance) const;
 };
+
+/// How far each particle of B's frame is from that of A, by id [h]; infinity where A has none of it. `a`
+/// knows its spacings. Throws IoError where a body has none.
+std::vector<double> distances(const ComparedStates& a, const ComparedStates& b, int frame);
+
+/// Why particles of the same id are not the same ones, where A and B begin with bodies of other samplings;
+/// else empty.
+std::string told_of_other_bodies(const ComparedStates& a, const ComparedStates& b, int first_frame);
 
 /// Both have this frame. `a` knows its spacings.
 FrameDifference compare_frame(const ComparedStates& a, const ComparedStates& b, int frame, int threads);

@@ -76,6 +76,11 @@ std::optional<Mesh> ComparedStates::surface(int frame) const {
   return read_mesh(cache_->surface_file(frame));
 }
 
+Scene ComparedStates::scene() const {
+  constexpr SceneReadOptions k_anywhere{.allow_outside_paths = true};
+  return cache_ ? read_scene(cache_->scene_file(), {}, k_anywhere) : Scene{};
+}
+
 std::vector<fs::path> ComparedStates::files() const {
   if (!cache_) return {path_};
   std::vector<fs::path> files = {cache_->scene_file(), cache_->report_file()};

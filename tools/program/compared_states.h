@@ -9,6 +9,7 @@
 
 #include "mallow/files.h"
 #include "mallow/mesh.h"
+#include "mallow/scene.h"
 #include "program/cache.h"
 
 namespace mallow::program {
@@ -27,6 +28,9 @@ class ComparedStates {
   ParticleFrame particles(int frame) const;
   /// Where the frame has one.
   std::optional<Mesh> surface(int frame) const;
+
+  /// Of a run; all at its defaults, without colliders, of a single state. Throws IoError and ConfigError.
+  Scene scene() const;
 
   /// All that is read.
   std::vector<std::filesystem::path> files() const;

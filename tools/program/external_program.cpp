@@ -1,8 +1,10 @@
 #include "program/external_program.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -43,6 +45,29 @@ int exit_status(int status) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+/// Waits for a little while, at most, for a process to end.
+class EndOf {
+ public:
+  explicit EndOf(pid_t process) : descriptor_(static_cast<int>(::syscall(SYS_pidfd_open, process, 0))) {}
+  ~EndOf() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  EndOf(const EndOf&) = delete;
+  EndOf& operator=(const EndOf&) = delete;
+
+  void wait_a_little() const {
+    constexpr int k_milliseconds = 20;  // in which a signal to this process is seen
+    pollfd end{.fd = descriptor_, .events = POLLIN, .revents = 0};
+    if (descriptor_ < 0)  // a kernel before Linux 5.3
+      ::usleep(2000);
+    else
+      ::poll(&end, 1, k_milliseconds);
+  }
+
+ private:
+  int descriptor_;
+};
+
 }  // namespace
 
 int run_program(std::vector<std::string> arguments, const std::filesystem::path& folder) {
@@ -56,18 +81,24 @@ int run_program(std::vector<std::string> arguments, const std::filesystem::path&
   return exit_status(status);
 }
 
-int run_logged(std::vector<std::string> arguments, const std::filesystem::path& log) {
+int run_logged(std::vector<std::string> arguments, const std::filesystem::path& log, AtEnd at_end) {
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
   ::posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
   ::posix_spawn_file_actions_adddup2(&actions, 1, 2);
   const pid_t child = start(arguments, actions);
+  const EndOf end(child);
   int status = 0;
   for (bool asked = false; ::waitpid(child, &status, asked ? 0 : WNOHANG) == 0;) {
-    ::usleep(2000);
-    if (interrupted() == 0) continue;
+    end.wait_a_little();
+    if (interrupted() == 0 || at_end == AtEnd::wait) continue;
     ::kill(child, SIGTERM);
+    if (at_end == AtEnd::end_tasks) {
+      constexpr int k_microseconds = 200'000;  // two signals that come together are one
+      ::usleep(k_microseconds);
+      ::kill(child, SIGTERM);
+    }
     asked = true;
   }
   return exit_status(status);

@@ -13,7 +13,14 @@ bool is_installed(const std::string& program);
 /// that folder need no path then, which could hold what means something to the program: '%', quotes, '-' at
 /// the beginning. Throws RunFailure where it cannot be started.
 int run_program(std::vector<std::string> arguments, const std::filesystem::path& folder);
-/// The same here, with all that it says in a file. Where this program is asked to end, so is that one.
-int run_logged(std::vector<std::string> arguments, const std::filesystem::path& log);
+/// What becomes of it where this program is asked to end.
+enum class AtEnd {
+  end,        ///< it is asked too
+  end_tasks,  ///< it is asked twice: GNU parallel lets its tasks run on at the first time
+  wait,       ///< it is waited for
+};
+/// The same here, with all that it says in a file.
+int run_logged(std::vector<std::string> arguments, const std::filesystem::path& log,
+               AtEnd at_end = AtEnd::end);
 
 }  // namespace mallow::program

@@ -1,6 +1,9 @@
 #include "program/machine.h"
 
+#include <sched.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -36,8 +39,21 @@ int most_threads() {
   return static_cast<int>(range_of(&SolverConfig::threads).highest);
 }
 
+int own_processors() {
+  cpu_set_t allowed;
+  const bool is_known = ::sched_getaffinity(0, sizeof allowed, &allowed) == 0;
+  const int processors =
+      std::max(1, is_known ? CPU_COUNT(&allowed) : static_cast<int>(std::thread::hardware_concurrency()));
+  // --cpus-per-task where the job asked for it; else what the job has of this machine.
+  for (const char* name : {"SLURM_CPUS_PER_TASK", "SLURM_CPUS_ON_NODE"}) {
+    const char* text = std::getenv(name);
+    if (const int count = text ? std::atoi(text) : 0; count > 0) return std::min(count, processors);
+  }
+  return processors;
+}
+
 int resolve_threads(int threads) {
-  return threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return threads > 0 ? threads : own_processors();
 }
 
 std::size_t proc_bytes(const char* file, const std::string& line) {

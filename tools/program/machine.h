@@ -18,7 +18,11 @@ std::size_t proc_bytes(const char* file, const std::string& line);
 /// Threads that a run may have, at most.
 int most_threads();
 
-/// Threads that a command line's 0 stands for: all the machine has.
+/// Processors that this process may use: those of its slot where Slurm gave it one, else those that the
+/// system lets it run on.
+int own_processors();
+
+/// Threads that a command line's 0 stands for: own_processors().
 int resolve_threads(int threads);
 
 }  // namespace mallow::program

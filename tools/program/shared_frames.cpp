@@ -60,7 +60,7 @@ std::unique_ptr<FileLock> FileLock::try_lock(const fs::path& file) {
   if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return lock;
   if (errno != EWOULDBLOCK && errno != EINTR)
     fail(file, std::string("cannot be locked (") + std::strerror(errno) +
-                   "), which --frames and --share need, so that no two write one frame");
+                   "), which those that write into one folder need, so that no two write one file");
   return nullptr;
 }
 
@@ -94,7 +94,10 @@ void forget_shared_frames(const fs::path& folder) {
   if (!fs::is_directory(fs::symlink_status(share, ignored))) return;
   const auto is_ours = [](const fs::path& file) {
     const std::string name = file.filename().string();
-    return name == k_lock || name == k_joined || name.starts_with(k_frame);
+    const bool of_tasks = name == "tasks.txt" || name == "task.sh" || name == "parallel.txt" ||
+                          name == "slurm.txt" || name == "queue.txt" ||
+                          file.parent_path().filename() == "slurm";
+    return of_tasks || name == k_lock || name == k_joined || name.starts_with(k_frame);
   };
   std::vector<fs::path> files, folders;
   for (const auto& entry : fs::recursive_directory_iterator(share, ignored))

@@ -8,15 +8,6 @@
 namespace mallow::program {
 namespace {
 
-/// The colliders of a scene that are seen, where they are at a time.
-std::vector<Collider> colliders_at(const Scene& scene, double time) {
-  std::vector<Collider> colliders = visible_colliders(scene);
-  for (Collider& collider : colliders)
-    collider.pose =
-        collider.keyframes.empty() ? pose_after(collider, time) : pose_at(collider.keyframes, time);
-  return colliders;
-}
-
 /// How pictures are taken, with files where they are.
 RenderConfig of_scene(const Scene& scene) {
   RenderConfig config = scene.render;
@@ -25,6 +16,14 @@ RenderConfig of_scene(const Scene& scene) {
 }
 
 }  // namespace
+
+std::vector<Collider> colliders_at(const Scene& scene, double time) {
+  std::vector<Collider> colliders = visible_colliders(scene);
+  for (Collider& collider : colliders)
+    collider.pose =
+        collider.keyframes.empty() ? pose_after(collider, time) : pose_at(collider.keyframes, time);
+  return colliders;
+}
 
 void check_environment(const Scene& scene) {
   if (!scene.render.environment.empty()) render::read_hdr(of_scene(scene).environment);

@@ -10,6 +10,9 @@
 
 namespace mallow::program {
 
+/// The colliders of a scene that are seen, where they are at a time [s].
+std::vector<Collider> colliders_at(const Scene& scene, double time);
+
 /// Throws IoError where the light that the scene names cannot be read.
 void check_environment(const Scene& scene);
 

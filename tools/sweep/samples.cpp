@@ -107,6 +107,7 @@ Points points_of_file(SweepSpec& spec) {
   std::string line;
   if (!file || !std::getline(file, line))
     throw IoError({name, 0, 0, "points_file", "cannot be read, or is empty"});
+  if (constexpr const char* k_mark = "\xEF\xBB\xBF"; line.starts_with(k_mark)) line.erase(0, 3);  // of UTF-8
   for (const std::string& key : program::csv_cells(line)) {
     if (std::ranges::count(spec.vary, key, &Vary::key))
       throw ConfigError({{name, 1, 0, "points_file", "has '" + key + "' twice"}});

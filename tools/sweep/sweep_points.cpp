@@ -1,6 +1,9 @@
 #include "sweep/sweep_points.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -11,12 +14,13 @@
 #include "mallow/files.h"
 #include "mallow/scene.h"
 #include "program/cache.h"
-#include "program/csv.h"
 #include "program/external_program.h"
 #include "program/failure.h"
 #include "program/fnv.h"
 #include "program/interrupt.h"
+#include "program/shared_frames.h"
 #include "program/shell_word.h"
+#include "sweep/series_measures.h"
 #include "sweep/text.h"
 
 namespace mallow::sweep {
@@ -25,13 +29,8 @@ namespace {
 
 using Status = Outcome::Status;
 constexpr std::array k_names{"open", "done", "refused", "failed"};
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return std::move(text).str();
-}
+/// Points that are tried for one that runs.
+constexpr std::size_t k_most_tries = 16;
 
 std::vector<std::string> overrides(const SweepSpec& spec, const std::vector<std::string>& values) {
   std::vector<std::string> all;
@@ -60,6 +59,25 @@ bool takes_whole_numbers_alone(const SweepSpec& spec, const Vary& vary) try {
   return std::string(error.what()).find("a whole number") != std::string::npos;
 }
 
+/// Throws ConfigError where the frames of a run are said twice.
+void check_frames(const SweepSpec& spec) {
+  if (!spec.frames) return;
+  for (const Vary& vary : spec.vary)
+    if (vary.key == "run.frames" || std::ranges::count(vary.also, "run.frames"))
+      throw ConfigError({{spec.file.string(), 0, 0, "frames",
+                          "is not allowed where run.frames is varied: every run has frames of its own"}});
+}
+
+/// Keeps other processes off a point; they wait. Null on a disk without locks.
+std::unique_ptr<program::FileLock> lock_point(const fs::path& folder, bool& waited) try {
+  const fs::path file = folder / k_sweep_lock;
+  auto lock = program::FileLock::try_lock(file);
+  waited = !lock;
+  return waited ? program::FileLock::wait_for(file) : std::move(lock);
+} catch (const IoError&) {
+  return nullptr;  // a folder that cannot be written is told where the point's files are
+}
+
 /// The last line that a run said, without the program's name: what went wrong.
 std::string last_word(const fs::path& log) {
   std::istringstream text(text_of(log));
@@ -67,59 +85,6 @@ std::string last_word(const fs::path& log) {
   for (std::string line; std::getline(text, line);)
     if (line.starts_with("mallow: ") && !line.starts_with("mallow: warning")) last = line.substr(8);
   return last;
-}
-
-/// Of a column: one of its values, or their mean.
-std::optional<double> value_of(const std::vector<double>& column, Measure::Of of) {
-  if (column.empty()) return std::nullopt;
-  switch (of) {
-    case Measure::Of::least:
-      return *std::ranges::min_element(column);
-    case Measure::Of::most:
-      return *std::ranges::max_element(column);
-    case Measure::Of::mean: {
-      double sum = 0;
-      for (const double value : column) sum += value;
-      return sum / static_cast<double>(column.size());
-    }
-    case Measure::Of::last:
-      break;
-  }
-  return column.back();
-}
-
-/// Throws ConfigError where a series has no such column.
-std::map<std::string, double> measure_series(const SweepSpec& spec, const fs::path& file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  std::vector<std::string> names = program::csv_cells(line);
-  for (std::string& column : names) column = column.substr(0, column.find(" ["));
-  std::vector<std::vector<double>> columns(names.size());
-  while (std::getline(in, line)) {
-    const std::vector<std::string> cells = program::csv_cells(line);
-    for (std::size_t c = 0; c < std::min(cells.size(), names.size()); ++c)
-      if (const auto value = number_of(cells[c])) columns[c].push_back(*value);
-  }
-  std::map<std::string, double> measured;
-  std::vector<Problem> problems;
-  for (const Measure& measure : spec.measures) {
-    const auto found = std::ranges::find(names, measure.column);
-    if (found == names.end()) {
-      std::string all;
-      for (const std::string& column : names) all += (all.empty() ? "" : ", ") + column;
-      problems.push_back({spec.file.string(), measure.place.line, measure.place.column, "measures",
-                          "'" + measure.name +
-                              "' is no column of a series, nor one with .last, .min, .max or "
-                              ".mean behind it; there are " +
-                              all});
-      continue;
-    }
-    if (const auto value = value_of(columns[static_cast<std::size_t>(found - names.begin())], measure.of))
-      measured[measure.name] = *value;
-  }
-  if (!problems.empty()) throw ConfigError(std::move(problems));
-  return measured;
 }
 
 }  // namespace
@@ -132,6 +97,7 @@ SweepFolder::SweepFolder(SweepSpec spec, fs::path folder, fs::path program)
     : spec_(std::move(spec)), folder_(std::move(folder)), program_(std::move(program)) {
   for (Vary& vary : spec_.vary) vary.whole = vary.whole && takes_whole_numbers_alone(spec_, vary);
   points_ = sample_points(spec_);
+  check_frames(spec_);
   for (std::size_t k = 0; k < spec_.vary.size(); ++k) {
     check_key(spec_, spec_.vary[k].key, points_[0][k]);
     for (const std::string& key : spec_.vary[k].also) check_key(spec_, key, points_[0][k]);
@@ -261,9 +227,14 @@ Outcome SweepFolder::run(std::size_t point, int threads) const {
   const fs::path folder = point_folder(point);
   Outcome outcome;
   std::string own_hash;
+  std::unique_ptr<program::FileLock> lock;
   const auto begin = std::chrono::steady_clock::now();
   try {
     fs::create_directories(folder);
+    bool waited = false;
+    lock = lock_point(folder, waited);
+    if (waited)
+      if (Outcome of_another = this->outcome(point); of_another.status == Status::done) return of_another;
     const Scene own = scene(point);
     own_hash = hash(point, own);
     write_whole(folder / "scene.toml", program::Cache::scene_text(folder, own));
@@ -292,6 +263,7 @@ Outcome SweepFolder::run(std::size_t point, int threads) const {
   const nlohmann::ordered_json json{{"point", point},
                                     {"set", overrides(spec_, points_[point])},
                                     {"command", command(point)},
+                                    {"seed", spec_.seed},
                                     {"hash", own_hash},
                                     {"status", name(outcome.status)},
                                     {"message", outcome.message},
@@ -306,14 +278,32 @@ Outcome SweepFolder::run(std::size_t point, int threads) const {
   return outcome;
 }
 
-std::optional<double> SweepFolder::probe(std::size_t point, int threads, int frames) const {
+std::optional<double> SweepFolder::probe(std::size_t point, int threads, int frames,
+                                         const fs::path& series) const {
   std::vector<std::string> all{program_.string(),       "run",      spec_.scene.string(),   "--threads",
                                std::to_string(threads), "--frames", std::to_string(frames), "--no-images",
                                "--no-surface"};
+  if (!series.empty()) all.insert(all.end(), {"--series", series.string()});
   for (const std::string& set : overrides(spec_, points_[point])) all.insert(all.end(), {"--set", set});
   const auto begin = std::chrono::steady_clock::now();
   if (program::run_logged(all, "/dev/null") != program::k_exit_done) return std::nullopt;
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void SweepFolder::check_measures() const {
+  const fs::path series = fs::temp_directory_path() / ("mallow-sweep-" + std::to_string(::getpid()) + ".csv");
+  const struct Removal {
+    const fs::path& file;
+    ~Removal() {
+      std::error_code ignored;
+      fs::remove(file, ignored);
+    }
+  } removal{series};
+  for (std::size_t point = 0; point < std::min(points_.size(), k_most_tries); ++point) {
+    if (!probe(point, 1, 0, series)) continue;
+    measure_series(spec_, series);
+    return;
+  }
 }
 
 }  // namespace mallow::sweep

@@ -11,6 +11,10 @@
 
 namespace mallow::sweep {
 
+/// The file by which a process has a sweep's folder, or a point's, to itself; the system frees it when that
+/// process ends, however that comes.
+inline constexpr const char* k_sweep_lock = ".lock";
+
 /// What became of a point.
 struct Outcome {
   enum class Status { open, done, refused, failed };
@@ -44,10 +48,16 @@ class SweepFolder {
   static std::string worker(const std::vector<std::string>& command, std::size_t point);
 
   /// Runs one point, on so many threads, and keeps what became of it. Whoever runs it, and however often: the
-  /// same but for its wall time. Throws Interrupted; all else that fails is an outcome.
+  /// same but for its wall time. Where another process is at it, this waits, and takes what that one has
+  /// done. Throws Interrupted; all else that fails is an outcome.
   Outcome run(std::size_t point, int threads) const;
   /// The first `frames` frames of a point, for an estimate; gives the wall time [s], nothing where it fails.
-  std::optional<double> probe(std::size_t point, int threads, int frames) const;
+  /// series: where its series goes; may be empty.
+  std::optional<double> probe(std::size_t point, int threads, int frames,
+                              const std::filesystem::path& series = {}) const;
+  /// Throws ConfigError where the first point that runs has no such column as the spec measures: before all
+  /// of them are run.
+  void check_measures() const;
 
  private:
   std::vector<std::string> arguments(std::size_t point, int threads) const;

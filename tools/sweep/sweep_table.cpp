@@ -3,8 +3,11 @@
 #include <sqlite3.h>
 
 #include <algorithm>
-#include <fstream>
+#include <charconv>
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "mallow/errors.h"
@@ -35,6 +38,28 @@ bool is_number(const std::string& text) {
   return number_of(text).has_value();
 }
 
+std::optional<std::int64_t> whole_number_of(const std::string& text) {
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+/// Names of columns in SQL, which knows no difference between `a` and `A`: the second of them is A_2.
+std::vector<std::string> sql_names(std::vector<std::string> columns) {
+  const auto lower = [](std::string name) {
+    for (char& c : name)
+      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return name;
+  };
+  std::set<std::string> taken;
+  for (std::string& column : columns) {
+    const std::string name = column;
+    for (int number = 2; !taken.insert(lower(column)).second; ++number)
+      column = name + '_' + std::to_string(number);
+  }
+  return columns;
+}
+
 /// A database that is written anew.
 class Database {
  public:
@@ -57,6 +82,8 @@ class Database {
         const int at = static_cast<int>(c) + 1;
         if (cells[c].empty())
           check(sqlite3_bind_null(statement, at));
+        else if (const auto whole = whole_number_of(cells[c]))
+          check(sqlite3_bind_int64(statement, at, *whole));
         else if (is_number(cells[c]))
           check(sqlite3_bind_double(statement, at, std::stod(cells[c])));
         else
@@ -86,6 +113,16 @@ std::vector<std::vector<std::string>> rows_of(const SweepFolder& sweep,
   return rows;
 }
 
+/// Of a column that is known before anything is run.
+bool has_only_texts(const SweepFolder& sweep, const std::string& column) {
+  if (column == "status" || column == "message") return true;
+  for (std::size_t k = 0; k < sweep.spec().vary.size(); ++k)
+    if (sweep.spec().vary[k].key == column)
+      return std::ranges::none_of(sweep.points(),
+                                  [&](const std::vector<std::string>& point) { return is_number(point[k]); });
+  return false;
+}
+
 }  // namespace
 
 std::vector<std::string> table_columns(const SweepFolder& sweep) {
@@ -107,7 +144,7 @@ void write_table(const SweepFolder& sweep, const std::vector<Outcome>& outcomes)
     fs::remove(beside);
     Database database(beside);
     std::string list;  // names are quoted in SQL as cells are in a CSV
-    for (const std::string& column : columns)
+    for (const std::string& column : sql_names(columns))
       list += (list.empty() ? "" : ", ") + program::csv_quoted(column);
     database.run("PRAGMA journal_mode = OFF; BEGIN; CREATE TABLE points (" + list + ")");
     database.insert(columns.size(), rows);
@@ -115,26 +152,38 @@ void write_table(const SweepFolder& sweep, const std::vector<Outcome>& outcomes)
   });
 }
 
-void check_plots(const SweepFolder& sweep) {
+void check_table(const SweepFolder& sweep) {
   const std::vector<std::string> columns = table_columns(sweep);
   std::string all;
   for (const std::string& known : columns) all += (all.empty() ? "" : ", ") + known;
   std::vector<Problem> problems;
+  const auto problem = [&](const Place& place, const std::string& field, const std::string& message) {
+    problems.push_back({sweep.spec().file.string(), place.line, place.column, field, message});
+  };
+  std::set<std::string> taken{"point", "status", "message"};
+  for (const Vary& vary : sweep.spec().vary)
+    if (!taken.insert(vary.key).second) problem({}, "vary", "'" + vary.key + "' is a column of its own");
+  for (const Measure& measure : sweep.spec().measures)
+    if (!taken.insert(measure.name).second)
+      problem(measure.place, "measures", "'" + measure.name + "' is a column already");
   int number = 0;
   for (const Plot& plot : sweep.spec().plots) {
     for (const auto& [key, column] :
-         {std::pair{".x", &plot.x}, std::pair{".y", &plot.y}, std::pair{".color", &plot.color}})
-      if (!column->name.empty() && !std::ranges::count(columns, column->name))
-        problems.push_back({sweep.spec().file.string(), column->place.line, column->place.column,
-                            "plot[" + std::to_string(number) + "]" + key,
-                            "'" + column->name + "' is no column of the table; there are " + all});
+         {std::pair{".x", &plot.x}, std::pair{".y", &plot.y}, std::pair{".color", &plot.color}}) {
+      const std::string field = "plot[" + std::to_string(number) + "]" + key;
+      if (column->name.empty()) continue;
+      if (!std::ranges::count(columns, column->name))
+        problem(column->place, field, "'" + column->name + "' is no column of the table; there are " + all);
+      else if (has_only_texts(sweep, column->name))
+        problem(column->place, field, "'" + column->name + "' has texts, which no plot can show");
+    }
     ++number;
   }
   if (!problems.empty()) throw ConfigError(std::move(problems));
 }
 
 int draw_plots(const SweepFolder& sweep, const std::vector<Outcome>& outcomes) {
-  check_plots(sweep);
+  check_table(sweep);
   const std::vector<std::string> columns = table_columns(sweep);
   const auto place = [&](const Plot::Column& column) {
     return static_cast<std::size_t>(std::ranges::find(columns, column.name) - columns.begin());
@@ -146,11 +195,12 @@ int draw_plots(const SweepFolder& sweep, const std::vector<Outcome>& outcomes) {
     const bool has_color = !plot.color.name.empty();
     const std::size_t color = has_color ? place(plot.color) : y;
     if (!program::is_installed("gnuplot")) continue;
-    const std::string stem = "plot_" + std::to_string(drawn++);
     std::string data;
     for (const std::vector<std::string>& cells : rows)
       if (is_number(cells[x]) && is_number(cells[y]) && is_number(cells[color]))
         data += cells[x] + ' ' + cells[y] + ' ' + cells[color] + '\n';
+    if (data.empty()) continue;  // gnuplot would leave an empty picture
+    const std::string stem = "plot_" + std::to_string(drawn++);
     write_whole(sweep.folder() / (stem + ".dat"), data);
     // noenhanced: brackets and underscores of keys are themselves.
     std::string script = "set terminal svg size 720,480 noenhanced\nset output '" + stem +
