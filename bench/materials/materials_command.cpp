@@ -20,11 +20,13 @@ namespace {
 constexpr const char* k_bars = "bars";  // among the names of materials
 constexpr std::pair<const char*, void (*)(int, const AddNumber&)> k_numbers[] = {
     {"volume", measure_volume}, {"yield", measure_yield}, {"cost", measure_cost}, {"heat", measure_heat}};
+const std::vector<std::string> k_scenes{"drop", "squeeze", "slope"};
 constexpr double k_refined[] = {1, 1.5, 2};
 constexpr double k_steps[] = {0.25, 0.5, 1, 2};
 
 struct MaterialsOptions : CommonOptions {
   std::vector<std::string> materials;
+  std::vector<std::string> scenes;
   bool coarse = false;
 };
 
@@ -74,10 +76,10 @@ void measure_bars(Results& results, int threads) {
 }
 
 void measure_material(const std::string& material, const MaterialsOptions& options, Results& results) {
-  for (const char* scene : {"drop", "squeeze", "slope"})
+  for (const std::string& scene : chosen("--scenes", options.scenes, k_scenes))
     for (const int refined : {1, 2}) {
       if (refined > 1 && options.coarse) continue;
-      std::fprintf(stderr, "materials: %s, %s, refined %d times\n", material.c_str(), scene, refined);
+      std::fprintf(stderr, "materials: %s, %s, refined %d times\n", material.c_str(), scene.c_str(), refined);
       const TestRun done =
           run({.scene = scene, .material = material, .refined = refined, .threads = options.threads});
       for (const Measured& measured : done.measured) {
@@ -95,7 +97,7 @@ void run_materials(const MaterialsOptions& options) {
   for (const MaterialPreset& preset : material_presets()) known.emplace_back(preset.name);
   const std::vector<std::string> names = chosen("--materials", options.materials, known);
   Results results("materials", options.output, options.threads,
-                  {{"materials", options.materials}, {"coarse", options.coarse}});
+                  {{"materials", options.materials}, {"scenes", options.scenes}, {"coarse", options.coarse}});
   for (const std::string& name : names) {
     const auto* const numbers = std::ranges::find(k_numbers, name, [](const auto& one) { return one.first; });
     if (name == k_bars)
@@ -130,6 +132,8 @@ void add_materials_command(CLI::App& app) {
   command
       ->add_option("--materials", options->materials,
                    "Some of them, or bars, volume, yield, cost, heat, in place of all")
+      ->delimiter(',');
+  command->add_option("--scenes", options->scenes, "Of drop, squeeze, slope, in place of all")
       ->delimiter(',');
   command->add_flag("--coarse", options->coarse, "At one spacing only");
 }

@@ -121,6 +121,11 @@ const VectorColumn& lead_positions(Simulation::State& state) {
 
 namespace {
 
+/// Friction does not act on it: all of it is a fluid that walls hold by its viscosity.
+bool slips(const Simulation::State& state, const BodyState& body) {
+  return state.sticks_to_walls(body) && !body.keeps_reference();
+}
+
 /// What moves a body in a step; its pull acts for pull_time [s].
 MotionInput motion_of(Simulation::State& state, const BodyState& body, float time_step, float pull_time) {
   const SolverConfig& config = state.config;
@@ -139,7 +144,7 @@ MotionInput motion_of(Simulation::State& state, const BodyState& body, float tim
       .walls = state.walls(),
       .user = state.user(),
       .pull = body.matches_shape() ? &body.shape.pull : nullptr,
-      .colliders = state.placed_colliders,
+      .colliders = slips(state, body) ? state.slippery_colliders : state.placed_colliders,
       .contact = {.time_step = time_step,
                   .max_push = state.support_radius() / (10.0f * state.base_step()),
                   .contact_offset = state.contact_offset(body),
@@ -181,6 +186,10 @@ void plan_motion(Simulation::State& state, float time_step) {
   drive_colliders(state.time + static_cast<double>(time_step), static_cast<double>(time_step),
                   state.colliders);
   place_colliders(state.colliders, state.origin, time_step, state.execution.level, state.placed_colliders);
+  if (std::ranges::any_of(state.awake, [&](const BodyState* body) { return slips(state, *body); })) {
+    state.slippery_colliders = state.placed_colliders;
+    for (PlacedCollider& collider : state.slippery_colliders) collider.surface.friction = 0;
+  }
   state.moving.loads.assign(any_measures_load(state.placed_colliders) ? state.colliders.size() : 0, {});
   if (state.walls()) {
     for (std::size_t c = 0; c < state.moving.loads.size(); ++c) {

@@ -271,6 +271,8 @@ struct Simulation::State {
   std::vector<std::uint32_t> fluid_rows;  ///< of each body, those that are in it
   std::vector<TimeStepLimits::Pressure> pressures;
   std::vector<PlacedCollider> placed_colliders;
+  /// The same without friction, for fluids that stick to walls, where there are any.
+  std::vector<PlacedCollider> slippery_colliders;
   std::vector<PinMotion> pin_motions;
   Islands islands;
   RangeBlocks led_blocks;
@@ -362,6 +364,10 @@ struct Simulation::State {
     return sph_ran && sph.groups.size() > 1 && !sph.apart ? &sph.cross_group : nullptr;
   }
   const VectorColumn* walls() const { return sph_ran && sph.walls.any ? &sph.walls.acceleration : nullptr; }
+  /// Whether walls hold it by its viscosity where it is a fluid: see Material::adhesion.
+  bool sticks_to_walls(const BodyState& body) const {
+    return body.material->settings.adhesion > 0 && body.most_alpha() >= 1 && !sph.walls.bodies.empty();
+  }
   /// Distance at which a particle of a body touches a collider [m].
   float contact_offset(const BodyState& body) const {
     return config.contact_offset.value_or(0.5f * body.spacing);

@@ -1,8 +1,11 @@
 // What colliders hold of the volume around fluids, and what that pushes. [model 2, section 2]
+#include <algorithm>
+
 #include "colliders/pose.h"
 #include "core/parallel.h"
 #include "simulation/phases.h"
 #include "simulation/state.h"
+#include "sph/held_walls.h"
 
 namespace mallow {
 
@@ -59,8 +62,42 @@ void add_wall_loads(Simulation::State& state, const std::vector<ColliderLoad>& g
   }
 }
 
+namespace {
+
+/// What sticks does not slip along colliders; of the others friction takes its share later.
+void hold_what_sticks(Simulation::State& state, float time_step) {
+  ParticleStore& store = state.store;
+  Walls& walls = state.sph.walls;
+  const auto sticks = [&](const BodyState* body) { return state.sticks_to_walls(*body); };
+  if (std::ranges::none_of(state.awake, sticks)) return;
+  walls.rubbed.assign(walls.partial_loads.size(), {});
+  const HoldInput in{.position = store.position,
+                     .pin = store.pin.empty() ? nullptr : store.pin.data(),
+                     .viscosity = state.viscosity.empty() ? nullptr : state.viscosity.data(),
+                     .alpha = state.is_painted() ? store.alpha.data() : nullptr,
+                     .time_step = time_step};
+  std::size_t number = 0;
+  for (const BodyState* body : state.awake) {
+    if (!(body->most_alpha() > 0)) continue;  // as find_walls() counts them
+    const std::size_t place = number++;
+    if (!sticks(body)) continue;
+    hold_at_walls(in,
+                  {.number = place,
+                   .spacing = body->spacing,
+                   .inward = 0.5f * body->spacing - state.contact_offset(*body),
+                   .viscosity = body->viscosity,
+                   .adhesion = body->material->settings.adhesion,
+                   .mass = body->mass},
+                  state.placed_colliders, state.execution, walls, store.next_velocity);
+  }
+  add_wall_loads(state, walls.rubbed, time_step);
+}
+
+}  // namespace
+
 void rub_walls(Simulation::State& state, float time_step) {
   ParticleStore& store = state.store;
+  hold_what_sticks(state, time_step);
   rub_walls({.position = store.position,
              .before = store.velocity,
              .pin = store.pin.empty() ? nullptr : store.pin.data(),

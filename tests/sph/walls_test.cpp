@@ -321,6 +321,38 @@ TEST(wall_pressure, lets_a_belt_carry_a_soft_block_and_feel_as_much) {
   EXPECT_NEAR(momentum, -512 * 0.3 * static_cast<double>(k_gravity) * s.time(), 0.08 * std::abs(momentum));
 }
 
+/// A particle of a fluid that slides at 0.5 h/s on a floor with friction, for a second; what is left, and
+/// what the floor got along.
+std::pair<double, double> slid_on(float viscosity, float adhesion, float time_step) {
+  SolverConfig of_it = config();
+  of_it.time_step = time_step;
+  Simulation s(of_it);
+  const MaterialId fluid =
+      s.add_material({.alpha = 1, .viscosity = viscosity, .particle_mass = 2, .adhesion = adhesion});
+  s.add_body({.positions = {{0, 0, 0.5f}}, .spacing = 1, .velocity = {0.5f, 0, 0}}, fluid);
+  const ColliderId floor =
+      s.add_collider({.shape = Plane{{0, 0, 1}, 0}, .friction = 0.5f, .measure_load = true});
+  double given = 0;
+  while (s.time() < 1) {
+    s.step_towards(1);
+    given += static_cast<double>(s.load(floor).impulse.x());
+  }
+  return {static_cast<double>(s.velocities()[0].x()), given};
+}
+
+// The stress is μ v/(h/2) on an area of h², so that a mass of 2 slows at a rate of μ.
+TEST(wall_hold, slows_what_sticks_by_its_viscosity_and_not_by_friction_at_any_step) {
+  for (const float step : {0.15f, 0.05f}) {
+    for (const float viscosity : {0.25f, 1.0f}) {
+      const auto [left, given] = slid_on(viscosity, 100, step);
+      EXPECT_NEAR(left, 0.5 * std::exp(-static_cast<double>(viscosity)), 1e-4) << viscosity << ' ' << step;
+      EXPECT_NEAR(given, 2 * (0.5 - left), 1e-4) << "the floor gets it";
+    }
+    EXPECT_NEAR(slid_on(100, 0.3f, step).first, 0.5 - 0.3 / 2, 1e-4) << "no more than adhesion";
+    EXPECT_NEAR(slid_on(0.25f, 0, step).first, 0.5 - 0.5 * 0.3, 1e-4) << "Coulomb's friction";
+  }
+}
+
 TEST(wall_pressure, gives_the_same_bits_for_any_number_of_threads_and_level) {
   const auto hash = [](int threads, InstructionLevel level) {
     SolverConfig solver = config(true, threads);

@@ -70,8 +70,8 @@ struct Material {
   float cohesion = 0.0f;
   /// Coulomb's μ_f where it touches other bodies, >= 0; that of a pair is √(μ μ'). Colliders have their own.
   float friction = 0.5f;
-  /// Stress up to which it sticks to other bodies that touch it [Pa], >= 0; that of a pair is √(a a').
-  /// Sticking particles hold against friction with as much more.
+  /// Stress up to which it sticks to bodies that touch it [Pa], >= 0, √(a a') of a pair: friction holds with
+  /// as much more. Where alpha is 1 walls hold it by its viscosity up to this, and no more by their friction.
   float adhesion = 0.0f;
   /// Damping time of elasticity, τ [s], >= 0: the pull is that at x + τ v, so that a mode of frequency ω
   /// [rad/s] has a damping ratio of ω τ/2. With the longest step Δt and a = (1 − alpha) Δt²/(time_step
