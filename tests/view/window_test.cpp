@@ -276,6 +276,16 @@ TEST_F(view_window, the_field_of_view_is_seen_at_once) {
   EXPECT_GT(far_off(read_png(scratch() / "narrow.png"), read_png(scratch() / "wide.png"), 16), 0.05);
 }
 
+TEST_F(view_window, all_that_can_be_pressed_lies_inside_and_momentum_is_seen_at_the_default_size) {
+  const Played played =
+      play({tiny(), "--paused"}, "ready\npictures 4\nbars\nresize 660 600\npictures 8\nbars\nclose\n");
+  ASSERT_EQ(played.exit_code, 0) << played.out;
+  EXPECT_NE(played.out.find("of 1280 high 68 plots 3"), std::string::npos) << played.out;
+  EXPECT_EQ(number_behind(played.out, "of"), 660) << played.out;
+  EXPECT_GT(number_behind(played.out, "end"), 300) << played.out;
+  EXPECT_LT(number_behind(played.out, "end"), 660) << played.out;
+}
+
 TEST_F(view_window, help_is_shown_in_the_gallery_too) {
   const Played played =
       play({}, "pictures 3\nscreenshot plain.png\nkey h\npictures 3\nscreenshot help.png\nclose\n");

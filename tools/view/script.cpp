@@ -124,6 +124,9 @@ void Script::begin_other(Viewer& viewer, const std::vector<std::string>& words) 
     if (auto command = viewer.settings()->take_preset(0, words[1])) viewer.send(std::move(command));
   } else if (what == "message") {
     std::printf("shown %s\n", message_shown(viewer.frame(), viewer.state(), wall_seconds()).c_str());
+  } else if (what == "bars") {
+    std::printf("bars end %.0f of %d high %d plots %d\n", static_cast<double>(viewer.state().time_bar_end),
+                window.width(), viewer.state().time_height, viewer.state().plots);
   } else if (what == "copied") {
     std::printf("copied %s\n", window.copied().c_str());
   } else if (what == "hand") {

@@ -32,6 +32,7 @@ namespace mallow::view {
 ///   rung K               a place between accurate (0) and realtime
 ///   preset NAME          a material of data/materials in place of the first one
 ///   message              prints what the window says; copied: what the clipboard holds
+///   bars                 prints where the lower one ends, how high it is, and how many plots the upper one has
 ///   hand                 from here on the window waits and draws as for a hand, where something has changed
 ///   film                 prints how many pictures a film has so far, and of which frames of the scene
 ///   joined               until films are written

@@ -21,7 +21,8 @@ float width_of(const char* label) {
 }
 
 /// The next thing is on the line of the last one where so many pixels are left, else on the next line.
-void beside(float width, float gap = 4) {
+void beside(ViewState& state, float width, float gap = 4) {
+  state.time_bar_end = std::max(state.time_bar_end, ImGui::GetItemRectMax().x);
   const float end = ImGui::GetItemRectMax().x + gap + width;
   if (end <= ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine(0, gap);
 }
@@ -32,11 +33,11 @@ void help_of(const char* text) {
 
 void draw_tools(ViewState& state) {
   for (std::size_t k = 0; k < k_tool_names.size(); ++k) {
-    if (k > 0) beside(width_of(k_tool_names[k]));
+    if (k > 0) beside(state, width_of(k_tool_names[k]));
     if (toggle(k_tool_names[k], state.tool == static_cast<Tool>(k))) state.tool = static_cast<Tool>(k);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%zu: %s", k + 1, k_tool_docs[k]);
   }
-  beside(90, 8);
+  beside(state, 90, 8);
   ImGui::SetNextItemWidth(90);
   ImGui::SliderFloat("##strength", &state.strength, 0.1f, 10, "x %.2g", ImGuiSliderFlags_Logarithmic);
   help_of("strength of what the mouse does");
@@ -46,10 +47,10 @@ void draw_shown(ViewState& state, const Send& send) {
   const Drawn drawn = state.drawn;
   const Shown shown = state.shown;
   if (toggle("surface", drawn == Drawn::surface)) state.drawn = Drawn::surface;
-  beside(width_of("particles"));
+  beside(state, width_of("particles"));
   if (toggle("particles", drawn == Drawn::particles)) state.drawn = Drawn::particles;
   help_of("P: surface or particles");
-  beside(110);
+  beside(state, 110);
   ImGui::SetNextItemWidth(110);
   int number = static_cast<int>(shown);
   if (ImGui::Combo("##shown", &number, k_shown_names.data(), static_cast<int>(k_shown_names.size()))) {
@@ -73,14 +74,14 @@ void draw_rewind(const Frame& frame, ViewState& state, float width) {
 }
 
 void draw_pace(ViewState& state, const Send& send) {
-  beside(110, 8);
+  beside(state, 110, 8);
   ImGui::SetNextItemWidth(110);
   float speed = static_cast<float>(state.speed);
   bool changed = ImGui::SliderFloat("##speed", &speed, 0.05f, 4, "speed %.2f", ImGuiSliderFlags_Logarithmic);
   help_of("[ and ]: slow motion; 1 is the pace of a film");
   state.speed = static_cast<double>(speed);
   const char* const fastest = "as fast as it goes";
-  beside(width_of(fastest) + ImGui::GetFrameHeight(), 8);
+  beside(state, width_of(fastest) + ImGui::GetFrameHeight(), 8);
   changed |= ImGui::Checkbox(fastest, &state.as_fast_as_possible);
   if (changed)
     send([now = state.as_fast_as_possible ? std::numeric_limits<double>::infinity()
@@ -97,36 +98,38 @@ void draw_time_bar(const Frame& frame, ViewState& state, bool recording, const S
   ImGui::Begin(
       "time", nullptr,
       ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings);
+  state.time_bar_end = 0;
   if (toggle(frame.paused ? "Play" : "Pause", !frame.paused)) state.pause = true;
   help_of("Space");
-  beside(width_of("Step"));
+  beside(state, width_of("Step"));
   state.step |= ImGui::Button("Step");
   help_of(". (period): one step");
-  beside(width_of("Back"));
+  beside(state, width_of("Back"));
   state.back |= ImGui::Button("Back");
   help_of("Backspace: to the saved state before this one");
-  beside(width_of("Reset"));
+  beside(state, width_of("Reset"));
   state.reset |= ImGui::Button("Reset");
   help_of("R: to the start, with the settings as they are now");
   const float rewind = std::max(120.0f, size.x - 620);
-  beside(rewind, 8);
+  beside(state, rewind, 8);
   draw_rewind(frame, state, rewind);
   draw_pace(state, send);
   draw_tools(state);
-  beside(width_of("surface"), 24);
+  beside(state, width_of("surface"), 24);
   draw_shown(state, send);
   const char* const film = recording ? "Stop film" : "Film";
-  beside(width_of(film), 24);
+  beside(state, width_of(film), 24);
   if (toggle(film, recording)) state.film = true;
   help_of("F: record a film, every frame of the scene once");
-  beside(width_of("Save"));
+  beside(state, width_of("Save"));
   state.save |= ImGui::Button("Save");
   help_of("S: the scene as it stands, in a folder that mallow run --resume goes on from");
-  beside(width_of("Copy command"));
+  beside(state, width_of("Copy command"));
   state.copy |= ImGui::Button("Copy command");
   help_of("C: the command line that repeats this scene with these settings");
-  beside(width_of("?"));
+  beside(state, width_of("?"));
   if (ImGui::Button("?")) state.help = !state.help;
+  state.time_bar_end = std::max(state.time_bar_end, ImGui::GetItemRectMax().x);
   state.time_height = std::max(k_least_time_height, static_cast<int>(ImGui::GetCursorPosY()) + 6);
   ImGui::End();
 }

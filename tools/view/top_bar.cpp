@@ -63,22 +63,23 @@ void plot(const char* label, const char* unit, const std::vector<Sample>& sample
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s [%s], the last ten seconds", label, unit);
 }
 
-/// As many as there is room for.
-void draw_plots(const Frame& frame, float room) {
+/// As many as there is room for; returns how many.
+int draw_plots(const Frame& frame, float room) {
   constexpr float k_least = 124, k_most = 168, k_gap = 8;
   const int count = std::min(3, static_cast<int>(room / (k_least + k_gap)));
-  if (count == 0) return;
+  if (count <= 0) return 0;
   const float width = std::min(k_most, room / static_cast<float>(count) - k_gap - 4);
   const std::vector<Sample>& samples = frame.samples;
   const float lowest = samples.empty() ? 0 : std::ranges::min(samples, {}, &Sample::potential).potential;
   ImGui::SameLine();
   plot("moving", "J", samples, width, [](const Sample& sample) { return sample.kinetic; });
-  if (count == 1) return;
+  if (count == 1) return 1;
   ImGui::SameLine();
   plot("gravity", "J", samples, width, [&](const Sample& sample) { return sample.potential - lowest; });
-  if (count == 2) return;
+  if (count == 2) return 2;
   ImGui::SameLine();
   plot("momentum", "N s", samples, width, [](const Sample& sample) { return sample.momentum; });
+  return 3;
 }
 
 }  // namespace
@@ -108,7 +109,7 @@ void draw_top_bar(const Frame& frame, ViewState& state, double drawn_per_second)
   ImGui::Text("%.3f s, frame %d", stats.time, stats.frame);
   ImGui::Text("%d thread%s", stats.threads, stats.threads == 1 ? "" : "s");
   ImGui::EndGroup();
-  draw_plots(frame, size.x - ImGui::GetItemRectMax().x);
+  state.plots = draw_plots(frame, size.x - ImGui::GetItemRectMax().x);
   ImGui::End();
 }
 

@@ -35,6 +35,8 @@ struct ViewState {
   bool as_fast_as_possible = false;
   bool panels = true, help = false;
   int time_height = 68;     ///< of the bar at the bottom, which has more lines in a narrow window [pixels]
+  float time_bar_end = 0;   ///< where its farthest thing ends [pixels from the left]
+  int plots = 0;            ///< that the bar at the top has room for
   int rung = k_as_written;  ///< that the hand drags to
   bool drags_rung = false;
   bool keeps_rate = false;  ///< the governor holds target
