@@ -27,15 +27,12 @@ bool contains(const std::vector<std::string>& formats, const char* format) {
 
 /// What files say of each body, of those too that were thrown at the scene before it was saved.
 std::vector<MeshBody> mesh_bodies(const program::CachedRun& run) {
-  const std::vector<Appearance> appearances = program::body_appearances(run.scene, run.spacings.size());
+  const std::vector<Appearance> appearances = program::body_appearances(run.scene, run.materials);
   const std::vector<std::size_t> materials = body_materials(run.scene);
   std::vector<MeshBody> bodies;
-  for (std::size_t b = 0; b < run.spacings.size(); ++b) {
-    const auto& group = run.report.at("groups").at(b);
-    bodies.push_back(
-        {appearances[b], group.value("name", ""),
-         b < materials.size() ? run.scene.materials[materials[b]].name : group.value("material", "")});
-  }
+  for (std::size_t b = 0; b < run.spacings.size(); ++b)
+    bodies.push_back({appearances[b], run.report.at("groups").at(b).value("name", ""),
+                      b < materials.size() ? run.scene.materials[materials[b]].name : run.materials[b]});
   return bodies;
 }
 

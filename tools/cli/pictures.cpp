@@ -64,6 +64,7 @@ program::Stills prepare(const Scene& scene, const program::Cache& cache, const P
                         const std::vector<int>& frames) {
   program::Stills stills = stills_of(scene, cache, run);
   stills.set_frame_time(run.frame_time);
+  stills.set_appearances(run.appearances);
   std::filesystem::create_directories(cache.images_folder());
   cache.remove_images_but(frames);
   return stills;

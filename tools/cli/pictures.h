@@ -12,8 +12,9 @@ namespace mallow::cli {
 
 /// What pictures ask of the run that they are of.
 struct PictureRun {
-  std::vector<float> spacings;  ///< h of each body [m]
-  double frame_time;            ///< [s]
+  std::vector<float> spacings;          ///< h of each body [m]
+  std::vector<Appearance> appearances;  ///< of each body, by its slot
+  double frame_time;                    ///< [s]
   int threads;
 };
 

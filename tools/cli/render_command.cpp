@@ -13,6 +13,7 @@
 #include "cli/messages.h"
 #include "cli/pictures.h"
 #include "cli/summary.h"
+#include "program/body_appearances.h"
 #include "program/cached_run.h"
 #include "program/failure.h"
 #include "program/film.h"
@@ -38,8 +39,10 @@ std::string job_of(const program::CachedRun& run, const std::vector<int>& frames
 }
 
 PictureRun picture_run(const program::CachedRun& run) {
-  return {
-      .spacings = run.spacings, .frame_time = run.report.value("frame_time", 0.0), .threads = run.threads};
+  return {.spacings = run.spacings,
+          .appearances = program::body_appearances(run.scene, run.materials),
+          .frame_time = run.report.value("frame_time", 0.0),
+          .threads = run.threads};
 }
 
 /// Film, scene and reports, once all pictures are there.

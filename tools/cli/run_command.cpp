@@ -131,7 +131,10 @@ program::CheckpointInterval checkpoint_interval(const RunOptions& options,
 void describe(const Scene& scene, int threads, Simulation& simulation, program::RunReport& report) {
   report.threads = threads;
   report.info = simulation.info();
-  report.appearances = program::body_appearances(scene, report.info.bodies.size());
+  std::vector<BodyInfo> by_slot;
+  program::follow_bodies(simulation, by_slot);
+  report.info.bodies = std::move(by_slot);
+  report.appearances = program::body_appearances(scene, program::material_names(report.info.bodies));
   report.frame_time = frame_time(scene, report.info);
 }
 
@@ -252,7 +255,9 @@ Run resume(const RunOptions& options, int threads) {
   if (const std::string said = program::nothing_left(run.plan, run.report); !said.empty())
     std::fprintf(stderr, "%s\n", said.c_str());
   describe(run.scene, threads, *run.simulation, run.report);
-  if (run.report.info.bodies.size() < body_materials(run.scene).size()) {
+  const bool any_gone =
+      std::ranges::any_of(run.report.info.bodies, [](const BodyInfo& body) { return body.particles == 0; });
+  if (any_gone || run.report.info.bodies.size() < body_materials(run.scene).size()) {
     const std::filesystem::path file = run.cache->report_file();
     program::add_gone_bodies(program::read_report(file), file, run.report.info);
   }
@@ -300,7 +305,8 @@ void run_stages(const RunOptions& options, Run& run) {
   if (!run.scene.render.eye) {
     std::vector<float> spacings;
     for (const BodyInfo& body : run.report.info.bodies) spacings.push_back(body.spacing);
-    take_pictures(run.scene, *cache, {spacings, run.report.frame_time, run.plan.threads},
+    take_pictures(run.scene, *cache,
+                  {spacings, run.report.appearances, run.report.frame_time, run.plan.threads},
                   run.report.stage_seconds);
   }
   const program::StageTimer timer(run.report.stage_seconds, program::Stage::film);

@@ -18,20 +18,35 @@ const Appearance k_thrown{Vec3(0.05f, 0.30f, 0.55f), Finish::gloss};
 
 }  // namespace
 
-std::vector<Appearance> body_appearances(const Scene& scene, std::size_t bodies) {
+std::vector<Appearance> body_appearances(const Scene& scene, std::span<const std::string> materials) {
+  std::vector<Appearance> looks;
+  for (std::size_t index = 0; const SceneMaterial& material : scene.materials)
+    looks.push_back({material.color.value_or(k_palette[index++ % k_palette.size()]), material.finish});
   std::vector<Appearance> appearances;
-  for (const std::size_t index : body_materials(scene)) {
-    const SceneMaterial& material = scene.materials[index];
-    appearances.push_back({material.color.value_or(k_palette[index % k_palette.size()]), material.finish});
+  for (const std::size_t index : body_materials(scene)) appearances.push_back(looks[index]);
+  for (std::size_t slot = appearances.size(); slot < materials.size(); ++slot) {
+    const auto of = std::ranges::find(scene.materials, materials[slot], &SceneMaterial::name);
+    appearances.push_back(of == scene.materials.end()
+                              ? k_thrown
+                              : looks[static_cast<std::size_t>(of - scene.materials.begin())]);
   }
-  if (appearances.size() < bodies) appearances.resize(bodies, k_thrown);
   return appearances;
 }
 
-std::size_t body_slots(const Simulation& simulation) {
-  std::size_t slots = 0;
-  for (const BodyId body : simulation.bodies()) slots = std::max<std::size_t>(slots, slot_of(body) + 1);
-  return slots;
+bool follow_bodies(const Simulation& simulation, std::vector<BodyInfo>& by_slot) {
+  const std::vector<BodyId> bodies = simulation.bodies();
+  const auto slot = [](BodyId body) { return static_cast<std::size_t>(slot_of(body)); };
+  if (std::ranges::all_of(bodies, [&](BodyId body) { return slot(body) < by_slot.size(); })) return false;
+  const std::vector<BodyInfo> known = simulation.info().bodies;
+  by_slot.resize(slot(*std::ranges::max_element(bodies, {}, slot)) + 1);
+  for (std::size_t b = 0; b < bodies.size(); ++b) by_slot[slot(bodies[b])] = known[b];
+  return true;
+}
+
+std::vector<std::string> material_names(std::span<const BodyInfo> bodies) {
+  std::vector<std::string> names;
+  for (const BodyInfo& body : bodies) names.push_back(body.material);
+  return names;
 }
 
 }  // namespace mallow::program

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <cstddef>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "mallow/scene.h"
@@ -8,10 +9,14 @@
 
 namespace mallow::program {
 
-/// The appearance of each body: that of its material, with a colour of a palette where that names none.
-/// bodies: how many there are by now, where some are not the scene's: what was thrown has a look of its own.
-std::vector<Appearance> body_appearances(const Scene& scene, std::size_t bodies = 0);
-/// How many slots the bodies of a simulation take: those that are gone count.
-std::size_t body_slots(const Simulation& simulation);
+/// The appearance of each body by its slot: that of its material, with a colour of a palette where that names
+/// none. materials: their names by slot, where bodies have come that the scene has not: parts that were torn
+/// off look as their material does, what was thrown at the scene has a look of its own.
+std::vector<Appearance> body_appearances(const Scene& scene, std::span<const std::string> materials = {});
+
+/// What is known of each body by its slot: brought up to date where bodies have come since; of those that are
+/// gone, what was known stays. Returns whether any has come.
+bool follow_bodies(const Simulation& simulation, std::vector<BodyInfo>& by_slot);
+std::vector<std::string> material_names(std::span<const BodyInfo> bodies);
 
 }  // namespace mallow::program

@@ -92,8 +92,9 @@ CachedRun open_cached_run(const CachedRunOptions& options, const std::string& se
     throw IoError({cache.report_file().string(), 0, 0, "groups", "does not list the groups of scene.toml"});
   }
   if (writes) Cache::refuse_inputs(options.folder, InputFiles(scene), "", false);
-  return {std::move(cache), std::move(scene), std::move(report), std::move(spacings),
-          resolve_threads(options.threads)};
+  std::vector<std::string> materials = material_names(report, cache.report_file());
+  return {std::move(cache),    std::move(scene),     std::move(report),
+          std::move(spacings), std::move(materials), resolve_threads(options.threads)};
 }
 
 void close_cached_run(CachedRun& run, const StageTimes& seconds, std::span<const Stage> stages) {

@@ -24,7 +24,8 @@ struct CachedRun {
   Cache cache;
   Scene scene;
   nlohmann::ordered_json report;
-  std::vector<float> spacings;  ///< h of each body [m]
+  std::vector<float> spacings;         ///< h of each body, by its slot [m]
+  std::vector<std::string> materials;  ///< names of the materials of the same
   int threads;
 };
 

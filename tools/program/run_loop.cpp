@@ -9,6 +9,7 @@
 
 #include "mallow/files.h"
 #include "program/background_writer.h"
+#include "program/body_appearances.h"
 #include "program/checkpoint.h"
 #include "program/failure.h"
 #include "program/frame_surface.h"
@@ -23,7 +24,8 @@ class FrameWriter {
  public:
   FrameWriter(const Scene& scene, std::span<Skin> skins, const RunPlan& plan, const Cache& cache,
               const ParticleFrame& first, RunReport& report, const Series* series)
-      : cache_(cache),
+      : scene_(scene),
+        cache_(cache),
         report_(report),
         series_(series),
         skins_(skins),
@@ -39,6 +41,7 @@ class FrameWriter {
       std::vector<float> spacings;
       for (const BodyInfo& body : report.info.bodies) spacings.push_back(body.spacing);
       stills_.emplace(scene, first, spacings, plan.threads);
+      stills_->set_appearances(report.appearances);
       stills_->set_frame_time(report.frame_time);
     }
   }
@@ -73,6 +76,10 @@ class FrameWriter {
         write_mesh_ply(cache_.surface_file(number), *mesh);
         whole_frames_ = number;
       });
+    }
+    if (follow_bodies(simulation, report_.info.bodies)) {
+      report_.appearances = body_appearances(scene_, material_names(report_.info.bodies));
+      if (stills_) stills_->set_appearances(report_.appearances);
     }
     if (stills_) {
       const StageTimer timer(report_.stage_seconds, Stage::pictures);
@@ -110,6 +117,7 @@ class FrameWriter {
   }
 
  private:
+  const Scene& scene_;
   const Cache& cache_;
   RunReport& report_;
   const Series* series_;

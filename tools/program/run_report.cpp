@@ -283,32 +283,45 @@ void write_report(const std::filesystem::path& file, const nlohmann::ordered_jso
 
 void add_gone_bodies(const nlohmann::ordered_json& earlier, const std::filesystem::path& file,
                      SimulationInfo& info) {
-  std::vector<BodyInfo> all;
   try {
-    for (const auto& group : earlier.at("groups")) {
-      const auto name = group.at("name").get<std::string>();
-      const auto here = std::ranges::find(info.bodies, name, &BodyInfo::name);
-      if (here != info.bodies.end())
-        all.push_back(*here);
-      else
-        all.push_back({.name = name,
-                       .material = group.at("material").get<std::string>(),
-                       .spacing = group.at("spacing").get<float>()});
+    const auto& groups = earlier.at("groups");
+    info.bodies.resize(std::max(info.bodies.size(), groups.size()));
+    for (std::size_t slot = 0; slot < groups.size(); ++slot) {
+      if (info.bodies[slot].particles > 0) continue;
+      const auto& group = groups[slot];
+      info.bodies[slot] = {.name = group.at("name").template get<std::string>(),
+                           .material = group.at("material").template get<std::string>(),
+                           .spacing = group.at("spacing").template get<float>()};
     }
   } catch (const nlohmann::ordered_json::exception& error) {
     throw IoError({file.string(), 0, 0, "groups", error.what()});
   }
-  info.bodies = std::move(all);
 }
 
-std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
-  std::vector<float> spacings;
+namespace {
+
+/// A value of each body.
+template <class T>
+std::vector<T> of_bodies(const nlohmann::ordered_json& report, const char* key,
+                         const std::filesystem::path& file) {
+  std::vector<T> values;
   try {
-    for (const auto& group : report.at("groups")) spacings.push_back(group.at("spacing").get<float>());
+    for (const auto& group : report.at("groups")) values.push_back(group.at(key).template get<T>());
   } catch (const nlohmann::ordered_json::exception& error) {
     throw IoError({file.string(), 0, 0, "groups", error.what()});
   }
-  return spacings;
+  return values;
+}
+
+}  // namespace
+
+std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
+  return of_bodies<float>(report, "spacing", file);
+}
+
+std::vector<std::string> material_names(const nlohmann::ordered_json& report,
+                                        const std::filesystem::path& file) {
+  return of_bodies<std::string>(report, "material", file);
 }
 
 }  // namespace mallow::program

@@ -107,5 +107,8 @@ void add_gone_bodies(const nlohmann::ordered_json& earlier, const std::filesyste
 /// What later commands need of a report: h of each body [m]. Throws IoError where the report does not fit
 /// the scene.
 std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file);
+/// Names of the materials of the same. Throws IoError likewise.
+std::vector<std::string> material_names(const nlohmann::ordered_json& report,
+                                        const std::filesystem::path& file);
 
 }  // namespace mallow::program

@@ -44,7 +44,7 @@ render::Image Stills::take(const ParticleFrame& frame, const Mesh& surface) {
   const std::vector<Collider> colliders = colliders_at(scene_, frame.time);
   if (const auto last = std::ranges::max_element(frame.bodies);
       last != frame.bodies.end() && *last >= palette_.size())
-    palette_ = body_appearances(scene_, std::size_t{1} + *last);
+    palette_ = body_appearances(scene_, std::vector<std::string>(std::size_t{1} + *last));
   if (!surface.triangles.empty()) return renderer_.render(surface, palette_, colliders, camera_);
   return renderer_.render_points(frame.positions, ball_radius_, frame.bodies, palette_, colliders, camera_);
 }

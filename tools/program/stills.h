@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "mallow/files.h"
@@ -31,6 +32,8 @@ class Stills {
     renderer_.set_exposure(scene_.render.shutter * static_cast<float>(seconds));
   }
 
+  /// Of each body, by its slot, where some have come that the scene has not.
+  void set_appearances(std::vector<Appearance> appearances) { palette_ = std::move(appearances); }
   /// The surface of a frame, or its particles where the surface is empty.
   render::Image take(const ParticleFrame& frame, const Mesh& surface);
 

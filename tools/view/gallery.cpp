@@ -122,7 +122,6 @@ struct Gallery::Maker {
 
 Gallery::Gallery(const fs::path& folder, bool plain)
     : folder_(folder),
-      plain_(plain),
       scenes_(find_scenes(folder)),
       pictures_(scenes_.size(), 0),
       tried_(scenes_.size(), false),

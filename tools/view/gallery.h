@@ -51,7 +51,6 @@ class Gallery {
   void finish_thumbnail();
 
   std::filesystem::path folder_;
-  bool plain_;
   std::vector<GalleryScene> scenes_;
   std::vector<GLuint> pictures_;  ///< of each scene; 0: none yet
   std::vector<bool> tried_;

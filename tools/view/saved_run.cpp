@@ -18,6 +18,7 @@ void Session::save_run(const std::string& folder) {
   report.threads = options_.threads;
   report.info = simulation_->info();
   report.appearances = palette();
+  report.info.bodies = bodies_;
   report.frame_time = frame_time_;
   report.frames = frame_;
   report.steps = simulation_->step_count();

@@ -52,6 +52,7 @@ void Session::take_over(Simulation simulation, std::vector<Skin> skins, int fram
   pinned_.clear();
   hand_pins_.clear();
   simulation_.emplace(std::move(simulation));
+  bodies_.clear();
   skins_ = std::move(skins);
   frame_ = first_frame_ = frame;
 }
@@ -207,6 +208,7 @@ void Session::take_settings(const Settings& settings) {
 
 void Session::restore(const Moment& moment) {
   simulation_.emplace(Simulation::restore(moment.state, options_.threads));
+  bodies_.clear();
   surface_.reset();
   skins_.clear();
   while (const std::string* bytes = moment.state.find(skin_chunk(skins_.size())))

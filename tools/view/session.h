@@ -137,7 +137,7 @@ class Session {
   void fill_colliders(Frame& frame) const;
   void fill_stats(double wall, FrameStats& stats);
   void add_sample(double wall);
-  std::vector<Appearance> palette() const;
+  std::vector<Appearance> palette();
   void report_contacts();
   MaterialId material_id(std::size_t index) const;
   /// Frames of the scene that have ended by then.
@@ -147,6 +147,7 @@ class Session {
   SessionOptions options_;
   Scene scene_;                           ///< as it is set now, without the rung
   std::optional<Simulation> simulation_;  ///< at one place while there is one: the grab's force refers to it
+  std::vector<BodyInfo> bodies_;          ///< by their slots, as palette() knows them
   std::vector<std::optional<MaterialId>> materials_;  ///< of the scene's, where bodies have them
   std::optional<MaterialId> ball_material_;
   std::map<std::size_t, SceneMaterial> wishes_;  ///< materials that wait for the scene to be built anew

@@ -30,8 +30,9 @@ std::array<float, 2> range_of_values(std::vector<float> values) {
 
 }  // namespace
 
-std::vector<Appearance> Session::palette() const {
-  return program::body_appearances(scene_, program::body_slots(*simulation_));
+std::vector<Appearance> Session::palette() {
+  program::follow_bodies(*simulation_, bodies_);
+  return program::body_appearances(scene_, program::material_names(bodies_));
 }
 
 void Session::draw_mesh(Mesh& mesh) {
