@@ -108,9 +108,9 @@ struct FieldTable<Material> {
       Field{"cohesion", &Material::cohesion, between(0, 1), "", "share of a negative pressure that acts"},
       Field{"friction", &Material::friction, k_not_negative, "",
             "Coulomb's μ_f where it touches other bodies"},
-      Field{
-          "adhesion", &Material::adhesion, k_not_negative, "Pa",
-          "stress up to which it sticks to other bodies that touch it; that of a pair is the geometric mean"},
+      Field{"adhesion", &Material::adhesion, k_not_negative, "Pa",
+            "stress up to which it sticks to other bodies that touch it, the geometric mean of a pair; a "
+            "fluid to walls too"},
       Field{"damping_time", &Material::damping_time, k_not_negative, "s",
             "of elasticity, τ: a mode of frequency ω has a damping ratio of ω τ/2"},
       Field{"deformation_damping", &Material::deformation_damping, k_not_negative, "1/s",
