@@ -39,14 +39,17 @@ class Fuzzer:
         self.fill()
 
     def fill(self):
-        self.pool = [cube(3), cube(2, alpha=1.0), cube(3, plastic_yield=0.1, temperature=300.0), mallow.Surfacer(),
-                     mallow.parse_scene(SCENE), mallow.sample(mallow.Lattice([3, 3, 3], 1, [8, 0, 1])),
-                     mallow.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])]
-        self.pool[0].step()
-        self.pool += [self.pool[3].draw(self.pool[0]), self.pool[0].save(), mallow.snapshot(self.pool[0]),
-                      mallow.Skin(self.pool[0], self.pool[0].bodies()[0], mallow.surface(self.pool[0].positions, 1)),
-                      mallow.Emitter(radius=1.5, pose=mallow.Pose([0, 0, 9]), most_particles=200)]
-        self.pool += self.pool[0].bodies() + self.pool[0].collider_ids()
+        """The pool anew. Other threads see it when it is whole."""
+        cubes = [cube(3), cube(2, alpha=1.0), cube(3, plastic_yield=0.1, temperature=300.0)]
+        simulation, surfacer = cubes[0], mallow.Surfacer()
+        simulation.step()
+        skin = mallow.Skin(simulation, simulation.bodies()[0], mallow.surface(simulation.positions, 1))
+        self.pool = [*cubes, surfacer, mallow.parse_scene(SCENE),
+                     mallow.sample(mallow.Lattice([3, 3, 3], 1, [8, 0, 1])),
+                     mallow.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]),
+                     surfacer.draw(simulation), simulation.save(), mallow.snapshot(simulation), skin,
+                     mallow.Emitter(radius=1.5, pose=mallow.Pose([0, 0, 9]), most_particles=200),
+                     *simulation.bodies(), *simulation.collider_ids()]
 
     def number(self):
         return self.random.choice([0, 1, -1, 2, 3, 0.5, 1e-3, -0.0, 1e30, -1e30, float("nan"), float("inf"),

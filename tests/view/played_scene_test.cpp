@@ -130,7 +130,9 @@ TEST(view_played_scene, saved_with_a_ball_goes_on_with_pictures) {
   const float spacings[] = {0.01f, 0.01f};
   program::Stills stills(saved.scene, frame, spacings, 1);
   EXPECT_NO_THROW(stills.take(frame, {}));
-  EXPECT_EQ(program::body_appearances(saved.scene, program::body_slots(saved.simulation)).size(), 2u);
+  std::vector<BodyInfo> bodies;
+  program::follow_bodies(saved.simulation, bodies);
+  EXPECT_EQ(program::body_appearances(saved.scene, program::material_names(bodies)).size(), 2u);
   Session other({.threads = 1});
   other.open_run(folder.string());
   Ray beside = from_above(other);

@@ -120,7 +120,7 @@ struct Gallery::Maker {
   int built = -1;
 };
 
-Gallery::Gallery(const fs::path& folder, bool plain)
+Gallery::Gallery(const fs::path& folder)
     : folder_(folder),
       scenes_(find_scenes(folder)),
       pictures_(scenes_.size(), 0),

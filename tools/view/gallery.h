@@ -31,8 +31,7 @@ std::filesystem::path thumbnail_file(const GalleryScene& scene);
 /// nobody plays, and their pictures are kept in the user's cache.
 class Gallery {
  public:
-  /// plain: see SceneDrawer.
-  Gallery(const std::filesystem::path& folder, bool plain);
+  explicit Gallery(const std::filesystem::path& folder);
   ~Gallery();
   Gallery(const Gallery&) = delete;
   Gallery& operator=(const Gallery&) = delete;

@@ -79,7 +79,7 @@ void Viewer::open(const std::filesystem::path& scene) {
 }
 
 Gallery& Viewer::gallery() {
-  if (!gallery_) gallery_ = std::make_unique<Gallery>(options_.scenes, window_.draws_in_software());
+  if (!gallery_) gallery_ = std::make_unique<Gallery>(options_.scenes);
   return *gallery_;
 }
 
