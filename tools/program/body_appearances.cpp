@@ -24,11 +24,11 @@ std::vector<Appearance> body_appearances(const Scene& scene, std::span<const std
     looks.push_back({material.color.value_or(k_palette[index++ % k_palette.size()]), material.finish});
   std::vector<Appearance> appearances;
   for (const std::size_t index : body_materials(scene)) appearances.push_back(looks[index]);
-  for (std::size_t slot = appearances.size(); slot < materials.size(); ++slot) {
+  appearances.resize(std::max(appearances.size(), materials.size()), k_thrown);
+  for (std::size_t slot = 0; slot < materials.size(); ++slot) {
     const auto of = std::ranges::find(scene.materials, materials[slot], &SceneMaterial::name);
-    appearances.push_back(of == scene.materials.end()
-                              ? k_thrown
-                              : looks[static_cast<std::size_t>(of - scene.materials.begin())]);
+    if (of != scene.materials.end())
+      appearances[slot] = looks[static_cast<std::size_t>(of - scene.materials.begin())];
   }
   return appearances;
 }
@@ -36,9 +36,13 @@ std::vector<Appearance> body_appearances(const Scene& scene, std::span<const std
 bool follow_bodies(const Simulation& simulation, std::vector<BodyInfo>& by_slot) {
   const std::vector<BodyId> bodies = simulation.bodies();
   const auto slot = [](BodyId body) { return static_cast<std::size_t>(slot_of(body)); };
-  if (std::ranges::all_of(bodies, [&](BodyId body) { return slot(body) < by_slot.size(); })) return false;
+  // A slot may be another's by now.
+  const auto is_known = [&](BodyId body) {
+    return slot(body) < by_slot.size() && by_slot[slot(body)].name == simulation.name(body);
+  };
+  if (std::ranges::all_of(bodies, is_known)) return false;
   const std::vector<BodyInfo> known = simulation.info().bodies;
-  by_slot.resize(slot(*std::ranges::max_element(bodies, {}, slot)) + 1);
+  by_slot.resize(std::max(by_slot.size(), slot(*std::ranges::max_element(bodies, {}, slot)) + 1));
   for (std::size_t b = 0; b < bodies.size(); ++b) by_slot[slot(bodies[b])] = known[b];
   return true;
 }
