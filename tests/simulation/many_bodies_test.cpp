@@ -95,18 +95,24 @@ INSTANTIATE_TEST_SUITE_P(of_a_crowd, many_bodies,
                          testing::Values(Crowd{1, 1, 1, false}, Crowd{1, 1, 1, true}, Crowd{1, 1, 6, false},
                                          Crowd{2, 0, 2, false}, Crowd{2, 0, 6, false}));
 
-/// Processor time, for each of a crowd, of a call for it after they all fell asleep, each on its own [s].
-double cost_of_waking(std::size_t across) {
+/// Bodies of one particle that have all fallen asleep, each on its own.
+Simulation sleeping_crowd(std::size_t across) {
   Simulation s(SolverConfig{.time_step = 0.15f,
                             .support_radius = 2.1f,
                             .gravity = {0, 0, 0},
                             .sleep_speed = 1.0f,
                             .sleep_time = 0.1f});
   const MaterialId material = s.add_material(Material{});
-  std::vector<BodyId> bodies;
   for (std::size_t b = 0; b < across * across * across; ++b)
-    bodies.push_back(s.add_body(cube(1, place(b, across, 6)), material));
-  while (std::ranges::any_of(bodies, [&](BodyId body) { return s.is_awake(body); })) s.step();
+    s.add_body(cube(1, place(b, across, 6)), material);
+  while (std::ranges::any_of(s.bodies(), [&](BodyId body) { return s.is_awake(body); })) s.step();
+  return s;
+}
+
+/// Processor time, for each of a crowd that sleeps, of a call for it [s].
+double cost_of_waking(std::size_t across) {
+  Simulation s = sleeping_crowd(across);
+  const std::vector<BodyId> bodies = s.bodies();
   return seconds([&] {
            for (const BodyId body : bodies) s.wake(body);
          }) /
@@ -144,16 +150,7 @@ TEST(many_bodies_that, have_flowed_look_for_each_other_for_what_few_cost_each) {
 
 /// Processor time of taking most bodies of a crowd that sleeps out, all in one call, for each [s].
 double cost_of_removing(std::size_t across) {
-  Simulation s(SolverConfig{.time_step = 0.15f,
-                            .support_radius = 2.1f,
-                            .gravity = {0, 0, 0},
-                            .sleep_speed = 1.0f,
-                            .sleep_time = 0.1f});
-  const MaterialId material = s.add_material(Material{});
-  std::vector<BodyId> bodies;
-  for (std::size_t b = 0; b < across * across * across; ++b)
-    bodies.push_back(s.add_body(cube(1, place(b, across, 6)), material));
-  while (s.is_awake(bodies.back())) s.step();
+  Simulation s = sleeping_crowd(across);
   std::vector<ParticleId> ids(s.ids().begin(), s.ids().end());
   std::ranges::sort(ids);
   ids.resize(ids.size() - 9);
