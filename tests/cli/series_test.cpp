@@ -69,6 +69,43 @@ TEST_F(cli_series, has_a_row_for_each_frame_and_changes_no_bit_of_the_run) {
   EXPECT_EQ(read_text(at("b.csv")), text) << "whatever the number of threads";
 }
 
+TEST_F(cli_series, counts_what_was_torn_off_a_body_and_pictures_of_it_are_taken) {
+  const std::string cut = write("cut.toml", R"([solver]
+support_radius = 2.1
+[[material]]
+name = "jelly"
+[[body]]
+material = "jelly"
+splits = true
+box = { count = [24, 3, 3], spacing = 1.0, corner = [0, 0, 5], jitter = 0 }
+[[sink]]
+box = { min = [10, -9, -9], max = [14, 9, 19] }
+[run]
+frames = 4
+frame_time = 0.45
+[render]
+width = 64
+height = 36
+samples = 1
+)");
+  const Outcome made = run_mallow({"run", cut, "--out", at("cut"), "--series", at("cut.csv"), "--no-film"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  auto series = columns(read_text(at("cut.csv")));
+  for (std::size_t k = 1; k <= 4; ++k) {
+    EXPECT_EQ(series.at("particles")[k], 20 * 9) << k;
+    EXPECT_EQ(series.at("parts")[k], 2) << k;
+    EXPECT_EQ(series.at("awake_bodies")[k], 2) << k;
+    EXPECT_NEAR(series.at("extent_x")[k], 23, 0.5) << k;
+    EXPECT_NEAR(series.at("momentum_z")[k], -0.3 * 0.45 * static_cast<double>(k) * 180, 0.5) << k;
+  }
+  const nlohmann::json groups = read_json(at("cut/report.json")).at("groups");
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(groups[1].at("name"), "body[0], part 2");
+  EXPECT_EQ(groups[1].at("color"), groups[0].at("color"));
+  const Outcome again = run_mallow({"render", at("cut"), "--no-film"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+}
+
 TEST_F(cli_series, forces_on_colliders_and_weight_are_what_changes_the_momentum) {
   ASSERT_EQ(run({"--frames", "20", "--series", at("a.csv")}).exit_code, 0);
   auto series = columns(read_text(at("a.csv")));

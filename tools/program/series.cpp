@@ -145,7 +145,8 @@ Series::Series(const std::string& text, const fs::path& file, Simulation& simula
                        .name = body.at("name").get<std::string>(),
                        .parts = body.at("parts").get<std::size_t>(),
                        .crumbs = body.at("crumbs").get<std::size_t>(),
-                       .is_heated = body.value("is_heated", false)});
+                       .is_heated = body.value("is_heated", false),
+                       .is_described = body.value("is_described", true)});
   state.at("row_time").get_to(row_time_);
   state.at("largest_compression").get_to(largest_compression_);
   state.at("mean_compression").get_to(mean_compression_);
@@ -153,15 +154,18 @@ Series::Series(const std::string& text, const fs::path& file, Simulation& simula
   loads_.resize(colliders_.size());
 }
 
+std::size_t Series::described() const {
+  return static_cast<std::size_t>(std::ranges::count(bodies_, true, &Body::is_described));
+}
 bool Series::has_body_columns() const {
-  return bodies_.size() > 1 && bodies_.size() <= k_most_described;
+  return described() > 1 && described() <= k_most_described;
 }
 bool Series::has_collider_columns() const {
   return colliders_.size() <= k_most_described;
 }
 
 bool Series::has_temperatures(const Body& body) const {
-  return body.is_heated && bodies_.size() <= k_most_described;
+  return body.is_described && body.is_heated && described() <= k_most_described;
 }
 
 std::string Series::header() const {
@@ -212,9 +216,15 @@ void Series::add_step(const StepReport& step, const Simulation& simulation) {
   mean_compression_ = step.mean_compression;
   for (std::size_t k = 0; k < colliders_.size(); ++k) add(simulation.load(colliders_[k]), loads_[k]);
   for (const BodyEvent& event : simulation.events()) {
-    if (event.kind != BodyEvent::Kind::torn && event.kind != BodyEvent::Kind::merged) continue;
+    using Kind = BodyEvent::Kind;
+    if (event.kind != Kind::torn && event.kind != Kind::merged && event.kind != Kind::split) continue;
     const auto body = std::ranges::find(bodies_, event.body, &Body::id);
     if (body == bodies_.end()) continue;
+    if (event.kind == Kind::split) {
+      body->parts = 1;
+      bodies_.push_back({.id = *event.other, .name = {}, .is_described = false});
+      continue;
+    }
     body->parts = event.parts;
     body->crumbs = event.crumbs;
   }
@@ -229,8 +239,9 @@ void Series::add_row(int frame, Simulation& simulation, const std::optional<doub
     const bool is_there = std::ranges::find(ids, body.id) != ids.end();
     const Simulation::Rows rows = is_there ? simulation.rows(body.id) : Simulation::Rows{};
     if (has_temperatures(body)) add_temperatures(simulation, rows, of_heat);
+    const bool is_told = body.is_described && has_body_columns();
     if (!is_there) {
-      if (has_body_columns())
+      if (is_told)
         for (int cell = 0; cell < 7; ++cell) of_bodies.add(std::string());
       continue;
     }
@@ -244,7 +255,7 @@ void Series::add_row(int frame, Simulation& simulation, const std::optional<doub
     sums.crumbs += body.crumbs;
     if (!volume_of_surface) sums.volume += simulation.volume(body.id);
     sums.momentum += motion.momentum;
-    if (!has_body_columns()) continue;
+    if (!is_told) continue;
     of_bodies.add(free.height());
     of_bodies.add(free.top());
     of_bodies.add(motion.center_of_mass);
@@ -292,7 +303,8 @@ std::string Series::saved() const {
                       {"name", body.name},
                       {"parts", body.parts},
                       {"crumbs", body.crumbs},
-                      {"is_heated", body.is_heated}});
+                      {"is_heated", body.is_heated},
+                      {"is_described", body.is_described}});
   for (const ColliderLoad& load : loads_) loads.push_back(nlohmann::json(to_json(load)));
   const nlohmann::json state = {{"file", fs::absolute(file_.file()).string()},
                                 {"bytes", file_.size()},
@@ -318,6 +330,7 @@ const char* series_help() {
          "momentum_x, _y, _z: of all particles;\n"
          "parts: pieces that shape matching holds together, of four particles or more, one a body until an\n"
          "  update of its reference shape tears or merges it; crumbs: smaller pieces, as of then;\n"
+         "  what splits off a body counts in all sums and has no columns of its own;\n"
          "awake_bodies: that do not sleep;\n"
          "largest_compression: of a particle in any step since the row before; mean_compression: over all\n"
          "  particles in the last step; both where solver.volume_iterations run, else 0;\n"

@@ -111,10 +111,18 @@ void bind_pictures(py::module_& module) {
       },
       py::arg("file"), py::arg("image"), doc("render.write_png"));
   module.def(
-      "body_appearances", [](const py::object& scene) { return program::body_appearances(scene_of(scene)); },
-      py::arg("scene"),
+      "body_appearances",
+      [](const py::object& scene, SimulationCell* cell) {
+        std::vector<BodyInfo> bodies;
+        if (cell) {
+          const Use use = reading(*cell);
+          program::follow_bodies(cell->simulation, bodies);
+        }
+        return program::body_appearances(scene_of(scene), program::material_names(bodies));
+      },
+      py::arg("scene"), py::arg("simulation") = py::none(),
       "The appearance of each body of a scene: that of its material, with a colour of a palette where that "
-      "names none.");
+      "names none. simulation: of all that are in it now, parts that were torn off among them.");
   module.def(
       "visible_colliders",
       [](const py::object& scene) { return program::visible_colliders(scene_of(scene)); }, py::arg("scene"),

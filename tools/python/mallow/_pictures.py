@@ -16,7 +16,8 @@ def render(scene, simulation, mesh=None, file=None, camera=None, threads=0):
     colliders = _mallow.visible_colliders(scene)
     if camera is None:
         camera = _mallow.frame_camera(_mallow.bounds_now(scene, simulation), scene.render, colliders)
-    image = _mallow.Renderer(scene.render, threads).render(mesh, _mallow.body_appearances(scene), colliders, camera)
+    image = _mallow.Renderer(scene.render, threads).render(mesh, _mallow.body_appearances(scene, simulation),
+                                                         colliders, camera)
     if file is not None:
         _mallow.write_png(file, image)
     return image
