@@ -71,10 +71,24 @@ class HeatWarnings {
       look_at_keys(body, "viscosity", material.viscosity_by_temperature);
       look_at_keys(body, "plastic_yield", material.plastic_yield_by_temperature);
     }
+    look_at_colliders();
     return list_.take();
   }
 
  private:
+  /// What heats nothing.
+  void look_at_colliders() {
+    if (state_.bodies.empty() || std::ranges::any_of(state_.bodies, [](const BodyState& body) {
+          return body.material->carries_heat();
+        }))
+      return;
+    for (std::size_t c = 0; c < state_.colliders.size(); ++c)
+      if (state_.colliders[c].temperature)
+        list_.add("collider ", c,
+                  ": its temperature has no effect, as no body carries heat; give "
+                  "material.temperature and conductivity");
+  }
+
   /// Of the particles of a body, and of those that an emitter will give it.
   TemperatureRange temperatures_of(const BodyState& body) const {
     TemperatureRange range;

@@ -1,5 +1,7 @@
 // Settings that nobody means: of what comes and goes, and of what acts on nothing.
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "colliders/pose.h"
 #include "simulation/settings.h"
@@ -11,6 +13,9 @@ namespace {
 
 /// Nobody means a share of the spacing that is as small as this.
 constexpr float k_rounding_depth = 0.01f;
+
+/// A layer of an emitter has this area to this share.
+constexpr double k_same_area = 0.15;
 
 class SourceWarnings {
  public:
@@ -43,6 +48,7 @@ class SourceWarnings {
                 settings.radius ? "radius " : "width ", settings.radius ? *settings.radius : *settings.width,
                 " is too small for a spacing of ", settings.spacing,
                 ": a line of particles; give a smaller spacing, or a wider emitter");
+    look_at_area(name, settings, layer.size());
     const Vec3 ahead = 0.5f * settings.spacing * rotation_of(settings.pose).col(2).cast<float>();
     for (std::size_t c = 0; c < state_.colliders.size(); ++c) {
       const auto is_inside = [&](ParticleId id) {
@@ -54,6 +60,21 @@ class SourceWarnings {
                   " particles of a layer leave its emitter inside ", "collider ", c,
                   ", which drives them out; move one of the two");
     }
+  }
+
+  /// A layer of few particles has another area than its mouth.
+  void look_at_area(const std::string& name, const Emitter& settings, std::size_t count) {
+    if (!settings.points.empty() || count < 2) return;
+    const double h = static_cast<double>(settings.spacing), cells = static_cast<double>(count);
+    const double area = settings.radius
+                            ? std::numbers::pi * std::pow(static_cast<double>(*settings.radius), 2)
+                            : static_cast<double>(*settings.width) * static_cast<double>(*settings.height);
+    const double share = cells * h * h / area;
+    if (std::abs(share - 1) <= k_same_area) return;
+    list_.add("body '", name, "': layers of its emitter have ", count, " particles, ",
+              std::round(100 * std::abs(share - 1)), share > 1 ? "% more" : "% less",
+              " than fit its mouth, and so much is poured; give a finer spacing, or a mouth of the area of ",
+              count, " cells, ", cells * h * h);
   }
 
   void look_at_sink(std::size_t number) {

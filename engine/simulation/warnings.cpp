@@ -72,6 +72,8 @@ class Warnings {
     for (const BodyState& body : state_.bodies) {
       look_at_threshold(body);
       look_at_merging(body);
+      look_at_lone_merging(body);
+      look_at_pressure(body);
       look_at_density(body);
       look_at_limits(body);
       look_at_weight(body);
@@ -123,6 +125,28 @@ class Warnings {
       add(body, "falls asleep in the air, as in sleep_time, ", time,
           " s, gravity makes nothing as fast as sleep_speed, ", speed, unit(" m/s"),
           ": lower sleep_speed, or raise sleep_time above ", speed / gravity, " s");
+  }
+
+  /// Whoever merges needs somebody to merge with.
+  void look_at_lone_merging(const BodyState& body) {
+    if (!body.merges || state_.bodies.size() < 2 || merging_[body.material->number] > 1) return;
+    add(body, "merges with nobody: no other body of its material '", body.material->name,
+        "' merges; give both one material, and merges on both");
+  }
+
+  /// What bodies rub and stick by is of the contact by constraint.
+  void look_at_pressure(const BodyState& body) {
+    if (state_.config.contact == BodyContact::constraint || state_.bodies.size() < 2) return;
+    const Material& material = body.material->settings;
+    const bool rubs = material.friction != Material{}.friction;
+    if (rubs)
+      add(body, "friction ", material.friction,
+          " has no effect where solver.contact is \"pressure\": bodies "
+          "drag each other by their viscosity");
+    if (material.adhesion > 0 && body.matches_shape())
+      add(body, "adhesion ", material.adhesion,
+          " has no effect where solver.contact is \"pressure\"; leave that "
+          "out");
   }
 
   /// What acts on another body as on itself rubs it only as a fluid does.

@@ -120,7 +120,15 @@ TEST_F(heat_warnings, name_a_run_that_heat_gets_nowhere_in) {
   EXPECT_TRUE(few[0].starts_with("material 'butter': in the 2.97 s of the run heat comes 0.000")) << few[0];
   EXPECT_TRUE(warns(few, "m far into it, less than its spacing of 0.005 m"));
   EXPECT_TRUE(of("butter", "temperature = 333", "50000").empty());
-  EXPECT_TRUE(of("jelly", "temperature = 333", "90").empty()) << "carries no heat";
+  EXPECT_FALSE(warns(of("jelly", "temperature = 333", "90"), "heat comes")) << "carries no heat";
+}
+
+TEST_F(heat_warnings, name_colliders_that_heat_nothing) {
+  const std::string plate = "[[collider]]\nplane = { offset = -1.0 }\ntemperature = 400.0\n";
+  EXPECT_TRUE(warns(warnings_of(read(jelly("alpha = 0.3", plate))),
+                    "collider 0: its temperature has no effect, as no body carries heat"));
+  EXPECT_FALSE(warns(warnings_of(read(jelly("alpha = 0.3\ntemperature = 300.0\nconductivity = 1.0", plate))),
+                     "its temperature has no effect"));
 }
 
 TEST_F(heat_warnings, leave_scenes_alone_that_are_in_one_unit) {

@@ -61,6 +61,40 @@ TEST_F(scene_warnings, name_keyframes_that_are_half_a_turn_or_more_apart) {
   EXPECT_FALSE(warns(turned_by("179"), "shorter way round"));
 }
 
+TEST_F(scene_warnings, name_bodies_that_merge_with_nobody) {
+  const std::string other =
+      "[[material]]\nname = \"other\"\nalpha = 1.0\nrest_density = 1000.0\n[[body]]\n"
+      "material = \"other\"\nmerges = true\nbox = { count = [4, 4, 4], spacing = 0.1, "
+      "corner = [1, 0, 0] }\n";
+  const auto all = warnings_of(read(jelly("alpha = 0.3", other)));
+  EXPECT_TRUE(warns(all, "body 'body[1]': merges with nobody: no other body of its material 'other' merges"));
+  EXPECT_FALSE(warns(warnings_of(read(jelly("alpha = 0.3"))), "merges with nobody"));
+}
+
+TEST_F(scene_warnings, name_what_bodies_rub_and_stick_by_where_pressure_keeps_them_apart) {
+  const std::string beside =
+      "[[body]]\nmaterial = \"blob\"\nbox = { count = [4, 4, 4], spacing = 0.1, "
+      "corner = [1, 0, 0] }\n";
+  const auto of = [&](const std::string& contact) {
+    return warnings_of(read(jelly("alpha = 0.3\nfriction = 2.0\nadhesion = 100.0", beside),
+                            {"solver.contact=\"" + contact + '"'}));
+  };
+  EXPECT_TRUE(warns(of("pressure"), "friction 2 has no effect where solver.contact is \"pressure\""));
+  EXPECT_TRUE(warns(of("pressure"), "adhesion 100 has no effect"));
+  EXPECT_FALSE(warns(of("constraint"), "has no effect"));
+}
+
+TEST_F(scene_warnings, name_a_nozzle_whose_layers_are_not_as_wide_as_its_mouth) {
+  const auto of = [&](const std::string& radius, const std::string& spacing) {
+    return warnings_of(read(jelly("alpha = 0.3", "[[emitter]]\nmaterial = \"blob\"\nradius = " + radius +
+                                                     "\nspacing = " + spacing +
+                                                     "\ntranslate = [3.0, 0.0, 3.0]\nspeed = 0.5\n")));
+  };
+  EXPECT_TRUE(
+      warns(of("0.15", "0.1"), "layers of its emitter have 9 particles, 27% more than fit its mouth"));
+  EXPECT_FALSE(warns(of("0.4", "0.1"), "than fit its mouth"));
+}
+
 TEST_F(scene_warnings, name_turns_that_are_in_radians) {
   const auto of = [&](const std::string& rotate) {
     return warnings_of(read(jelly("alpha = 0.3",
