@@ -177,6 +177,7 @@ TEST_F(sweep_runs, refuse_what_they_cannot_mean) {
   refused({"sweep", spec_, "--out", at("out"), "--point", "12"}, "points below 12");
   write("bad.toml", read_text(spec_).replace(read_text(spec_).find("\"height\""), 8, "\"hight\""));
   refused({"sweep", at("bad.toml"), "--out", at("bad")}, "bad.toml:3:13: measures: 'hight' is no column");
+  refused({"sweep", at("bad.toml"), "--dry-run"}, "bad.toml:3:13: measures: 'hight' is no column");
   write("plot.toml", read_text(spec_) + "[[plot]]\nx = \"point\"\ny = \"hight\"\n");
   refused({"sweep", at("plot.toml"), "--out", at("plot")}, ":14:5: plot[0].y: 'hight' is no column");
   EXPECT_FALSE(fs::exists(at("plot"))) << "before anything is run";

@@ -236,6 +236,7 @@ void run_sweep(const SweepOptions& options) {
   SweepFolder sweep(sweep::read_spec(options.spec), options.out, own_program());
   check_table(sweep);
   if (options.dry_run) {
+    sweep.check_measures();
     print_points(sweep);
     return print_estimate(sweep, slots(options, sweep.points().size()));
   }
