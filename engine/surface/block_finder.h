@@ -24,8 +24,8 @@ class BlockFinder {
  private:
   /// Particles that follow each other and lie in one block.
   struct Run {
-    std::uint64_t block;          ///< orders runs by block
-    BlockMap::Coord first, last;  ///< corners of the box of blocks within their reach
+    std::uint64_t block = UINT64_MAX;               ///< orders runs by block; nobody's to begin with
+    BlockMap::Coord first{0, 0, 0}, last{0, 0, 0};  ///< corners of the box of blocks within their reach
   };
   void find_runs(const ParticleCells& particles, const VoxelFrame& frame, double reach,
                  const Threads& threads);
