@@ -5,30 +5,15 @@
 #include <algorithm>
 #include <limits>
 
+#include "swinging_scene.h"
 #include "tradeoff/tables.h"
 
 namespace mallow::confirm_test {
 
 constexpr double k_never = std::numeric_limits<double>::infinity();
 
-/// A jelly cube that hangs from its top and swings.
 Scene scene() {
-  return parse_scene(R"(
-[solver]
-time_step = 0.15
-[[material]]
-name = "jelly"
-elastic_time_step = 0.3
-[[body]]
-material = "jelly"
-box = { count = [4, 4, 4], spacing = 1.0, corner = [0.0, 0.0, 0.0] }
-[[pin]]
-box = { min = [0.0, 0.0, 3.0], max = [4.0, 4.0, 4.0] }
-[run]
-frames = 10
-frame_time = 0.6
-)",
-                     "scene.toml");
+  return parse_scene(k_swinging, "scene.toml");
 }
 
 const tradeoff::StudyOptions k_options{.budget = 2, .threads = 1, .repeats = 1, .surface = false};

@@ -10,27 +10,12 @@
 
 #include "mallow/errors.h"
 #include "program/failure.h"
+#include "swinging_scene.h"
 #include "tradeoff/page.h"
 #include "tradeoff/tables.h"
 
 namespace mallow::study_test {
 
-/// A jelly cube that swings under gravity beside nothing: as smooth as motions are.
-const char* const k_smooth = R"(
-[solver]
-time_step = 0.15
-[[material]]
-name = "jelly"
-elastic_time_step = 0.3
-[[body]]
-material = "jelly"
-box = { count = [4, 4, 4], spacing = 1.0, corner = [0.0, 0.0, 0.0] }
-[[pin]]
-box = { min = [0.0, 0.0, 3.0], max = [4.0, 4.0, 4.0] }
-[run]
-frames = 10
-frame_time = 0.6
-)";
 /// A fluid that splashes: its particles go their own ways.
 const char* const k_splash = R"(
 [solver]
@@ -79,7 +64,7 @@ Scene scene(const char* text, std::vector<std::string> overrides = {}) {
 
 TEST(tradeoff_study, smooth_motion_converges_at_order_one) {
   const tradeoff::Study study =
-      tradeoff::study(scene(k_smooth), {.budget = 3, .threads = 1, .repeats = 1, .surface = false});
+      tradeoff::study(scene(k_swinging), {.budget = 3, .threads = 1, .repeats = 1, .surface = false});
   ASSERT_TRUE(study.reference.order);
   EXPECT_NEAR(*study.reference.order, 1, 0.15);
   EXPECT_TRUE(study.reference.converged);
@@ -114,9 +99,9 @@ TEST(tradeoff_study, a_limit_leads_on_to_knobs_together_that_no_list_has) {
     for (const tradeoff::Row& row : study.rows) scenes.insert(print_scene(row.setting.scene));
     return study.rows.size() - scenes.size();
   };
-  const std::size_t before = run_twice(tradeoff::study(scene(k_smooth), options));
+  const std::size_t before = run_twice(tradeoff::study(scene(k_swinging), options));
   options.limit = tradeoff::Limit{.most = 1e3};
-  const tradeoff::Study study = tradeoff::study(scene(k_smooth), options);
+  const tradeoff::Study study = tradeoff::study(scene(k_swinging), options);
   EXPECT_TRUE(std::ranges::any_of(study.rows, [](const tradeoff::Row& row) {
     return row.setting.name.find(", time_step_factor x 0.8") != std::string::npos;
   })) << tradeoff::to_text(study);
@@ -125,7 +110,7 @@ TEST(tradeoff_study, a_limit_leads_on_to_knobs_together_that_no_list_has) {
 
 TEST(tradeoff_study, every_column_is_explained) {
   const tradeoff::Study study =
-      tradeoff::study(scene(k_smooth), {.budget = 1, .threads = 1, .repeats = 1, .surface = false});
+      tradeoff::study(scene(k_swinging), {.budget = 1, .threads = 1, .repeats = 1, .surface = false});
   std::string help;
   for (const std::string& line : tradeoff::column_help()) help += line + '\n';
   const std::string csv = tradeoff::to_csv(study);
@@ -155,7 +140,7 @@ TEST(tradeoff_study, without_anything_to_be_moved_chaos_is_not_known) {
 
 /// 12^3 particles for so many frames.
 Scene large(int frames) {
-  return scene(k_smooth, {"body[0].box.count=[12, 12, 12]", "run.frames=" + std::to_string(frames)});
+  return scene(k_swinging, {"body[0].box.count=[12, 12, 12]", "run.frames=" + std::to_string(frames)});
 }
 
 TEST(tradeoff_study, scene_longer_than_the_budget_is_judged_by_its_first_frames_and_that_is_said) {
@@ -192,7 +177,7 @@ TEST(tradeoff_study, budget_below_a_handful_of_frames_is_refused_with_one_that_c
 TEST(tradeoff_study, budget_is_kept_and_what_it_left_out_is_said) {
   const auto start = std::chrono::steady_clock::now();
   const tradeoff::Study study =
-      tradeoff::study(scene(k_smooth, {"body[0].box.count=[12, 12, 12]", "run.frames=400"}),
+      tradeoff::study(scene(k_swinging, {"body[0].box.count=[12, 12, 12]", "run.frames=400"}),
                       {.budget = 2, .threads = 1, .repeats = 100, .surface = false});
   const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   EXPECT_LT(spent, 2.4);
@@ -202,7 +187,7 @@ TEST(tradeoff_study, budget_is_kept_and_what_it_left_out_is_said) {
 
 TEST(tradeoff_study, same_setting_again_is_off_by_the_same_bits) {
   const tradeoff::StudyOptions options{.budget = 1, .threads = 1, .repeats = 1, .surface = true};
-  const tradeoff::Study study = tradeoff::study(scene(k_smooth), options);
+  const tradeoff::Study study = tradeoff::study(scene(k_swinging), options);
   const tradeoff::Row& row = study.rows.back();
   const auto again = tradeoff::run_again(study, row.setting, options, k_never);
   ASSERT_TRUE(again);
@@ -211,7 +196,7 @@ TEST(tradeoff_study, same_setting_again_is_off_by_the_same_bits) {
 }
 
 TEST(tradeoff_study, measures_and_settings_of_users_are_told) {
-  const Scene smooth = scene(k_smooth);
+  const Scene smooth = scene(k_swinging);
   Scene denser = smooth;
   denser.solver.rotation_iterations = 1;
   const tradeoff::Study study = tradeoff::study(smooth, {.budget = 1,
@@ -230,7 +215,7 @@ TEST(tradeoff_study, measures_and_settings_of_users_are_told) {
 TEST(tradeoff_study, wrong_measures_are_refused_with_what_there_is) {
   for (const char* text : {"height", "length(0)", "height(nobody)"}) {
     try {
-      tradeoff::study(scene(k_smooth), {.budget = 1, .measures = {text}});
+      tradeoff::study(scene(k_swinging), {.budget = 1, .measures = {text}});
       ADD_FAILURE() << text;
     } catch (const ConfigError& error) {
       EXPECT_EQ(error.problems().front().field, "--measure");
@@ -240,11 +225,11 @@ TEST(tradeoff_study, wrong_measures_are_refused_with_what_there_is) {
 }
 
 TEST(tradeoff_study, settings_that_cannot_run_are_told_with_why) {
-  Scene bad = scene(k_smooth);
+  Scene bad = scene(k_swinging);
   bad.solver.time_step_factor = 4;
   bad.materials.front().material.elastic_time_step = 1e-3f;
   const tradeoff::Study study =
-      tradeoff::study(scene(k_smooth), {.budget = 1, .threads = 1, .repeats = 1, .extra = {{"bad", bad}}});
+      tradeoff::study(scene(k_swinging), {.budget = 1, .threads = 1, .repeats = 1, .extra = {{"bad", bad}}});
   ASSERT_EQ(study.failed.size(), 1u);
   EXPECT_TRUE(study.failed.front().starts_with("bad: "));
 }
