@@ -1,9 +1,7 @@
 // Bodies that were torn: their parts become bodies of their own.
 #include <algorithm>
 #include <map>
-#include <numeric>
 
-#include "core/parallel.h"
 #include "shape_matching/parts.h"
 #include "shape_matching/reshape.h"
 #include "simulation/membership.h"
@@ -21,7 +19,8 @@ std::optional<std::uint32_t> held_particle(const Simulation::State& s, const Bod
     if (emitter.body == body.id)
       for (const std::vector<ParticleId>& layer : emitter.held)
         for (const ParticleId id : layer)
-          if (const std::optional<std::size_t> row = s.store.slots.find(id))
+          if (const std::optional<std::size_t> row = s.store.slots.find(id);
+              row && *row >= body.begin && *row < body.end)  // an earlier part may have taken some along
             return static_cast<std::uint32_t>(*row - body.begin);
   return {};
 }
