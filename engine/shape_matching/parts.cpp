@@ -27,6 +27,23 @@ void for_companions(const ShapeMatching& shape, std::uint32_t row, const Visit& 
   });
 }
 
+/// Particles that share a region -> one set. With a stride of 1 two particles are in each other's regions, so
+/// but for the first of k_stride, which nearly join a body in one piece, those behind the owner are enough.
+void join_regions(const ShapeMatching& shape, DisjointSets& sets) {
+  const TableLists& lists = shape.regions;
+  sets.reset(lists.rows);
+  for (std::size_t start = 0; start < k_stride; ++start)
+    for (std::size_t j = start; j < lists.begin.size() && sets.count() > 1; j += k_stride) {
+      const auto owner = static_cast<std::uint32_t>(shape.first_row(j));
+      const std::uint32_t from = start > 0 && shape.region_stride == 1 ? owner + 1 : 0;
+      std::uint32_t root = sets.root(owner);
+      lists.for_each_run(j, [&](std::uint32_t first, std::uint32_t length) {
+        for (std::uint32_t row = std::max(first, from); row < first + length; ++row)
+          root = sets.join(root, row);
+      });
+    }
+}
+
 /// Whether one number in `groups` goes with two in `sets`; k_none there says nothing.
 bool is_split(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> sets) {
   std::vector<std::uint32_t> first(groups.size(), Parts::k_none);
@@ -42,17 +59,18 @@ bool is_split(std::span<const std::uint32_t> groups, std::span<const std::uint32
 }  // namespace
 
 void find_parts(const ShapeMatching& shape, Parts& parts) {
-  const TableLists& lists = shape.regions;
-  const auto n = static_cast<std::uint32_t>(lists.rows);
+  const auto n = static_cast<std::uint32_t>(shape.regions.rows);
+  if (shape.parts.known) {
+    parts.count = shape.parts.count;
+    parts.crumbs = shape.parts.crumbs;
+    if (shape.parts.of.empty())
+      parts.of.assign(n, 0);
+    else
+      parts.of = shape.parts.of;
+    return;
+  }
   DisjointSets& sets = parts.sets;
-  sets.reset(n);
-  for (std::size_t start = 0; start < k_stride; ++start)
-    for (std::size_t j = start; j < lists.begin.size() && sets.count() > 1; j += k_stride) {
-      std::uint32_t root = sets.root(lists.entries[lists.begin[j]] % n);
-      lists.for_each_run(j, [&](std::uint32_t first, std::uint32_t length) {
-        for (std::uint32_t row = first; row < first + length; ++row) root = sets.join(root, row);
-      });
-    }
+  join_regions(shape, sets);
   parts.number.assign(n, 0);
   for (std::uint32_t i = 0; i < n; ++i) ++parts.number[sets.root(i)];
   parts.count = parts.crumbs = 0;
@@ -65,6 +83,14 @@ void find_parts(const ShapeMatching& shape, Parts& parts) {
     const std::uint32_t root = sets.root(i);
     parts.of[i] = parts.number[root] >= k_crumb ? root : Parts::k_none;
   }
+}
+
+void keep_parts(const Parts& parts, ShapeMatching& shape) {
+  const bool is_whole = parts.count == 1 && parts.crumbs == 0;
+  shape.parts = {.known = true,
+                 .of = is_whole ? std::vector<std::uint32_t>() : parts.of,
+                 .count = parts.count,
+                 .crumbs = parts.crumbs};
 }
 
 void append_parts(const Parts& behind, Parts& parts) {

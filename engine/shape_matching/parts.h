@@ -23,8 +23,10 @@ struct Parts {
   std::vector<std::uint32_t> number;
 };
 
-/// Those of a shape whose regions are built.
+/// Those of a shape whose regions are built: the ones that it keeps, or found anew.
 void find_parts(const ShapeMatching& shape, Parts& parts);
+/// Keeps those found of a shape with it until its regions are listed anew. A shape in one part keeps no rows.
+void keep_parts(const Parts& parts, ShapeMatching& shape);
 /// Those of particles that come behind.
 void append_parts(const Parts& behind, Parts& parts);
 /// Follows particles that were sorted: k becomes what order[k] was.

@@ -202,7 +202,8 @@ bool is_drawn(std::uint32_t row, std::uint32_t stride) {
 std::size_t ShapeMatching::bytes() const {
   std::size_t sum = reference.bytes() + regions.bytes() + memberships.bytes() + weight.bytes() +
                     region_weight.bytes() + center.bytes() + table.bytes() + sums.bytes() +
-                    undecided.bytes() + plastic.bytes() + pull.bytes() + elasticity.bytes() + owners.bytes();
+                    undecided.bytes() + plastic.bytes() + pull.bytes() + elasticity.bytes() + owners.bytes() +
+                    parts.of.capacity() * sizeof(std::uint32_t);
   for (const Column<float>& column : moment) sum += column.bytes();
   for (const Column<float>& column : rotation) sum += column.bytes();
   return sum;
@@ -256,6 +257,7 @@ void list_regions(const Execution& execution, RegionScratch& scratch, ShapeMatch
                   const FormerLists* former) {
   const std::size_t n = shape.reference.size();
   const bool every = shape.region_stride == 1;
+  shape.parts = {};
   order_by_pillars(shape.reference, 0, n, pillar_width(shape), execution, scratch.pillars);
   // With a larger stride owners are drawn by row, and only their lists are there.
   find_runs(scratch.pillars, shape.region_radius, execution, scratch.near, every ? former : nullptr);

@@ -24,6 +24,13 @@ struct RigidFrame {
   Eigen::Vector3d translation{0, 0, 0};
 };
 
+/// What find_parts() told of a shape, so that it is not found again before the next lists of regions.
+struct KeptParts {
+  bool known = false;
+  std::vector<std::uint32_t> of;  ///< as in Parts; empty where all are in one
+  std::size_t count = 0, crumbs = 0;
+};
+
 /// Shape matching of one body: its reference shape and the regions on it. Particles are counted from the
 /// body's first, regions by their owners in the order of particles: with a stride of 1 every particle owns a
 /// region, and region j is that of particle j.
@@ -57,6 +64,7 @@ struct ShapeMatching {
   Eigen::Vector3d mean{0, 0, 0};  ///< of x̄ [m]; 0 until particles come or go
   double total_moment = 0;        ///< trace of Σ (x̄ − mean) (x̄ − mean)ᵀ / n [m²]
   RigidFrame frame;
+  KeptParts parts;
 
   /// The particle whose region it is.
   std::size_t owner(std::size_t region) const { return region_stride == 1 ? region : owners[region]; }

@@ -127,6 +127,7 @@ int update_references(Simulation::State& state) {
     if (builds) build_regions(state.execution, state.region_scratch, body.shape);
     if (!body.apart || !(yields || reframes || builds) || !body.shape.built) continue;
     find_parts(body.shape, state.parts_after);
+    keep_parts(state.parts_after, body.shape);
     judge_parts(state, body, was_apart);
     if ((yields || reframes) && had_regions) tell_parts(state, body);
   }

@@ -327,6 +327,40 @@ TEST(regions, of_a_body_that_loses_some_are_measured_anew_beside_those_and_keep_
   }
 }
 
+TEST(parts, are_what_regions_join_at_every_stride_and_are_not_kept_beyond_their_regions) {
+  for (const int stride : k_strides)
+    for (const float radius : {1.0f, 1.5f, 3.0f}) {
+      World world(700, 10, radius, stride);
+      const auto literal = [&] {
+        DisjointSets sets;
+        sets.reset(world.x.size());
+        for (std::size_t j = 0; j < world.shape.regions.count.size(); ++j) {
+          const std::vector<std::uint32_t> rows = decode(world.shape.regions, j);
+          for (const std::uint32_t row : rows) sets.join(rows.front(), row);
+        }
+        return sets;
+      };
+      Parts parts, again;
+      for (int turn = 0; turn < 2; ++turn) {
+        DisjointSets sets = literal();
+        std::map<std::uint32_t, std::uint32_t> sizes;
+        for (std::uint32_t i = 0; i < world.x.size(); ++i) ++sizes[sets.root(i)];
+        find_parts(world.shape, parts);
+        ASSERT_EQ(parts.count + parts.crumbs, sizes.size()) << stride << " " << radius;
+        for (std::uint32_t i = 0; i < world.x.size(); ++i)
+          ASSERT_EQ(parts.of[i], sizes[sets.root(i)] < k_crumb ? Parts::k_none : sets.root(i));
+        keep_parts(parts, world.shape);
+        find_parts(world.shape, again);
+        ASSERT_EQ(again.of, parts.of);
+        ASSERT_EQ(std::pair(again.count, again.crumbs), std::pair(parts.count, parts.crumbs));
+        // Another shape: the half to the right is gone from the left one.
+        for (std::size_t i = 0; i < world.x.size(); ++i)
+          if (world.x.get(i)[0] > 5) world.x.set(i, world.x.get(i) + Vec3(20, 0, 0));
+        world.build(radius);
+      }
+    }
+}
+
 TEST(parts, that_removed_particles_held_together_are_torn_where_all_parts_say_so) {
   World world(700, 10, 1.5f);  // hardly holds together
   CarriedRegions unsorted = carry_regions(world.shape);
