@@ -30,7 +30,7 @@ struct ShapeNumbers {
 };
 
 /// What all parts of a collider share. Where it does not turn, its shapes are given where they are, and
-/// `rotation` and `spin` are not read.
+/// its rotations and `spin` are not read.
 struct ContactSurface {
   float velocity[3];     ///< u [m/s]
   float along[3];        ///< of the surface itself, along it [m/s]
@@ -39,7 +39,8 @@ struct ContactSurface {
   float friction;        ///< μ_f
   bool turns;            ///< shapes are given in the frame of the collider
   float translation[3];  ///< c, where the frame has its origin [m]
-  float rotation[9];     ///< R, from the frame to the world, row by row
+  float rotation[9];     ///< R, from the frame to the world at the start of the step, row by row
+  float turned[9];       ///< (1 + Δt Ω) R, the same at the end of the step
   float spin[9];         ///< Ω, row by row: the point at c + r moves by Δt (u + Ω r) in the step [1/s]
 };
 

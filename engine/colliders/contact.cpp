@@ -30,9 +30,12 @@ void place(const Collider& collider, const Vec3& origin, float time_step, Instru
   Eigen::Map<Vec3>(surface.along) = collider.surface_velocity;
   surface.carries = !collider.surface_velocity.isZero(0);
   Eigen::Map<Vec3>(surface.translation) = stands.cast<float>();
-  Eigen::Map<RowMajor>(surface.rotation) = rotation_of(collider.pose).cast<float>();
-  Eigen::Map<RowMajor>(surface.spin) =
-      mean_spin(collider.angular_velocity, static_cast<double>(time_step)).cast<float>();
+  const Eigen::Matrix3d rotation = rotation_of(collider.pose);
+  const auto seconds = static_cast<double>(time_step);
+  const Eigen::Matrix3d spin = mean_spin(collider.angular_velocity, seconds);
+  Eigen::Map<RowMajor>(surface.rotation) = rotation.cast<float>();
+  Eigen::Map<RowMajor>(surface.turned) = (rotation + seconds * spin * rotation).cast<float>();
+  Eigen::Map<RowMajor>(surface.spin) = spin.cast<float>();
   placed.measures_load = collider.measure_load;
 
   const Eigen::Vector3d by = surface.turns ? Eigen::Vector3d(0, 0, 0) : stands;

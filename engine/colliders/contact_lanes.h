@@ -73,12 +73,15 @@ struct Upright {
   const ContactSurface& surface;
   LaneVec3 to_shape(const LaneVec3& x) const { return x; }
   LaneVec3 velocity(const LaneVec3&) const { return all_lanes(surface.velocity); }
-  LaneVec3 turned_back(const LaneVec3& way) const { return way; }
-  Surface seen(const Surface& met) const { return met; }
+  LaneVec3 way_to_shape(const LaneVec3& way) const { return way; }
+  Surface seen(const Surface& there) const { return there; }
+  Surface seen_at_end(const Surface& met) const { return met; }
   LaneVec3 velocity_under(const LaneVec3& u, const Surface&) const { return u; }
 };
 
-/// One that turns, or stands turned.
+/// One that turns, or stands turned. A particle at x that moves by Δt v goes in its frame from R^T (x − c) by
+/// R'^T Δt (v − u), with R' of the end of the step and u of the collider's point at x: what it meets there is
+/// seen as it stands at the end. By normals of the start, thin blades turned through bodies.
 struct Turning {
   const ContactSurface& surface;
   LaneVec3 to_shape(const LaneVec3& x) const {
@@ -88,14 +91,19 @@ struct Turning {
   LaneVec3 velocity(const LaneVec3& x) const {
     return all_lanes(surface.velocity) + product(surface.spin, x - all_lanes(surface.translation));
   }
-  LaneVec3 turned_back(const LaneVec3& way) const { return transposed_product(surface.rotation, way); }
-  Surface seen(const Surface& met) const { return {met.distance, product(surface.rotation, met.normal)}; }
+  LaneVec3 way_to_shape(const LaneVec3& way) const { return transposed_product(surface.turned, way); }
+  Surface seen(const Surface& there) const {
+    return {there.distance, product(surface.rotation, there.normal)};
+  }
+  Surface seen_at_end(const Surface& met) const {
+    return {met.distance, product(surface.turned, met.normal)};
+  }
   /// Of the surface under a particle at which the collider moves with u: along the plane that is met, that
   /// of the particle's foot in it. Across it is that of u, so that a particle which sticks keeps its gap.
   LaneVec3 velocity_under(const LaneVec3& u, const Surface& met) const {
     const Lanes distance = met.distance < k_infinity ? met.distance : Lanes{};
-    const LaneVec3 change = product(surface.spin, met.normal);
-    return u - distance * (change - dot(change, met.normal) * met.normal);
+    const LaneVec3 change = transposed_product(surface.spin, met.normal);
+    return u + distance * (change - dot(change, met.normal) * met.normal);
   }
 };
 
@@ -230,15 +238,15 @@ void resolve_in(const Shape& shape, const Frame& frame, const ContactStep& step,
     const LaneVec3 u = frame.velocity(x);
     const LaneVec3 way = step.time_step * (free - u);
     const Surface met =
-        frame.seen(meet(shape, step.contact_offset, frame.to_shape(x), frame.turned_back(way)));
+        frame.seen_at_end(meet(shape, step.contact_offset, frame.to_shape(x), frame.way_to_shape(way)));
     LaneVec3 v =
         resolve_contact(frame.surface, frame.velocity_under(u, met), met, step, get(listed, before), free);
     if constexpr (requires { shape.flat_way(); }) {
       // What slides along one part of it may meet the next in the same step.
       const LaneVec3 slide = step.time_step * (v - u);
       if (any(squared(slide) > shape.flat_way() * shape.flat_way())) {
-        const Surface next =
-            frame.seen(meet(shape, step.contact_offset, frame.to_shape(x), frame.turned_back(slide)));
+        const Surface next = frame.seen_at_end(
+            meet(shape, step.contact_offset, frame.to_shape(x), frame.way_to_shape(slide)));
         v = resolve_contact(frame.surface, frame.velocity_under(u, next), next, step, get(listed, before), v);
       }
     }

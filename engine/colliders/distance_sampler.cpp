@@ -2,6 +2,7 @@
 // it by fast sweeping of |∇d| = 1 [Zhao 2005].
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "core/checks.h"
 #include "mallow/body.h"
@@ -11,8 +12,13 @@
 namespace mallow {
 namespace {
 
-/// Voxels between the box of a shape and the sides of its grid.
-constexpr int k_margin = 3;
+/// Voxels between the box of a shape and the sides of its grid: an eighth of its longest side, so that where
+/// particles touch it, half a spacing away, is within the grid. Beside it distances are a bound, and a shape
+/// whose voxels are much finer than the particles held them off by a fifth of a spacing.
+constexpr int k_widest_margin = 16;
+int margin(double longest) {
+  return static_cast<int>(std::ceil(std::clamp(longest / 8, 3.0, double{k_widest_margin})));
+}
 /// What sweeping adds to the band is a little too long; it must not be, as particles rely on it.
 constexpr float k_trusted = 0.9f;
 
@@ -104,15 +110,17 @@ DistanceField distance_field(const ImplicitShape& shape, float voxel_size, bool 
   checks.finish();
   auto grid = std::make_shared<DistanceGrid>();
   grid->voxel_size = voxel_size;
-  grid->origin = shape.bounds.min - Vec3::Constant(static_cast<float>(k_margin) * voxel_size);
+  const Eigen::Array3d voxels =
+      ((shape.bounds.max - shape.bounds.min).cast<double>() / static_cast<double>(voxel_size)).array().ceil();
+  constexpr int k_most_voxels = k_most_grid_points - 2 * k_widest_margin - 1;
+  if (!(voxels <= k_most_voxels).all())
+    throw ConfigError("voxel_size", "is too small: the shape has more than " +
+                                        std::to_string(k_most_voxels) + " voxels along an axis");
+  const int beside = margin(voxels.maxCoeff());
+  grid->origin = shape.bounds.min - Vec3::Constant(static_cast<float>(beside) * voxel_size);
   std::size_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    const double side =
-        static_cast<double>(shape.bounds.max[axis]) - static_cast<double>(shape.bounds.min[axis]);
-    const double voxels = std::ceil(side / static_cast<double>(voxel_size));
-    if (!(voxels + 2 * k_margin + 1 <= k_most_grid_points))
-      throw ConfigError("voxel_size", "is too small: the shape has more than 1000 voxels along an axis");
-    grid->size[static_cast<std::size_t>(axis)] = static_cast<int>(voxels) + 2 * k_margin + 1;
+    grid->size[static_cast<std::size_t>(axis)] = static_cast<int>(voxels[axis]) + 2 * beside + 1;
     count *= static_cast<std::size_t>(grid->size[static_cast<std::size_t>(axis)]);
   }
   grid->distances.reserve(count);

@@ -120,11 +120,15 @@ TEST(contact, friction_takes_no_more_than_what_the_step_has_not_turned_round) {
   EXPECT_FLOAT_EQ(resolve_one_row(floor, k_step, {0, 0, 0.5f}, {6, 0, 0}, {-4, 0, -8}).x(), -4);
 }
 
-/// Contact in double, one particle, read literally: model 2, section 4 A, in the frame of the collider.
+/// Contact in double, one particle, read literally: model 2, section 4 A, in the frame of the collider, which
+/// stands turned on at the end of the step.
 Eigen::Vector3d literal(const Collider& collider, const Vec3& x, const Vec3& before, const Vec3& v) {
   using Vec = Eigen::Vector3d;
   const double dt = static_cast<double>(k_step.time_step);
   const Eigen::Matrix3d rotation = rotation_of(collider.pose);
+  Collider later = collider;
+  move_colliders(0, dt, {&later, 1});
+  const Eigen::Matrix3d turned = rotation_of(later.pose);
   const Vec c = collider.pose.translation;
   const Vec at = x.cast<double>();
   Vec now = v.cast<double>();
@@ -133,14 +137,14 @@ Eigen::Vector3d literal(const Collider& collider, const Vec3& x, const Vec3& bef
     const Vec u = collider.velocity.cast<double>() + mean_spin(collider.angular_velocity, dt) * r;
     const Vec way = dt * (now - u);
     const oracle::Distance met =
-        oracle::distance_on_the_way(part, rotation.transpose() * r, rotation.transpose() * way,
+        oracle::distance_on_the_way(part, rotation.transpose() * r, turned.transpose() * way,
                                     static_cast<double>(k_step.contact_offset));
-    const Vec n = rotation * met.normal;
+    const Vec n = turned * met.normal;
     const double gap = met.value - static_cast<double>(k_step.contact_offset);
     const double across = (now - u).dot(n);
     if (!(gap + dt * across < 0)) continue;
     // Of the surface under the particle: along the plane that of its foot.
-    const Vec foot = mean_spin(collider.angular_velocity, dt) * (met.value * n);
+    const Vec foot = mean_spin(collider.angular_velocity, dt) * (met.value * rotation * met.normal);
     const Vec under = u - (foot - foot.dot(n) * n);
     const Vec w = now - under, w_before = before.cast<double>() - under;
     const double push = static_cast<double>(k_step.max_push);
@@ -223,6 +227,22 @@ TEST(contact, takes_what_sticks_along_as_the_collider_turns) {
   EXPECT_LT(
       (x.cast<double>() - Eigen::Vector3d(1 + 3 * std::cos(angle), 2 + 3 * std::sin(angle), 0.5)).norm(),
       1e-4);
+}
+
+/// However far it turns in a step: by normals of the start of the step it would end behind thin ones.
+TEST(contact, holds_what_a_collider_sweeps_in_front_of_it) {
+  for (const float turn : {0.01f, 0.3f, 0.6f, 0.9f, 1.2f}) {
+    Collider blade{.shape = Box{{0, -0.02f, -20}, {40, 0.02f, 20}},
+                   .angular_velocity = {0, 0, turn / k_step.time_step},
+                   .friction = 0.4f};
+    for (const float far : {1.0f, 9.0f, 20.0f}) {
+      const Vec3 x(far, 1.5f, 0), v = resolve_one_row(blade, k_step, x, {0, 0, 0}, {0, 0, 0});
+      const Vec3 end = x + k_step.time_step * v;
+      const float in_front = end.y() * std::cos(turn) - end.x() * std::sin(turn);
+      const float was = x.y() * std::cos(turn) - x.x() * std::sin(turn), touches = 0.02f + k_step.contact_offset;
+      EXPECT_NEAR(in_front, std::max(touches, was), 2e-5f * far) << turn << " rad, " << far;
+    }
+  }
 }
 
 /// A roller drives what lies on it with the speed of its surface, not with what it would have where the

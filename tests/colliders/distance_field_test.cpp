@@ -169,6 +169,43 @@ TEST(distance_field, is_not_passed_by_a_fast_particle) {
   }
 }
 
+// Over the middles of its faces, where the grid knows the box exactly.
+TEST(distance_field, that_stands_turned_and_turns_is_met_as_the_box_is) {
+  const ContactStep step{
+      .time_step = 0.1f, .max_push = 2, .contact_offset = 0.5f, .gravity = {0, 0, 0}, .least_bounce = 0};
+  const Box box{{-2, -2, -2}, {2, 2, 2}};
+  const DistanceFunction distance = [&](const Vec3& x) { return nearest(box, x).distance; };
+  Collider sampled{.shape = distance_field({distance, {box.min, box.max}}, 0.25f),
+                   .velocity = {0.5f, 0, -0.3f},
+                   .angular_velocity = {0.6f, -0.9f, 0.3f},
+                   .friction = 0.4f};
+  sampled.pose = {{0.3, -0.1, 0.2}, {0.3, -0.2, 0.4, 0.6}};
+  Collider exact = sampled;
+  exact.shape = box;
+  const Eigen::Matrix3d rotation = Eigen::Quaterniond(sampled.pose.rotation).normalized().toRotationMatrix();
+  int met = 0;
+  for (const Vec3& at : random_points(600, Vec3(-1, -1, -3), Vec3(1, 1, 3))) {
+    if (std::abs(at.z()) < 2) continue;
+    const Vec3 x = (sampled.pose.translation + rotation * at.cast<double>()).cast<float>();
+    const Vec3 coming = -2 * (rotation * at.cast<double>()).cast<float>();
+    const Vec3 v = resolve_one_row(sampled, step, x, coming, coming);
+    EXPECT_LT((v - resolve_one_row(exact, step, x, coming, coming)).norm(), 1e-4f) << at.transpose();
+    met += v != coming;
+  }
+  EXPECT_GT(met, 100);
+}
+
+// Beside the grid distances are a bound, and matter would stop where that is half a spacing.
+TEST(distance_field, is_touched_half_a_spacing_away_however_fine_its_voxels_are) {
+  const Box box{{-2, -2, -2}, {2, 2, 2}};
+  const DistanceFunction distance = [&](const Vec3& x) { return nearest(box, x).distance; };
+  for (const float voxel : {0.5f, 0.25f, 0.1f, 0.06f}) {
+    const DistanceField field = distance_field({distance, {box.min, box.max}}, voxel);
+    for (const float touches : {0.1f, 0.3f, 0.5f})
+      EXPECT_NEAR(nearest(field, {0.3f, -0.4f, 2 + touches}).distance, touches, 1e-6f) << voxel;
+  }
+}
+
 TEST(distance_field, of_a_shape_with_too_many_voxels_is_refused) {
   EXPECT_THROW(distance_field({torus, k_torus_box}, 1e-4f), ConfigError);
   EXPECT_THROW(distance_field({torus, k_torus_box}, 0), ConfigError);

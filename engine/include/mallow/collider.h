@@ -98,7 +98,7 @@ struct DistanceField {
 inline constexpr int k_mesh_collider_voxels = 64;
 /// An implicit shape on a grid of its own. voxel_size: [m], > 0. band: how far from the surface the distance
 /// function tells distances [m], > 0; farther away its sign alone counts. Throws ConfigError where a number
-/// is out of range, or the shape has more than 1000 voxels along an axis.
+/// is out of range, or the shape has more than 991 voxels along an axis.
 MALLOW_EXPORT DistanceField distance_field(const ImplicitShape& shape, float voxel_size, bool inside = false,
                                            float band = std::numeric_limits<float>::infinity());
 
