@@ -245,8 +245,8 @@ void resolve_in(const Shape& shape, const Frame& frame, const ContactStep& step,
       // What slides along one part of it may meet the next in the same step.
       const LaneVec3 slide = step.time_step * (v - u);
       if (any(squared(slide) > shape.flat_way() * shape.flat_way())) {
-        const Surface next = frame.seen_at_end(
-            meet(shape, step.contact_offset, frame.to_shape(x), frame.way_to_shape(slide)));
+        const Surface next =
+            frame.seen_at_end(meet(shape, step.contact_offset, frame.to_shape(x), frame.way_to_shape(slide)));
         v = resolve_contact(frame.surface, frame.velocity_under(u, next), next, step, get(listed, before), v);
       }
     }

@@ -114,8 +114,8 @@ DistanceField distance_field(const ImplicitShape& shape, float voxel_size, bool 
       ((shape.bounds.max - shape.bounds.min).cast<double>() / static_cast<double>(voxel_size)).array().ceil();
   constexpr int k_most_voxels = k_most_grid_points - 2 * k_widest_margin - 1;
   if (!(voxels <= k_most_voxels).all())
-    throw ConfigError("voxel_size", "is too small: the shape has more than " +
-                                        std::to_string(k_most_voxels) + " voxels along an axis");
+    throw ConfigError("voxel_size", "is too small: the shape has more than " + std::to_string(k_most_voxels) +
+                                        " voxels along an axis");
   const int beside = margin(voxels.maxCoeff());
   grid->origin = shape.bounds.min - Vec3::Constant(static_cast<float>(beside) * voxel_size);
   std::size_t count = 1;

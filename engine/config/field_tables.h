@@ -48,10 +48,11 @@ struct FieldTable<SolverConfig> {
             "2 with plastic_yield, else 0"},
       Field{"volume_tolerance", &Config::volume_tolerance, between(0, 1), "",
             "they end at this mean compression; 0: all are taken"},
-      Field{
-          "sleep_speed", &Config::sleep_speed, k_not_negative, "m/s",
-          "what is slower for sleep_time, with all that it touches, sleeps until something wakes it; 0: none",
-          "0.005 spacings in a time_step"},
+      Field{"sleep_speed", &Config::sleep_speed, k_not_negative, "m/s",
+            "what is slower for sleep_time, with all that it touches, sleeps until something wakes it; 0: "
+            "none; "
+            "none either by contact = pressure",
+            "0.005 spacings in a time_step"},
       Field{"sleep_time", &Config::sleep_time, k_positive, "s", "see sleep_speed", "60 time_step"},
       Field{"air_temperature", &Config::air_temperature, k_finite, "K",
             "of the air, or keyframes of it over time; see material.heat_transfer"},

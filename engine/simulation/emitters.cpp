@@ -112,6 +112,12 @@ bool flows(const Simulation::State& s, const EmitterState& emitter) {
          !(s.time >= emitter.settings.stop.value_or(s.time + 1));
 }
 
+/// A strand that is not enabled stands where it is, and so does its nozzle.
+bool is_enabled(const Simulation::State& s, const EmitterState& emitter) {
+  const std::optional<std::size_t> place = s.body_slots.find(static_cast<std::uint64_t>(emitter.body));
+  return !place || s.bodies[*place].enabled;
+}
+
 /// Of what it holds, where the strand has a speed [m/s].
 Vec3 velocity_of(const Emitter& emitter, const Pose& pose, double speed) {
   if (speed == 0) return emitter.velocity;
@@ -167,6 +173,7 @@ void cut_off(Simulation::State& s, EmitterState& emitter) {
 }
 
 void flow_out(Simulation::State& s, EmitterState& emitter) {
+  if (!is_enabled(s, emitter)) return;
   if (s.time >= emitter.settings.stop.value_or(s.time + 1)) return cut_off(s, emitter);
   BodyState& body = s.body(emitter.body);
   const Emitter& settings = emitter.settings;
@@ -186,10 +193,13 @@ void flow_out(Simulation::State& s, EmitterState& emitter) {
 void drain(Simulation::State& s, const SinkState& sink) {
   std::vector<ParticleId> ids;
   const Aabb box{relative_to(s.origin, sink.box.min), relative_to(s.origin, sink.box.max)};
-  for (std::size_t row = 0; row < s.store.size(); ++row) {
-    const Vec3 x = s.store.position.get(row);
-    if (is_near(x, box) == sink.outside || (!s.store.pin.empty() && s.store.pin[row] != 0)) continue;
-    ids.push_back(s.store.id[row]);
+  for (const BodyState& body : s.bodies) {
+    if (!body.enabled) continue;
+    for (std::size_t row = body.begin; row < body.end; ++row) {
+      const Vec3 x = s.store.position.get(row);
+      if (is_near(x, box) == sink.outside || (!s.store.pin.empty() && s.store.pin[row] != 0)) continue;
+      ids.push_back(s.store.id[row]);
+    }
   }
   if (!ids.empty()) erase_particles(s, ids);
 }
@@ -236,6 +246,7 @@ void flow(Simulation::State& s) {
 
 void drive_emitters(Simulation::State& s, double end, double time_step) {
   for (EmitterState& emitter : s.emitters) {
+    if (!is_enabled(s, emitter)) continue;
     Emitter& settings = emitter.settings;
     Pose there = settings.pose;
     Vec3 spin{0, 0, 0};
@@ -258,6 +269,7 @@ void drive_emitters(Simulation::State& s, double end, double time_step) {
 
 void move_emitters(Simulation::State& s, double end, double time_step) {
   for (EmitterState& emitter : s.emitters) {
+    if (!is_enabled(s, emitter)) continue;
     Emitter& settings = emitter.settings;
     emitter.offset += time_step * emitter.speed;
     if (settings.keyframes.empty())

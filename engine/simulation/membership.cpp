@@ -50,6 +50,11 @@ Points points_of(const Simulation::State& s, const Body& points) {
 /// Throws ConfigError.
 Points checked_points(Simulation::State& s, const BodyState& body, const Body& points) {
   Points checked = points_of(s, points);
+  float fastest = 0;
+  for (const Vec3& v : checked.velocities) fastest = std::max(fastest, v.stableNorm());
+  Checks checks;
+  check_speed(s, "body.velocity", static_cast<double>(fastest), checks);
+  checks.finish();
   refuse_overlaps(s, body, checked.positions, points.spacing, checked.origin);
   check_neighbors(s, body.material->settings, points);
   return checked;
@@ -401,7 +406,8 @@ PinId Simulation::pin(std::span<const ParticleId> ids, const Vec3& velocity) {
     break;
   }
   if (s.pins.size() == k_max_pins && s.pin_slots.free.empty())
-    checks.problem("pin", "at most 65535 pins are possible");
+    checks.problem("pin", "at most " + std::to_string(k_max_pins) + " pins are possible");
+  check_speed(s, "pin.velocity", velocity.cast<double>().norm(), checks);
   checks.finish();
   const std::uint64_t id = s.pin_slots.take();
   s.pin_slots.index[slot_of(id)] = slot_of(id);

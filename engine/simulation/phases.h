@@ -112,6 +112,8 @@ int join_bodies(Simulation::State& state);
 void flow(Simulation::State& state);
 /// Throws ConfigError where one lets its strand out faster than steps carry.
 void check_emitters(const Simulation::State& state);
+/// Those that were given before the first step said what it carries.
+void check_speeds(const Simulation::State& state);
 /// keyframes, speeds -> what emitters and the pins of what they hold do in a step that ends at `end` [s].
 void drive_emitters(Simulation::State& state, double end, double time_step);
 /// Emitters as that step has moved them.

@@ -48,7 +48,7 @@ void check_ray(const Vec3& origin, const Vec3& direction, double farthest) {
   Checks checks;
   checks.vector("origin", origin);
   checks.vector("direction", direction);
-  if (direction.allFinite() && !(direction.norm() > 0)) checks.problem("direction", "must not be 0");
+  if (direction.allFinite() && direction.isZero(0)) checks.problem("direction", "must not be 0");
   if (!(farthest >= 0)) checks.problem("farthest", "must be 0 or above");
   checks.finish();
 }
@@ -93,7 +93,7 @@ std::optional<ColliderHit> Simulation::raycast_colliders(const Vec3& origin, con
                                                          double farthest) const {
   const State& s = *state_;
   check_ray(origin, direction, farthest);
-  const Vec3 along = direction.normalized();
+  const Vec along = direction.cast<double>().normalized();
   std::optional<ColliderHit> hit;
   double least = farthest;
   for (std::size_t c = 0; c < s.colliders.size(); ++c) {
@@ -101,7 +101,7 @@ std::optional<ColliderHit> Simulation::raycast_colliders(const Vec3& origin, con
     const Eigen::Matrix3d rotation = rotation_of(collider.pose);
     const Vec3 from =
         (rotation.transpose() * (origin.cast<double>() - collider.pose.translation)).cast<float>();
-    const Vec3 way = (rotation.transpose() * along.cast<double>()).cast<float>();
+    const Vec3 way = (rotation.transpose() * along).cast<float>();
     visit_parts(collider, [&]<class Shape>(const Shape& shape) {
       for (const Crossing& crossing : ShapeTraits<Shape>::cross(shape, from, way)) {
         const double t = static_cast<double>(crossing.t);
@@ -110,7 +110,7 @@ std::optional<ColliderHit> Simulation::raycast_colliders(const Vec3& origin, con
         if (crossing.normal.dot(way) > 0) continue;
         least = t;
         hit = ColliderHit{.distance = t,
-                          .position = origin + crossing.t * along,
+                          .position = (origin.cast<double>() + t * along).cast<float>(),
                           .normal = (rotation * crossing.normal.cast<double>()).cast<float>(),
                           .collider = ColliderId{s.collider_ids[c]}};
       }

@@ -243,8 +243,6 @@ void unpack_emitters(const SavedState& saved, Simulation::State& state) {
     for (const EmitterState& emitter : state.emitters) {
       check(emitter.settings, checks);
       check_poses("emitter", emitter.settings.pose, emitter.settings.keyframes, checks);
-      if (!state.pin_slots.find(static_cast<std::uint64_t>(emitter.pin)))
-        archive.fail("an emitter holds no pin that there is");
       if (!std::isfinite(emitter.offset) || emitter.held.size() > emitter.layers)
         archive.fail("an emitter has more layers than there have been, or is nowhere");
     }
@@ -273,8 +271,7 @@ void pass_events(Archive& archive, State& state) {
     archive(event.crumbs);
     archive(other);
     if constexpr (!Archive::k_packs) {
-      if (kind > static_cast<std::uint8_t>(BodyEvent::Kind::merged))
-        archive.fail("calls leave no such event");
+      if (kind > static_cast<std::uint8_t>(BodyEvent::Kind::split)) archive.fail("calls leave no such event");
       event.kind = static_cast<BodyEvent::Kind>(kind);
       if (other) event.other = BodyId{*other};
     }
@@ -322,7 +319,7 @@ void unpack_obstacles(const SavedState& saved, Simulation::State& state) {
           !std::isfinite(pin.seconds))
         archive.fail("a velocity, a way or a time is not finite, or it is below 0");
     });
-    if (state.pins.size() > k_max_pins) archive.fail("there are more than 65535");
+    if (state.pins.size() > k_max_pins) archive.fail("there are more than " + std::to_string(k_max_pins));
   });
   unpack_pin_slots(saved, state);
 }

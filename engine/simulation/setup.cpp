@@ -235,6 +235,7 @@ void prepare(Simulation::State& s) {
   if (s.store.size() == 0 && s.scale.spacing == 0)
     checks.problem("body", "no particles: a simulation needs at least one");
   checks.finish();
+  const bool is_first = s.scale.spacing == 0;
   resolve_settings(s);
   check_elasticities(s);
   check_memory(s);
@@ -254,6 +255,7 @@ void prepare(Simulation::State& s) {
   for (BodyState& body : s.bodies)
     if (body.matches_shape() && !body.shape.built) build_regions(s.execution, s.region_scratch, body.shape);
   check_emitters(s);
+  if (is_first) check_speeds(s);
   s.prepared = true;
 }
 

@@ -24,6 +24,13 @@ void move(Simulation::State& s, const ChosenStep& step, PhaseTimer& timer, StepR
   }
 }
 
+/// What calls left to be told is told by the step that succeeds.
+void keep_events(Simulation::State& s) {
+  const auto end = s.events.begin() + static_cast<std::ptrdiff_t>(s.events_of_calls);
+  s.next_events.insert(s.next_events.begin(), s.events.begin(), end);
+  s.events.clear();
+}
+
 }  // namespace
 
 // Algorithm 3.3 of [TK], as the model settles it. Surfacing is not a phase: it reads the views between steps.
@@ -89,9 +96,15 @@ StepReport Simulation::step_towards(double end) {
   const int joined = join_bodies(*state_);  // κ -> bodies that are one   [model 2, section 5]
   flow(*state_);                            // time -> rows of strands
   prepare();
-  StepReport report = take_step(*state_, end);
-  report.updated_references += joined;
-  return report;
+  state_->events_of_calls = 0;
+  try {
+    StepReport report = take_step(*state_, end);
+    report.updated_references += joined;
+    return report;
+  } catch (...) {
+    keep_events(*state_);
+    throw;
+  }
 }
 
 StepReport Simulation::step() {

@@ -214,6 +214,7 @@ void wake_bodies(Simulation::State& state) {
     if (body.island != 0 && is_near_moving(state, body.box, body.spacing)) wake_island(state, body);
   state.events.swap(state.next_events);
   state.next_events.clear();
+  state.events_of_calls = state.events.size();
   state.awake.clear();
   for (BodyState& body : state.bodies)
     if (body.moves()) state.awake.push_back(&body);

@@ -240,6 +240,7 @@ struct Simulation::State {
   std::uint64_t emitter_count = 0, sink_count = 0;  ///< that there have been
   std::vector<BodyEvent> events;                    ///< of the last step, and of calls before it
   std::vector<BodyEvent> next_events;               ///< of calls since then
+  std::size_t events_of_calls = 0;                  ///< the first of `events`, while a step is taken
   std::vector<EndedBody> ended;                     ///< as they became one with others
   Contacts contacts;
   ForceCallback force;

@@ -160,6 +160,14 @@ void check_speed(const Simulation::State& state, const char* field, double speed
   checks.problem(field, text.str());
 }
 
+void check_speeds(const Simulation::State& state) {
+  Checks checks;
+  for (const PinState& pin : state.pins)
+    check_speed(state, "pin.velocity", pin.velocity.cast<double>().norm(), checks);
+  check_speed(state, "body.velocity", static_cast<double>(largest_norm(state.store.velocity)), checks);
+  checks.finish();
+}
+
 void Simulation::State::require_ahead(double end) const {
   if (end > time) return;
   std::ostringstream text;

@@ -322,7 +322,7 @@ void Simulation::set_pose(ColliderId id, const Pose& pose, double seconds) {
   Collider& changed = s.colliders[s.index(id)];
   Checks checks;
   check_pose("collider.pose", pose, checks);
-  checks.number("seconds", seconds, seconds >= 0, "a number >= 0");
+  checks.number("seconds", seconds, seconds >= 0, "a finite number, 0 or above");
   checks.finish();
   if (seconds == 0) wake_near(s, changed);
   changed.velocity.setZero();

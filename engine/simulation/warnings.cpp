@@ -84,6 +84,7 @@ class Warnings {
       look_at_limp(body);
       look_at_sleep(body);
     }
+    look_at_sleeping();
     if (state_.step == 0 && state_.bodies.size() > 1) look_at_overlaps();
     if (state_.step == 0)
       for (const BodyState& body : state_.bodies) look_at_colliders(body);
@@ -125,6 +126,15 @@ class Warnings {
       add(body, "falls asleep in the air, as in sleep_time, ", time,
           " s, gravity makes nothing as fast as sleep_speed, ", speed, unit(" m/s"),
           ": lower sleep_speed, or raise sleep_time above ", speed / gravity, " s");
+  }
+
+  void look_at_sleeping() {
+    const SolverConfig& config = state_.config;
+    if (state_.bodies_sleep() || !(config.sleep_time || config.sleep_speed.value_or(0) > 0)) return;
+    const bool by_pressure = config.contact == BodyContact::pressure;
+    list_.add(config.sleep_speed.value_or(0) > 0 ? "solver.sleep_speed" : "solver.sleep_time",
+              by_pressure ? " has no effect where solver.contact is \"pressure\": nothing sleeps there"
+                          : " has no effect where solver.sleep_speed is 0: nothing sleeps");
   }
 
   /// Whoever merges needs somebody to merge with.

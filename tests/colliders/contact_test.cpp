@@ -136,9 +136,8 @@ Eigen::Vector3d literal(const Collider& collider, const Vec3& x, const Vec3& bef
     const Vec r = at - c;
     const Vec u = collider.velocity.cast<double>() + mean_spin(collider.angular_velocity, dt) * r;
     const Vec way = dt * (now - u);
-    const oracle::Distance met =
-        oracle::distance_on_the_way(part, rotation.transpose() * r, turned.transpose() * way,
-                                    static_cast<double>(k_step.contact_offset));
+    const oracle::Distance met = oracle::distance_on_the_way(
+        part, rotation.transpose() * r, turned.transpose() * way, static_cast<double>(k_step.contact_offset));
     const Vec n = turned * met.normal;
     const double gap = met.value - static_cast<double>(k_step.contact_offset);
     const double across = (now - u).dot(n);
@@ -239,7 +238,8 @@ TEST(contact, holds_what_a_collider_sweeps_in_front_of_it) {
       const Vec3 x(far, 1.5f, 0), v = resolve_one_row(blade, k_step, x, {0, 0, 0}, {0, 0, 0});
       const Vec3 end = x + k_step.time_step * v;
       const float in_front = end.y() * std::cos(turn) - end.x() * std::sin(turn);
-      const float was = x.y() * std::cos(turn) - x.x() * std::sin(turn), touches = 0.02f + k_step.contact_offset;
+      const float was = x.y() * std::cos(turn) - x.x() * std::sin(turn),
+                  touches = 0.02f + k_step.contact_offset;
       EXPECT_NEAR(in_front, std::max(touches, was), 2e-5f * far) << turn << " rad, " << far;
     }
   }

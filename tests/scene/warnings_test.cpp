@@ -84,6 +84,18 @@ TEST_F(scene_warnings, name_what_bodies_rub_and_stick_by_where_pressure_keeps_th
   EXPECT_FALSE(warns(of("constraint"), "has no effect"));
 }
 
+TEST_F(scene_warnings, name_when_bodies_sleep_where_none_ever_does) {
+  const auto of = [&](std::vector<std::string> settings) {
+    return warnings_of(read(jelly("alpha = 0.3"), settings));
+  };
+  EXPECT_TRUE(warns(of({"solver.contact=\"pressure\"", "solver.sleep_speed=0.1"}),
+                    "solver.sleep_speed has no effect where solver.contact is \"pressure\""));
+  EXPECT_TRUE(warns(of({"solver.sleep_speed=0", "solver.sleep_time=2"}),
+                    "solver.sleep_time has no effect where solver.sleep_speed is 0"));
+  EXPECT_FALSE(warns(of({"solver.contact=\"pressure\"", "solver.sleep_speed=0"}), "has no effect"));
+  EXPECT_FALSE(warns(of({"solver.sleep_speed=0.1", "solver.sleep_time=2"}), "has no effect"));
+}
+
 TEST_F(scene_warnings, name_a_nozzle_whose_layers_are_not_as_wide_as_its_mouth) {
   const auto of = [&](const std::string& radius, const std::string& spacing) {
     return warnings_of(read(jelly("alpha = 0.3", "[[emitter]]\nmaterial = \"blob\"\nradius = " + radius +

@@ -254,6 +254,51 @@ TEST(emitter, with_key_points_goes_on_with_the_same_bits_after_a_restore) {
   EXPECT_EQ(run(true), run(false));
 }
 
+/// It stood still before too, but the nozzle pushed on and filled it up.
+TEST(emitter, whose_strand_is_not_enabled_stands_still_and_goes_on_as_if_nothing_had_been) {
+  for (const float alpha : {0.0f, 1.0f}) {
+    SCOPED_TRACE(alpha);
+    Simulation s(solver(0)), always(solver(0));
+    std::vector<EmitterId> nozzles;
+    for (Simulation* each : {&s, &always}) {
+      Emitter moving = nozzle(0);
+      moving.velocity = {0.2f, 0, 0};
+      nozzles.push_back(each->add_emitter(moving, each->add_material({.alpha = alpha, .viscosity = 0.5f})));
+      each->add_body(sample(Lattice{.count = {3, 3, 3}, .corner = {90, 0, 0}}), Material{});
+      for (int k = 0; k < 40; ++k) each->step();
+    }
+    const std::size_t count = s.particle_count();
+    s.enable(s.body(nozzles[0]), false);
+    for (int k = 0; k < 100; ++k) s.step();
+    EXPECT_EQ(s.particle_count(), count);
+    EXPECT_EQ(s.emitter(nozzles[0]).pose.translation, always.emitter(nozzles[1]).pose.translation);
+    s.enable(s.body(nozzles[0]), true);
+    for (int k = 0; k < 40; ++k) {
+      s.step();
+      always.step();
+    }
+    ASSERT_EQ(s.particle_count(), always.particle_count());
+    const Aabb box = s.bounds(s.body(nozzles[0])), expected = always.bounds(always.body(nozzles[1]));
+    EXPECT_LT((box.min - expected.min).norm(), 1e-3f);
+    EXPECT_LT((box.max - expected.max).norm(), 1e-3f);
+  }
+}
+
+TEST(sink, leaves_what_is_not_enabled) {
+  Simulation s(solver(0));
+  const BodyId body =
+      s.add_body(sample(Lattice{.count = {3, 3, 3}, .corner = {0, 0, 0}, .jitter = 0}), Material{});
+  s.add_body(sample(Lattice{.count = {3, 3, 3}, .corner = {20, 0, 0}, .jitter = 0}), Material{});
+  s.add_sink(Aabb{{-1, -1, -1}, {30, 5, 1.5f}});
+  s.enable(body, false);
+  s.step();
+  EXPECT_EQ(s.rows(body).end - s.rows(body).begin, 27u);
+  EXPECT_EQ(s.particle_count(), 36u);
+  s.enable(body, true);
+  s.step();
+  EXPECT_EQ(s.rows(body).end - s.rows(body).begin, 9u);
+}
+
 TEST(emitter, that_lets_out_faster_than_a_step_carries_is_refused_before_the_first_one) {
   Simulation s(solver(0));
   s.add_emitter(nozzle(0, 2e4f), s.add_material({.alpha = 1.0f}));

@@ -435,6 +435,26 @@ TEST(contact_events, ascend_by_ids_with_colliders_first) {
   }
 }
 
+TEST(events, that_calls_left_are_told_once_by_the_step_that_succeeds) {
+  Simulation s(solver());
+  const BodyId body = s.add_body(cube(3, {0, 0, 1}), Material{});
+  s.add_collider({.shape = Plane{}, .friction = 0.5f});
+  for (int k = 0; k < 2000 && s.is_awake(body); ++k) s.step();
+  ASSERT_FALSE(s.is_awake(body));
+  s.wake(body);
+  s.set_force([](const ForceInput&, VectorSpan accelerations) {
+    accelerations.x()[0] = std::numeric_limits<float>::quiet_NaN();
+  });
+  EXPECT_THROW(s.step(), StepError);
+  EXPECT_TRUE(s.events().empty());
+  s = Simulation::restore(s.save(), 1);
+  s.step();
+  ASSERT_EQ(count(s, Kind::woke), 1u);
+  EXPECT_EQ(contacts(s, Kind::woke)[0].body, body);
+  s.step();
+  EXPECT_EQ(count(s, Kind::woke), 0u);
+}
+
 TEST(contact_events, refuse_what_is_out_of_range) {
   Simulation s(solver());
   s.add_body(cube(3, {0, 0, 0}), Material{});

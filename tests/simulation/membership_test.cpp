@@ -414,6 +414,10 @@ TEST(queries, find_what_a_ray_or_a_place_meets) {
   EXPECT_EQ(ground->collider, ColliderId{1});
   EXPECT_NEAR(ground->distance, 43, 1e-3);
   EXPECT_EQ(s.raycast_colliders({9, 9, 50}, {0, 0, -1})->collider, floor);
+  for (const float length : {1e-44f, 1e-22f, 1e20f, 3e38f}) {
+    EXPECT_NEAR(s.raycast_colliders({30, 0, 50}, {0, 0, -length})->distance, ground->distance, 1e-4);
+    EXPECT_EQ(s.raycast_colliders({30, 0, 50}, {0, 0, length}), std::nullopt);
+  }
   EXPECT_EQ(s.particles_in(Aabb{{-1, -1, -1}, {5, 5, 2}}).size(), 32u);
   const NearestParticle nearest = *s.nearest_particle({-3, -3, -3});
   EXPECT_EQ(nearest.body, low);

@@ -137,6 +137,55 @@ std::vector<Call> calls_with_numbers() {
        },
        "impulse: "},
       {"set_flow", flow(false, 1e30f, {0, 0, 0}), "emitter.speed: 1e+30 m/s"},
+      {"pin",
+       [](Crowd& crowd) {
+         const ParticleId first[] = {crowd.s.ids()[0]};
+         crowd.s.pin(first, {0, 1e6f, 0});
+       },
+       "pin.velocity: 1e+06 m/s is not allowed: no step carries more than"},
+      {"add_body",
+       [](Crowd& crowd) {
+         Body fast = cube(60);
+         fast.velocity = {0, 0, 1e6f};
+         crowd.s.add_body(fast, Material{});
+       },
+       "body.velocity: 1e+06 m/s"},
+      {"extend_body",
+       [](Crowd& crowd) {
+         Body fast = cube(60);
+         fast.velocities.assign(fast.positions.size(), {1e6f, 0, 0});
+         crowd.s.extend_body(crowd.there, fast);
+       },
+       "body.velocity: 1e+06 m/s"},
+      {"set_pose", [endless](Crowd& crowd) { crowd.s.set_pose(crowd.floor, {}, endless); },
+       "seconds: inf is not allowed: a finite number, 0 or above"},
+      {"set_temperature",
+       [](Crowd& crowd) {
+         const ParticleId first[] = {crowd.s.ids()[0]};
+         crowd.s.set_temperature(first, k_nan);
+       },
+       "temperature"},
+      {"set_stiffness",
+       [](Crowd& crowd) {
+         const ParticleId first[] = {crowd.s.ids()[0]};
+         crowd.s.set_stiffness(first, -1);
+       },
+       "stiffness"},
+      {"material_settings", [](Crowd& crowd) { crowd.s.material_settings(MaterialId{99}); }, "99"},
+      {"alpha", [](Crowd& crowd) { crowd.s.alpha(ParticleId{1u << 20}); }, "particle"},
+      {"rest_position", [](Crowd& crowd) { crowd.s.rest_position(ParticleId{1u << 20}); }, "particle"},
+      {"move_pin",
+       [](Crowd& crowd) {
+         const ParticleId first[] = {crowd.s.ids()[0]};
+         const PinId pin = crowd.s.pin(first);
+         try {
+           crowd.s.move_pin(pin, {0, k_nan, 0}, 1);
+         } catch (...) {
+           crowd.s.unpin(pin);
+           throw;
+         }
+       },
+       "pin"},
       {"rotations", [](Crowd& crowd) { crowd.s.rotations(crowd.fluid); },
        "'fluid', which has no reference shape"},
   };

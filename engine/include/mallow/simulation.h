@@ -286,9 +286,11 @@ class MALLOW_EXPORT Simulation {
   /// the mass there. Returns how many particles got some; where there is none, none is given. Throws as
   /// set_velocity() does.
   std::size_t add_impulse(const Vec3& center, float radius, const Vec3& impulse);
-  /// A body that is not enabled stands where it is, is met by nothing, and costs nothing. It is still seen in
-  /// every view, goes on as fast as it was when it is enabled again, and nothing may be added where it
-  /// overlaps it. Throws ConfigError where there is none of this id, or no longer.
+  /// A body that is not enabled stands where it is, is met by nothing, taken by no sink, and costs nothing.
+  /// The nozzle of a strand stands still with it; one with keyframes is where they say in the step after it
+  /// is enabled again. It is still seen in every view, goes on as fast as it was when it is enabled again,
+  /// and nothing may be added where it overlaps it. Throws ConfigError where there is none of this id, or no
+  /// longer.
   void enable(BodyId body, bool enabled);
   /// As set last; true at first. Throws as enable() does.
   bool is_enabled(BodyId body) const;
