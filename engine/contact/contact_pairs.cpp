@@ -2,14 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "core/bounds.h"
 #include "core/parallel.h"
-#include "shape_matching/run_tables.h"
-#include "shape_matching/shape_matching.h"
 
 namespace mallow {
 namespace {
@@ -17,228 +13,169 @@ namespace {
 /// Pairs of a point that there is room for from the start: more than rest or flow asks for, so that a motion
 /// that goes on takes no more memory.
 constexpr std::size_t k_room = 4;
-/// The same of those near each of its points.
-constexpr std::size_t k_room_near = 8;
-/// The same of a block, whichever of its points have come near.
+/// The same of fews near each of a block.
+constexpr std::size_t k_room_near = 24;
+/// The same of pairs of a block, whichever of its points have come near.
 std::size_t room(const NearBlocks& near, std::size_t number) {
   const RangeBlocks::Block& block = near.blocks.blocks[number];
   return k_room * (block.end - block.begin);
 }
 
-/// From the middle of the regions of a particle to it, in the reference shape.
-Vec3 rest_outward(const ShapeMatching& shape, std::size_t i) {
-  const Vec3 x = shape.reference.get(i);
-  if (shape.region_stride == 1) return x - shape.center.get(i);
-  Vec3 middle = Vec3::Zero();
-  const std::vector<std::uint32_t> regions = decode(shape.by_particle(), i);
-  for (const std::uint32_t region : regions) middle += shape.center.get(region);
-  return x - middle / static_cast<float>(regions.size());
+/// Whether no few moves otherwise than it was thought to when near ones were found.
+bool are_as_found(const ContactPoints& points) {
+  const FewMotion &now = points.motion, &found = points.found_motion;
+  for (std::size_t k = 0; k < now.spread.size(); ++k)
+    if (!((now.velocity.get(k) - found.velocity.get(k)).norm() + now.spread[k] <= found.spread[k]))
+      return false;
+  return true;
 }
 
-/// N_i: which way out of its body a particle lies, and how near the surface. 0 in a fluid, which has no
-/// shape.
-Vec3 outward(const TouchingBody& body, std::size_t row) {
-  if (!body.shape) return Vec3::Zero();
-  const std::size_t i = row - body.begin, region = body.shape->first_region(i);
-  const auto& q = body.shape->rotation;
-  return Eigen::Quaternionf(q[3][region], q[0][region], q[1][region], q[2][region]) *
-         rest_outward(*body.shape, i);
-}
-
-/// What is known of the points.
-void gather(const VectorColumn& positions, const VectorColumn& velocities, const std::uint16_t* pin,
-            const std::vector<TouchingBody>& bodies, const Threads& threads, ContactPairs& pairs) {
+/// Fews of later blocks of other bodies near each of a block.
+void find_near_fews(std::size_t number, const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
+                    const PointLanes& lanes, ContactPairs& pairs) {
   const NearBlocks& near = pairs.near;
-  const std::size_t n = near.row.size();
-  pairs.positions.resize_unset(n);
-  pairs.points.resize(n);
-  pairs.velocity.resize(n);
-  const std::size_t blocks = near.blocks.blocks.size();
-  pairs.first_few.resize_unset(blocks + 1);
-  pairs.first_few[0] = 0;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    const std::size_t points = near.first_point[b + 1] - near.first_point[b];
-    pairs.first_few[b + 1] =
-        pairs.first_few[b] + static_cast<std::uint32_t>((points + k_cluster - 1) / k_cluster);
+  ContactPoints& points = pairs.points;
+  BlockCandidates& block = pairs.candidates[number];
+  block.ends.clear();
+  const std::size_t begin = points.first_few(number), end = points.first_few(number + 1);
+  if (begin == end) return;
+  const FewColumns columns{raw(points.low), raw(points.high), raw(points.found_motion.velocity),
+                           points.found_motion.spread.data()};
+  struct Other {
+    FewReach reach;
+    std::size_t first, last;  ///< fews
+    std::uint32_t near;       ///< a bit for each of the block that is near them
+  };
+  thread_local std::vector<Other> others;
+  others.clear();
+  std::size_t most = 0;
+  for (const auto& [other, reach] : near.others[number]) {
+    if (other < number) continue;
+    const float spacing = 0.5f * (bodies[near.blocks.blocks[number].range].spacing +
+                                  bodies[near.blocks.blocks[other].range].spacing);
+    const Aabb& box = near.block_motion[other].box;
+    const Vec3 low = box.min.array() - reach, high = box.max.array() + reach;
+    others.push_back({{.time_step = step.time_step,
+                       .across = k_across * spacing,
+                       .along = spacing + pushed_together(step),
+                       .most = step.reach},
+                      points.first_few(other),
+                      points.first_few(other + 1),
+                      lanes.fews_in_box(columns, begin, end, low.data(), high.data())});
+    most += others.back().last - others.back().first;
   }
-  pairs.few_low.resize_unset(pairs.first_few[blocks]);
-  pairs.few_high.resize_unset(pairs.first_few[blocks]);
-  parallel_for(threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
-    const TouchingBody& body = bodies[block.range];
-    const float friction = std::sqrt(body.friction), adhesion = std::sqrt(body.adhesion);
-    for (std::uint32_t p = near.first_point[number]; p < near.first_point[number + 1]; ++p) {
-      const std::uint32_t row = near.row[p];
-      const Vec3 x = positions.get(row), v = velocities.get(row), out = outward(body, row);
-      const float depth = out.norm();
-      pairs.positions.set(p, x);
-      pairs.velocity[p] = {v, 0};
-      pairs.points[p] = {.position = x,
-                         .half_spacing = 0.5f * body.spacing,
-                         .outward = depth > 0 ? Vec3(out / depth) : Vec3(0, 0, 0),
-                         .depth = depth,
-                         .inverse_mass = pin && pin[row] != 0 ? 0.0f : 1.0f / body.mass,
-                         .friction = friction,
-                         .adhesion = adhesion,
-                         .unused = 0};
-    }
-    const std::size_t begin = near.first_point[number], end = near.first_point[number + 1];
-    for (std::size_t few = pairs.first_few[number], from = begin; from < end; ++few, from += k_cluster) {
-      const Aabb box = box_around(pairs.positions, from, std::min(from + k_cluster, end));
-      pairs.few_low.set(few, box.min);
-      pairs.few_high.set(few, box.max);
-    }
-  });
+  block.ends.reserve(k_block / k_cluster);
+  std::uint32_t count = 0;
+  for (std::size_t few = begin; few < end; ++few) {
+    block.reserve(std::max(count + most + k_cluster, k_room_near * (end - begin)));
+    for (const Other& other : others)
+      if (other.near >> (few - begin) & 1)
+        count += static_cast<std::uint32_t>(lanes.near_fews(columns, other.reach, few, other.first,
+                                                            other.last, block.fews.data() + count,
+                                                            block.squares.data() + count));
+    block.ends.push_back(count);
+  }
 }
-
-/// How points move, which is all that changes from call to call of one step.
-void gather_velocities(const VectorColumn& velocities, const Threads& threads, ContactPairs& pairs) {
-  parallel_for(threads, pairs.near.row.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) pairs.velocity[p] = {velocities.get(pairs.near.row[p]), 0};
-  });
-}
-
-/// Points that are tried with others, with room for what lanes write behind them.
-struct Candidates {
-  std::vector<std::uint32_t> name;
-  std::vector<float> x, y, z, along, across;
-  std::size_t count = 0;
-
-  void reserve(std::size_t points) {
-    const std::size_t room = points + k_cluster;
-    if (name.size() >= room) return;
-    name.resize(room);
-    for (std::vector<float>* column : {&x, &y, &z, &along, &across}) column->resize(room);
-  }
-  MeetingPoints columns() {
-    return {name.data(), {x.data(), y.data(), z.data()}, along.data(), across.data()};
-  }
-};
 
 /// What finding the pairs of a block needs on the way.
 struct PairSearch {
-  Candidates own, others;
-  std::vector<std::uint32_t> first, second;  ///< points that may touch
+  std::vector<std::uint32_t> scratch, own, other;
 };
-
-ConstVectors from(const VectorColumn& column, std::size_t first) {
-  return {column.x() + first, column.y() + first, column.z() + first};
+void make_room(std::vector<std::uint32_t>& list, std::size_t room) {
+  if (list.size() < room) list.resize(room);
 }
 
-/// Points of later blocks of other bodies near the box of some of a block.
-void find_candidates(const ContactPairs& pairs, std::size_t number, const Aabb& box,
-                     const ContactLanes& lanes, Candidates& found) {
-  const NearBlocks& near = pairs.near;
-  found.count = 0;
-  for (const auto& [other, reach] : near.others[number]) {
-    if (other < number || !are_near(box, near.block_motion[other].box, reach)) continue;
-    const std::uint32_t first = near.first_point[other], last = near.first_point[other + 1];
-    found.reserve(found.count + (last - first));
-    const LaneBox wide = lane_box(box, reach);
-    const std::size_t few = pairs.first_few[other];
-    found.count += lanes.in_box(raw(pairs.positions), first, last, wide, from(pairs.few_low, few),
-                                from(pairs.few_high, few), found.name.data() + found.count);
-  }
-}
-
-/// Those of all points of a block, a few of them at a time.
-void find_all_candidates(std::size_t number, const ContactLanes& lanes, ContactPairs& pairs) {
-  const NearBlocks& near = pairs.near;
-  const std::uint32_t begin = near.first_point[number], end = near.first_point[number + 1];
-  BlockCandidates& block = pairs.candidates[number];
-  block.points.clear();
-  block.ends.clear();
-  if (begin == end) return;
-  thread_local Candidates others;
-  others.reserve(4 * k_block);
-  const std::size_t rows = near.blocks.blocks[number].end - near.blocks.blocks[number].begin;
-  block.points.reserve(k_room_near * rows);
-  block.ends.reserve((rows + k_cluster - 1) / k_cluster);
-  for (std::size_t few = pairs.first_few[number]; few < pairs.first_few[number + 1]; ++few) {
-    find_candidates(pairs, number, {pairs.few_low.get(few), pairs.few_high.get(few)}, lanes, others);
-    block.points.insert(block.points.end(), others.name.begin(),
-                        others.name.begin() + static_cast<std::ptrdiff_t>(others.count));
-    block.ends.push_back(static_cast<std::uint32_t>(block.points.size()));
-  }
-}
-
-/// The pairs of the points of a block with those of later ones. A few points at a time, which lie side by
-/// side, are tried with what is near all of them.
-void find_pairs(std::size_t number, const PairStep& step, const ContactLanes& lanes, ContactPairs& pairs) {
-  const NearBlocks& near = pairs.near;
-  const std::uint32_t begin = near.first_point[number], end = near.first_point[number + 1];
+/// The pairs of the points of a block with those of later ones: a few of them at a time with all fews near.
+void find_pairs(std::size_t number, const PairStep& step, const Execution& execution, ContactPairs& pairs) {
+  const PointLanes& lanes = MALLOW_SELECT(execution.level, point_lanes);
+  ContactPoints& points = pairs.points;
+  const std::size_t begin = points.first_few(number), end = points.first_few(number + 1);
   BlockPairs& block = pairs.blocks[number];
   block.count = 0;
   pairs.sides[number].points.clear();
   if (begin == end) return;
-  block.reserve(room(near, number));
   thread_local PairSearch search;
-  auto& [own, others, first, second] = search;
-  own.reserve(k_cluster);
-  others.reserve(4 * k_block);
-  const float* const velocity = near.block_motion[number].velocity.data();
+  const FewColumns columns{raw(points.low), raw(points.high), {}, nullptr};
   const BlockCandidates& candidates = pairs.candidates[number];
   std::uint32_t next = 0;
-  for (std::uint32_t from = begin; from < end; from += k_cluster) {
-    own.count = std::min<std::size_t>(k_cluster, end - from);
-    const std::uint32_t first_other = next;
-    next = candidates.ends[(from - begin) / k_cluster];
-    others.count = next - first_other;
-    if (others.count == 0) continue;
-    others.reserve(others.count);
-    std::copy_n(candidates.points.begin() + first_other, others.count, others.name.begin());
-    std::iota(own.name.begin(), own.name.begin() + k_cluster, from);
-    lanes.gather(pairs.rows(), step, velocity, own.count, own.columns());
-    lanes.gather(pairs.rows(), step, velocity, others.count, others.columns());
-    const std::size_t most = k_cluster * others.name.size();
-    if (second.size() < most) {
-      first.resize(most);
-      second.resize(most);
-    }
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < own.count; ++i) {
-      const std::size_t found =
-          lanes.meeting(own.columns(), i, others.columns(), others.count, second.data() + count);
-      std::fill_n(first.begin() + static_cast<std::ptrdiff_t>(count), found, own.name[i]);
-      count += found;
-    }
-    block.reserve(block.count + count);
-    block.count =
-        lanes.add_pairs(pairs.rows(), step, first.data(), second.data(), count, block.columns(), block.count);
+  std::size_t count = 0;
+  for (std::size_t few = begin; few < end; ++few) {
+    const std::uint32_t first = std::exchange(next, candidates.ends[few - begin]);
+    if (first == next) continue;
+    const std::size_t room = k_cluster * room_of(next - first);
+    make_room(search.scratch, room);
+    make_room(search.own, count + room);
+    make_room(search.other, count + room);
+    count +=
+        lanes.near_points(raw(std::as_const(points.position)), columns, few, candidates.fews.data() + first,
+                          candidates.squares.data() + first, next - first, search.scratch.data(),
+                          search.own.data() + count, search.other.data() + count);
   }
+  block.reserve(std::max(room(pairs.near, number), count));
+  block.count =
+      MALLOW_SELECT(execution.level, contact_lanes)
+          .add_pairs(points.rows(), step, search.own.data(), search.other.data(), count, block.columns());
 }
 
 /// In which pairs the points of a block are.
-void find_sides(std::uint32_t number, ContactPairs& pairs) {
+void find_sides(std::uint32_t number, const ContactLanes& lanes, ContactPairs& pairs) {
   struct Found {
-    std::uint32_t point;
-    BlockSides::Side side;
+    std::vector<std::uint32_t> point, pair;
+    std::size_t count = 0;
   };
-  thread_local std::vector<Found> found;
-  found.clear();
-  found.reserve(4 * k_room * k_block);
+  thread_local Found found;
   const NearBlocks& near = pairs.near;
-  const std::uint32_t begin = near.first_point[number], end = near.first_point[number + 1];
-  const auto find = [&](const BlockPairs& of, const std::vector<std::uint32_t>& points, float sign) {
-    for (std::size_t k = 0; k < of.count; ++k)
-      if (points[k] - begin < end - begin)  // below begin it wraps around
-        found.push_back({points[k] - begin, {static_cast<std::uint32_t>(of.first + k), sign}});
-  };
-  find(pairs.blocks[number], pairs.blocks[number].own, 1);
-  for (const NearBlocks::Other& other : near.others[number])
-    if (other.block < number) find(pairs.blocks[other.block], pairs.blocks[other.block].other, -1);
-
-  std::array<std::uint32_t, k_block> next{};
-  for (const Found& one : found) ++next[one.point];
-  BlockSides& block = pairs.sides[number];
-  block.points.reserve(near.blocks.blocks[number].end - near.blocks.blocks[number].begin);
-  std::uint32_t count = 0;
-  for (std::uint32_t p = begin; p < end; ++p) {
-    const std::uint32_t own = std::exchange(next[p - begin], count);
-    count += own;
-    if (own > 0) block.points.push_back({p, count});
+  const std::uint32_t begin = pairs.points.first[number], end = pairs.points.first[number + 1];
+  if (begin == end) return;
+  // As the second.
+  found.count = 0;
+  for (const NearBlocks::Other& other : near.others[number]) {
+    if (other.block > number) break;
+    const BlockPairs& of = pairs.blocks[other.block];
+    const std::size_t most = found.count + of.count + k_cluster;
+    if (found.point.size() < most) {
+      found.point.resize(most);
+      found.pair.resize(most);
+    }
+    found.count +=
+        lanes.find_points(of.other.data(), of.count, begin, end, static_cast<std::uint32_t>(of.first),
+                          found.pair.data() + found.count, found.point.data() + found.count);
   }
-  if (block.sides.size() < count) block.sides.resize(std::max<std::size_t>(count, 2 * room(near, number)));
-  for (const Found& one : found) block.sides[next[one.point]++] = one.side;
+  std::array<std::uint32_t, k_block> seconds{}, firsts{};
+  for (std::size_t k = 0; k < found.count; ++k) ++seconds[found.point[k]];
+  const BlockPairs& own = pairs.blocks[number];
+  for (std::size_t k = 0; k < own.count; ++k) ++firsts[own.own[k] - begin];
+
+  BlockSides& block = pairs.sides[number];
+  block.points.reserve(end - begin);
+  auto pair = static_cast<std::uint32_t>(own.first);
+  std::uint32_t place = 0;
+  for (std::uint32_t p = 0; p < end - begin; ++p) {
+    if (firsts[p] + seconds[p] == 0) continue;
+    const std::uint32_t first = std::exchange(pair, pair + firsts[p]);
+    const std::uint32_t of_others = std::exchange(place, place + seconds[p]);
+    block.points.push_back({begin + p, first, pair, place});
+    seconds[p] = of_others;
+  }
+  if (block.others.size() < place) block.others.resize(std::max<std::size_t>(place, 2 * room(near, number)));
+  for (std::size_t k = 0; k < found.count; ++k) block.others[seconds[found.point[k]]++] = found.pair[k];
+}
+
+/// Numbers the pairs of all blocks; lanes write whole clusters, and a few beyond. Returns how many numbers
+/// there are.
+std::size_t number_pairs(ContactPairs& pairs) {
+  std::size_t count = 0;
+  for (BlockPairs& block : pairs.blocks) {
+    block.first = count;
+    if (block.count > 0) count += (block.count + 3 + k_cluster - 1) / k_cluster * k_cluster;
+  }
+  for (Column<float>* column : {&pairs.acts, &pairs.own_share, &pairs.other_share})
+    column->resize_unset(count);
+  pairs.closing.resize_unset(count);
+  pairs.impulses.resize_unset(4 * count);
+  pairs.sums.resize_unset(pairs.keeps_sums ? 4 * count : 0);
+  std::fill_n(pairs.sums.data(), pairs.sums.size(), 0.0f);
+  return count;
 }
 
 }  // namespace
@@ -261,55 +198,61 @@ std::size_t BlockPairs::bytes() const {
   return own.capacity() * (2 * sizeof(std::uint32_t) + 6 * sizeof(float));
 }
 
-ContactRows ContactPairs::rows() const {
-  static_assert(sizeof(ContactPoint) == 12 * sizeof(float) && sizeof(ContactVelocity) == 4 * sizeof(float));
-  return {points.empty() ? nullptr : points.front().position.data(),
-          velocity.empty() ? nullptr : velocity.front().velocity.data()};
+void BlockCandidates::reserve(std::size_t room) {
+  if (fews.size() >= room) return;
+  fews.resize(room);
+  squares.resize(room);
+}
+
+std::size_t BlockCandidates::bytes() const {
+  return fews.capacity() * sizeof(std::uint32_t) + squares.capacity() * sizeof(float) +
+         ends.capacity() * sizeof(std::uint32_t);
+}
+
+RoundColumns ContactPairs::round(std::size_t pair) {
+  return {acts.data() + pair,
+          {closing.x() + pair, closing.y() + pair, closing.z() + pair},
+          own_share.data() + pair,
+          other_share.data() + pair,
+          impulses.data() + 4 * pair};
 }
 
 std::size_t ContactPairs::bytes() const {
-  std::size_t sum = near.bytes() + positions.bytes() + few_low.bytes() + few_high.bytes() +
-                    first_few.bytes() + acts.bytes() + impulses.bytes() + sums.bytes() +
-                    points.capacity() * sizeof(ContactPoint) + velocity.capacity() * sizeof(ContactVelocity);
+  std::size_t sum = near.bytes() + points.bytes() + closing.bytes();
+  for (const Column<float>* column : {&acts, &own_share, &other_share, &impulses, &sums})
+    sum += column->bytes();
   for (const BlockPairs& block : blocks) sum += block.bytes();
-  for (const BlockCandidates& block : candidates)
-    sum += (block.points.capacity() + block.ends.capacity()) * sizeof(std::uint32_t);
+  for (const BlockCandidates& block : candidates) sum += block.bytes();
   for (const BlockSides& block : sides)
-    sum += block.points.capacity() * sizeof(BlockSides::Touching) +
-           block.sides.capacity() * sizeof(BlockSides::Side);
+    sum += block.points.capacity() * sizeof(TouchingPoint) + block.others.capacity() * sizeof(std::uint32_t);
   return sum;
 }
 
 bool find_contact_pairs(const VectorColumn& positions, const VectorColumn& velocities,
                         const std::uint16_t* pin, const std::vector<TouchingBody>& bodies,
                         const BodyContactStep& step, const Execution& execution, ContactPairs& pairs) {
-  const bool anew = find_near_blocks(positions, velocities, bodies, step, execution, pairs.near);
-  if (pairs.near.row.empty()) return false;
-  if (anew)
-    gather(positions, velocities, pin, bodies, execution.threads, pairs);
-  else
-    gather_velocities(velocities, execution.threads, pairs);
+  ContactPoints& points = pairs.points;
+  bool anew = find_near_blocks(positions, velocities, bodies, step, execution, pairs.near);
+  if (anew) place_points(positions, pin, bodies, pairs.near, execution, points);
+  if (points.empty()) return false;
+  move_points(velocities, bodies, pairs.near, execution, points);
+  if (anew || !are_as_found(points)) {
+    anew = true;
+    std::swap(points.motion, points.found_motion);
+    if (step.slack > 0)
+      for (float& spread : points.found_motion.spread) spread += step.slack;
+  }
   pairs.blocks.resize(pairs.near.blocks.blocks.size());
   pairs.candidates.resize(pairs.blocks.size());
   pairs.sides.resize(pairs.blocks.size());
-  const ContactLanes& lanes = MALLOW_SELECT(execution.level, contact_lanes);
   const PairStep pair_step{step.time_step, step.max_push, pushed_together(step)};
   parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
-    if (anew) find_all_candidates(number, lanes, pairs);
-    find_pairs(number, pair_step, lanes, pairs);
+    if (anew) find_near_fews(number, bodies, step, MALLOW_SELECT(execution.level, point_lanes), pairs);
+    find_pairs(number, pair_step, execution, pairs);
   });
-  std::size_t count = 0;
-  for (BlockPairs& block : pairs.blocks) {
-    block.first = count;
-    count += (block.count + k_cluster - 1) / k_cluster * k_cluster;  // lanes write whole clusters
-  }
-  if (count == 0) return false;
-  pairs.acts.resize_unset(count);
-  pairs.impulses.resize_unset(4 * count);
-  pairs.sums.resize_unset(pairs.keeps_sums ? 4 * count : 0);
-  std::fill_n(pairs.sums.data(), pairs.sums.size(), 0.0f);
+  if (number_pairs(pairs) == 0) return false;
   parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
-    find_sides(static_cast<std::uint32_t>(number), pairs);
+    find_sides(static_cast<std::uint32_t>(number), MALLOW_SELECT(execution.level, contact_lanes), pairs);
   });
   return true;
 }
