@@ -27,28 +27,32 @@ float find_acting(const Execution& execution, const ContactLanes& lanes, Contact
   for_blocks(execution, pairs, [&](std::size_t number) {
     BlockPairs& block = pairs.blocks[number];
     pairs.partial_miss[number] =
-        lanes.acting(pairs.points.velocity.data(), block.columns(), block.count, pairs.round(block.first));
+        lanes.acting(pairs.points.velocity.data(), block.columns(), block.count, pairs.round(block));
   });
   return std::ranges::max(pairs.partial_miss);
+}
+
+/// Adds what the pairs of a block got in a round.
+void add_impulses(const BlockPairs& block, ContactPairs& pairs) {
+  for (std::size_t k = block.first; k < block.first + block.count; ++k)
+    if (pairs.acts[k / k_word] >> (k % k_word) & 1)
+      for (std::size_t a = 4 * k; a < 4 * k + 3; ++a) pairs.sums[a] += pairs.impulses[a];
 }
 
 /// One round of impulses. Each particle shares its mass between its pairs that act, so that all of them
 /// together do not overshoot.
 void push_apart(const Execution& execution, const ContactLanes& lanes, ContactPairs& pairs) {
-  const float* const matter = pairs.points.matter.data();
-  float* const velocities = pairs.points.velocity.data();
-  for_blocks(execution, pairs, [&](std::size_t number) {
-    lanes.share(pairs.sides[number].touching(), matter, pairs.round(0), velocities);
-  });
+  const float* const inverse_mass = pairs.points.inverse_mass.data();
+  float* const shares = pairs.shares.data();
+  for_blocks(execution, pairs,
+             [&](std::size_t number) { lanes.share(pairs.touching(number), inverse_mass, shares); });
   for_blocks(execution, pairs, [&](std::size_t number) {
     BlockPairs& block = pairs.blocks[number];
-    lanes.impulses(block.columns(), block.count, pairs.round(block.first));
-    if (pairs.sums.size() == 0) return;
-    for (std::size_t k = 4 * block.first; k < 4 * (block.first + block.count); ++k)
-      pairs.sums.data()[k] += pairs.impulses.data()[k];
+    lanes.impulses(block.columns(), block.count, shares, pairs.round(block));
+    if (!pairs.sums.empty()) add_impulses(block, pairs);
   });
   for_blocks(execution, pairs, [&](std::size_t number) {
-    lanes.push(pairs.sides[number].touching(), matter, pairs.impulses.data(), velocities);
+    lanes.push(pairs.touching(number), inverse_mass, shares, pairs.points.velocity.data());
   });
 }
 
@@ -65,37 +69,36 @@ void resolve_body_contacts(const VectorColumn& positions, const std::uint16_t* p
     if (excess == 0 || (round >= k_least_rounds && excess < tolerance)) break;
     push_apart(execution, lanes, pairs);
   }
-  const ContactPoints& points = pairs.points;
-  for_blocks(execution, pairs, [&](std::size_t number) {
-    for (const TouchingPoint& touching : pairs.sides[number].points)
-      if (points.inverse_mass(touching.point) > 0)
-        velocities.set(points.row[touching.point], points.velocity_of(touching.point));
-  });
+  return_points(pairs.points, pairs.near, execution, velocities);
 }
 
 void list_touches(const VectorColumn& before, const ContactPairs& pairs, std::vector<BodyTouch>& touches) {
   const ContactPoints& points = pairs.points;
-  if (points.empty() || pairs.sums.size() == 0) return;
-  const std::vector<RangeBlocks::Block>& blocks = pairs.near.blocks.blocks;
+  if (points.empty() || pairs.sums.empty()) return;
+  const NearBlocks& near = pairs.near;
+  const auto velocity = [&](std::size_t block, std::uint32_t point) {
+    return before.get(points.first_row[block] + (point - points.first[block]));
+  };
   for (std::size_t number = 0; number < pairs.blocks.size(); ++number) {
     const BlockPairs& block = pairs.blocks[number];
-    const std::size_t first = touches.size();
-    std::size_t other_block = 0;
-    for (std::size_t k = 0; k < block.count; ++k) {
-      const auto got = Eigen::Map<const Vec3>(pairs.sums.data() + 4 * (block.first + k));
-      if (got.isZero(0)) continue;
-      const std::uint32_t i = block.own[k], j = block.other[k];
-      if (j < points.first[other_block] || j >= points.first[other_block + 1])
-        other_block = static_cast<std::size_t>(std::upper_bound(points.first.begin(), points.first.end(), j) -
-                                               points.first.begin() - 1);
-      const std::uint32_t other = blocks[other_block].range;
-      auto touch = std::find_if(touches.begin() + static_cast<std::ptrdiff_t>(first), touches.end(),
-                                [&](const BodyTouch& known) { return known.other == other; });
-      if (touch == touches.end()) touch = touches.insert(touch, {blocks[number].range, other, {}});
-      const Vec3 v = before.get(points.row[i]) - before.get(points.row[j]);
-      const Eigen::Vector3d normal(block.normal_x[k], block.normal_y[k], block.normal_z[k]);
-      touch->sums.add_between(got.cast<double>(), points.position.get(i).cast<double>(),
-                              points.position.get(j).cast<double>(), v.cast<double>(), normal);
+    for (const auto& [body, begin, end] : block.bodies) {
+      BodyTouch touch{near.blocks.blocks[number].range, body, {}};
+      bool any = false;
+      std::size_t other_block = near.blocks.first[body];
+      for (std::size_t k = begin; k < end; ++k) {
+        const auto got = Eigen::Map<const Vec3>(pairs.sums.data() + 4 * (block.first + k));
+        if (got.isZero(0)) continue;
+        any = true;
+        const std::uint32_t i = block.own[k], j = block.other[k];
+        if (j < points.first[other_block] || j >= points.first[other_block + 1])
+          other_block = static_cast<std::size_t>(
+              std::upper_bound(points.first.begin(), points.first.end(), j) - points.first.begin() - 1);
+        const Vec3 v = velocity(number, i) - velocity(other_block, j);
+        const Eigen::Vector3d normal(block.normal_x[k], block.normal_y[k], block.normal_z[k]);
+        touch.sums.add_between(got.cast<double>(), points.position.get(i).cast<double>(),
+                               points.position.get(j).cast<double>(), v.cast<double>(), normal);
+      }
+      if (any) touches.push_back(touch);
     }
   }
 }

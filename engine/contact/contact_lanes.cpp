@@ -116,20 +116,6 @@ std::size_t add_pairs(const ContactRows& of, const PairStep& step, std::uint32_t
   return count;
 }
 
-std::size_t find_points(const std::uint32_t* points, std::size_t n, std::uint32_t begin, std::uint32_t end,
-                        std::uint32_t first, std::uint32_t* which, std::uint32_t* found) noexcept {
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < n; k += k_cluster) {
-    const Ints at = load(points + k) - static_cast<int>(begin);
-    const Ints inside = (at >= 0) & (at < static_cast<int>(end - begin));
-    const unsigned set = bits_of(inside, n - k);
-    if (set == 0) continue;
-    compress(set, k_count + static_cast<int>(first + k), which + count);
-    count += compress(set, at, found + count);
-  }
-  return count;
-}
-
 MALLOW_INLINE ClusterVec3 vectors(const Vectors& from, std::size_t k) {
   return {load(from.x + k), load(from.y + k), load(from.z + k)};
 }
@@ -140,16 +126,19 @@ float acting(const float* velocities, const PairColumns& pairs, std::size_t n,
   fill(pairs.own, n);
   fill(pairs.other, n);
   Floats most = {};
+  std::uint64_t word = 0;
   for (std::size_t k = 0; k < n; k += k_cluster) {
     const ClusterVec3 w =
         load_row(velocities, pairs.own + k).vector - load_row(velocities, pairs.other + k).vector;
     const Floats along = dot(w, vectors(pairs.normal, k)), target = load(pairs.target + k);
     const Ints act = (is_larger(target, along) | is_larger(load(pairs.sticks + k), Floats{})) &
                      (k_count < static_cast<int>(n - k));
-    store(where(act, all(1)), round.acts + k);
     store(w.x, round.closing.x + k);
     store(w.y, round.closing.y + k);
     store(w.z, round.closing.z + k);
+    word |= std::uint64_t{bits(act)} << (k % k_word);
+    round.acts[k / k_word] = word;
+    if (k % k_word == k_word - k_cluster) word = 0;
     const Floats miss = target - along;
     most = larger(where(act, larger(miss, -miss)), most);
   }
@@ -158,66 +147,91 @@ float acting(const float* velocities, const PairColumns& pairs, std::size_t n,
   return result;
 }
 
-void share(const TouchingPoints& of, const float* matter, const RoundColumns& pairs,
-           float* velocities) noexcept {
-  const std::uint32_t* other = of.others;
-  for (const TouchingPoint* p = of.points; p != of.points + of.count; ++p) {
-    const std::uint32_t *const first = other, *const end = of.others + p->end_other;
-    float acting = 0;
-    for (std::uint32_t k = p->first_pair; k < p->end_pair; ++k) acting += pairs.acts[k];
-    for (; other != end; ++other) acting += pairs.acts[*other];
-    const float share = acting * matter[4 * p->point];
-    velocities[4 * p->point + 3] = share;
-    if (acting == 0) continue;
-    // Four at a time, into pairs of points that follow: those write theirs later, or do not act.
-    for (std::uint32_t k = p->first_pair; k < p->end_pair; k += 4)
-      store_quad(Quad{} + share, pairs.own_share + k);
-    for (const std::uint32_t* k = first; k != end; ++k) pairs.other_share[*k] = share;
+/// Calls body(k) for each pair that acts, in order.
+template <class Body>
+MALLOW_INLINE void for_acting(const PointPairs& pairs, const Body& body) {
+  for (std::size_t k = pairs.begin / k_word * k_word; k < pairs.end; k += k_word) {
+    std::uint64_t left = pairs.acts[k / k_word];
+    if (k < pairs.begin) left &= ~std::uint64_t{0} << (pairs.begin - k);
+    if (pairs.end - k < k_word) left &= (std::uint64_t{1} << (pairs.end - k)) - 1;
+    for (; left != 0; left &= left - 1) body(k + static_cast<std::size_t>(first_bit(left)));
+  }
+}
+/// Calls body(pairs, k, place of the point in the block) for each pair that acts of those in which points of
+/// a block are the second.
+template <class Body>
+MALLOW_INLINE void for_acting_earlier(const TouchingPoints& of, const Body& body) {
+  for (std::size_t e = 0; e < of.earlier_count; ++e) {
+    const PointPairs& pairs = of.earlier[e];
+    for_acting(pairs, [&](std::size_t k) {
+      const std::uint32_t at = pairs.points[k] - of.begin;  // below begin it wraps around
+      if (at < of.end - of.begin) body(pairs, k, at);
+    });
   }
 }
 
-void impulses(const PairColumns& pairs, std::size_t n, const RoundColumns& round) noexcept {
+void share(const TouchingPoints& of, const float* inverse_mass, float* shares) noexcept {
+  float* const counts = shares + of.begin;
+  const std::size_t n = of.end - of.begin;
+  clear_bytes(counts, n * sizeof(float));
+  for_acting(of.own, [&](std::size_t k) { counts[of.own.points[k] - of.begin] += 1; });
+  for_acting_earlier(of, [&](const PointPairs&, std::size_t, std::uint32_t at) { counts[at] += 1; });
+  for (std::size_t i = 0; i < n; i += k_cluster)
+    store(load(counts + i) * load(inverse_mass + of.begin + i), counts + i);
+}
+
+/// Of each of eight points that names say.
+MALLOW_INLINE Floats named(const float* values, const std::uint32_t* names) {
+  return Floats{values[names[0]], values[names[1]], values[names[2]], values[names[3]],
+                values[names[4]], values[names[5]], values[names[6]], values[names[7]]};
+}
+
+void impulses(const PairColumns& pairs, std::size_t n, const float* shares,
+              const RoundColumns& round) noexcept {
   for (std::size_t k = 0; k < n; k += k_cluster) {
-    float* const rows = round.impulses + 4 * k;
-    const Ints acts = is_larger(load(round.acts + k), Floats{});
-    if (!any(acts)) {
-      for (std::size_t t = 0; t < 4; ++t) store(Floats{}, rows + t * k_cluster);
-      continue;
-    }
+    if ((round.acts[k / k_word] >> (k % k_word) & 0xff) == 0) continue;
     const ClusterVec3 w = vectors(round.closing, k), normal = vectors(pairs.normal, k);
     const Floats along = dot(w, normal), sticks = load(pairs.sticks + k);
-    const Floats mass = 1 / (load(round.own_share + k) + load(round.other_share + k));
+    const Floats mass = 1 / (named(shares, pairs.own + k) + named(shares, pairs.other + k));
     const Floats push = larger(mass * (load(pairs.target + k) - along), -sticks);
     const ClusterVec3 slip = w - along * normal;
     const Floats speed = square_root(squared(slip));
     const Floats rub = smaller(load(pairs.friction + k) * (larger(push, Floats{}) + sticks), mass * speed);
     const Floats per_speed = where(is_larger(speed, Floats{}), rub / speed);
-    const ClusterVec3 impulse = where(acts, push * normal - per_speed * slip);
+    const ClusterVec3 impulse = push * normal - per_speed * slip;
     Floats numbers[4] = {impulse.x, impulse.y, impulse.z, Floats{}};
-    store_rows(numbers, rows);
+    store_rows(numbers, round.impulses + 4 * k);
     if (any(is_larger(sticks, Floats{})))
       store(larger(sticks - larger(-push, Floats{}), Floats{}), pairs.sticks + k);
   }
 }
 
-void push(const TouchingPoints& of, const float* matter, const float* impulses, float* velocities) noexcept {
-  const std::uint32_t* other = of.others;
-  for (const TouchingPoint* p = of.points; p != of.points + of.count; ++p) {
-    const std::uint32_t* const end = of.others + p->end_other;
-    float* const velocity = velocities + 4 * p->point;
-    if (velocity[3] != 0) {
-      Quad sum = {};
-      for (std::uint32_t k = p->first_pair; k < p->end_pair; ++k) sum += load_quad(impulses + 4 * k);
-      for (const std::uint32_t* k = other; k != end; ++k) sum -= load_quad(impulses + 4 * *k);
-      store_quad(load_quad(velocity) + matter[4 * p->point] * sum, velocity);
+void push(const TouchingPoints& of, const float* inverse_mass, const float* shares,
+          float* velocities) noexcept {
+  alignas(32) float sums[4 * k_most_points];
+  const std::size_t n = of.end - of.begin;
+  clear_bytes(sums, 4 * n * sizeof(float));
+  for_acting(of.own, [&](std::size_t k) {
+    float* const sum = sums + 4 * (of.own.points[k] - of.begin);
+    store_quad(load_quad(sum) + load_quad(of.own.impulses + 4 * k), sum);
+  });
+  for_acting_earlier(of, [&](const PointPairs& pairs, std::size_t k, std::uint32_t at) {
+    float* const sum = sums + 4 * at;
+    store_quad(load_quad(sum) - load_quad(pairs.impulses + 4 * k), sum);
+  });
+  for (std::size_t i = 0; i < n; i += k_cluster) {
+    const Floats shared = load(shares + of.begin + i);
+    for (unsigned left = bits(is_larger(shared, Floats{})); left != 0; left &= left - 1) {
+      const std::size_t at = i + static_cast<unsigned>(first_bit(left)), p = of.begin + at;
+      float* const velocity = velocities + 4 * p;
+      store_quad(load_quad(velocity) + inverse_mass[p] * load_quad(sums + 4 * at), velocity);
     }
-    other = end;
   }
 }
 
 }  // namespace
 
 extern const ContactLanes contact_lanes;
-const ContactLanes contact_lanes = {add_pairs, find_points, acting, share, impulses, push};
+const ContactLanes contact_lanes = {add_pairs, acting, share, impulses, push};
 
 }  // namespace mallow::MALLOW_LEVEL

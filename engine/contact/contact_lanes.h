@@ -1,12 +1,14 @@
 #pragma once
 
-#include "core/isa.h"
-#include "core/raw_columns.h"
+#include "contact/point_lanes.h"
 
 namespace mallow {
 
 /// A pair counts only where its points lie above each other: how far apart across n, in d0.
 inline constexpr float k_across = 0.75f;
+
+/// Pairs of which a word of bits tells something.
+inline constexpr std::size_t k_word = 64;
 
 /// What a step asks of pairs.
 struct PairStep {
@@ -18,7 +20,7 @@ struct PairStep {
 /// Points as lanes read them: see PointColumns.
 struct ContactRows {
   const float *place, *outward, *matter;
-  const float* velocity;  ///< [m/s], and 1/m times how many of its pairs act in a round [kg⁻¹]
+  const float* velocity;  ///< [m/s], and nothing
 };
 
 /// Pairs of points, each seen from the first.
@@ -30,25 +32,27 @@ struct PairColumns {
   float* friction;  ///< √(μ_i μ_j)
 };
 
-/// What pairs do in a round.
+/// What pairs of a block do in a round.
 struct RoundColumns {
-  float* acts;      ///< 1 for each that comes nearer than it may, or sticks, else 0
-  Vectors closing;  ///< v_i − v_j [m/s]
-  /// Of its points, where it acts: see ContactRows::velocity. The first has room for three more.
-  float *own_share, *other_share;
-  float* impulses;  ///< on the first point, rows of four: three, and nothing [N s]
+  std::uint64_t* acts;  ///< a bit for each pair that comes nearer than it may, or sticks
+  Vectors closing;      ///< v_i − v_j [m/s]
+  float* impulses;      ///< on the first point of those that act, rows of four: three, and 0 [N s]
 };
 
-/// A point that has pairs: those in which it is the first follow each other, the others are listed.
-struct TouchingPoint {
-  std::uint32_t point;
-  std::uint32_t first_pair, end_pair;
-  std::uint32_t end_other;  ///< its list begins where that of the point before ends
+/// Pairs [begin, end) of a block, and one point of each.
+struct PointPairs {
+  const std::uint32_t* points;
+  const std::uint64_t* acts;
+  const float* impulses;  ///< see RoundColumns
+  std::uint32_t begin, end;
 };
+/// The points of a block: those pairs in which they are the first, and pairs of earlier blocks with its body,
+/// in order, in some of which they are the second.
 struct TouchingPoints {
-  const TouchingPoint* points;
-  std::size_t count;
-  const std::uint32_t* others;
+  std::uint32_t begin, end;
+  PointPairs own;
+  const PointPairs* earlier;
+  std::size_t earlier_count;
 };
 
 struct ContactLanes {
@@ -56,21 +60,16 @@ struct ContactLanes {
   /// order; returns how many. [model 2, section 4 C]
   std::size_t (*add_pairs)(const ContactRows&, const PairStep&, std::uint32_t* own, std::uint32_t* other,
                            std::size_t n, const PairColumns&) noexcept;
-  /// Of n points those in [begin, end), in order, counted from `begin`, and which of the n they are, counted
-  /// from `first`; returns how many. which, found: room for all and k_cluster more.
-  std::size_t (*find_points)(const std::uint32_t* points, std::size_t n, std::uint32_t begin,
-                             std::uint32_t end, std::uint32_t first, std::uint32_t* which,
-                             std::uint32_t* found) noexcept;
-  /// Which of n pairs act, and how they close. Of all columns there is room for k_cluster more pairs. Returns
-  /// the most by which the velocity of one misses its target.
+  /// Which of n pairs act, and how they close; of closing there is room for k_cluster more. Returns the most
+  /// by which the velocity of one misses its target.
   float (*acting)(const float* velocities, const PairColumns&, std::size_t n, const RoundColumns&) noexcept;
-  /// Points share their masses between their pairs that act. pairs: of all blocks.
-  void (*share)(const TouchingPoints&, const float* matter, const RoundColumns& pairs,
-                float* velocities) noexcept;
-  /// Impulses of n pairs; 0 where none acts.
-  void (*impulses)(const PairColumns&, std::size_t n, const RoundColumns&) noexcept;
-  /// Gives points those of their pairs. impulses: of all blocks.
-  void (*push)(const TouchingPoints&, const float* matter, const float* impulses, float* velocities) noexcept;
+  /// Points of a block share their masses between their pairs that act. shares: 1/m times how many do [kg⁻¹].
+  void (*share)(const TouchingPoints&, const float* inverse_mass, float* shares) noexcept;
+  /// Impulses of those of n pairs that act.
+  void (*impulses)(const PairColumns&, std::size_t n, const float* shares, const RoundColumns&) noexcept;
+  /// Gives points of a block those of their pairs.
+  void (*push)(const TouchingPoints&, const float* inverse_mass, const float* shares,
+               float* velocities) noexcept;
 };
 MALLOW_DECLARE_LEVELS(ContactLanes, contact_lanes)
 

@@ -1,41 +1,50 @@
 #pragma once
 
-#include <span>
-
 #include "contact/contact_points.h"
 
 namespace mallow {
 
-/// Pairs of the points of one block with those of later ones, in the order of both.
+/// Pairs of the points of one block with those of later ones: body by body, and of one body in the order of
+/// both points.
 struct BlockPairs {
   std::size_t count = 0;
   std::size_t first = 0;  ///< number of the first among the pairs of all blocks
   std::vector<std::uint32_t> own, other;
   std::vector<float> normal_x, normal_y, normal_z, target, sticks, friction;
+  struct OtherBody {
+    std::uint32_t body;
+    std::uint32_t begin, end;  ///< pairs with it, at least one
+  };
+  std::vector<OtherBody> bodies;  ///< ascending
 
-  std::span<const std::uint32_t> others() const { return {other.data(), count}; }
   PairColumns columns();
   /// Room for so many pairs, and what lanes write behind them.
   void reserve(std::size_t pairs);
   std::size_t bytes() const;
 };
 
-/// For each few of one block those of later blocks of other bodies near it, one's behind the other's.
+/// Fews of later blocks of other bodies near those of one block, body by body.
 struct BlockCandidates {
   std::vector<std::uint32_t> fews;
-  std::vector<float> squares;       ///< of how near each other points of the two are that may touch [m²]
-  std::vector<std::uint32_t> ends;  ///< of each few of the block
+  std::vector<float> squares;  ///< of how near each other points of the two are that may touch [m²]
+  struct OwnFew {
+    std::uint32_t few, end;  ///< those near it begin where those of the one before end
+  };
+  std::vector<OwnFew> own;
+  struct OtherBody {
+    std::uint32_t body, end;  ///< in `own`
+  };
+  std::vector<OtherBody> bodies;
 
-  void reserve(std::size_t room);
+  void clear();
+  void reserve(std::size_t fews_near);
   std::size_t bytes() const;
 };
 
-/// The points of one block that have pairs, and those of earlier blocks' in which they are the second.
+/// In which pairs the points of one block are: those of the block, and of earlier ones those with its body.
 struct BlockSides {
-  std::vector<TouchingPoint> points;
-  std::vector<std::uint32_t> others;
-
-  TouchingPoints touching() const { return {points.data(), points.size(), others.data()}; }
+  PointPairs own;
+  std::vector<PointPairs> earlier;
 };
 
 /// What a step of contact between bodies needs and finds.
@@ -46,17 +55,18 @@ struct ContactPairs {
   std::vector<BlockCandidates> candidates;
   std::vector<BlockPairs> blocks;
   std::vector<BlockSides> sides;
-  // By pair, of a round: see RoundColumns.
-  Column<float> acts, own_share, other_share;
+  // Of a round: by pair see RoundColumns, by point see ContactLanes::share.
+  Column<std::uint64_t> acts;
   VectorColumn closing;
   Column<float> impulses;
+  Column<float> shares;
   bool keeps_sums = false;  ///< somebody asks what pairs gave
   Column<float> sums;       ///< of the impulses of all rounds; empty where nobody asks
 
   std::vector<float> partial_miss;  ///< scratch
 
-  /// From a pair on.
-  RoundColumns round(std::size_t pair);
+  RoundColumns round(const BlockPairs& block);
+  TouchingPoints touching(std::size_t block) const;
   std::size_t bytes() const;
 };
 

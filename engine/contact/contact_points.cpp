@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "core/parallel.h"
@@ -11,6 +10,8 @@
 
 namespace mallow {
 namespace {
+
+static_assert(k_most_points == k_block);
 
 /// N_i of a particle that is in several regions: it turns with the first, from the middle of all.
 Vec3 outward(const ShapeMatching& shape, std::size_t i) {
@@ -56,11 +57,11 @@ BlockColumns columns_of(const VectorColumn& positions, const std::uint16_t* pin,
 }  // namespace
 
 std::size_t ContactPoints::bytes() const {
-  std::size_t sum = first.bytes() + row.bytes();
+  std::size_t sum = first.bytes() + first_row.capacity() * sizeof(std::size_t);
   for (const VectorColumn* column : {&position, &low, &high, &motion.velocity, &found_motion.velocity})
     sum += column->bytes();
   for (const Column<float>* column :
-       {&place, &outward, &matter, &velocity, &motion.spread, &found_motion.spread})
+       {&place, &outward, &matter, &velocity, &inverse_mass, &motion.spread, &found_motion.spread})
     sum += column->bytes();
   return sum;
 }
@@ -71,45 +72,54 @@ void place_points(const VectorColumn& positions, const std::uint16_t* pin,
   const std::vector<RangeBlocks::Block>& blocks = near.blocks.blocks;
   points.first.resize_unset(blocks.size() + 1);
   points.first[0] = 0;
+  points.first_row.resize(blocks.size());
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const std::size_t rows = near.others[b].empty() ? 0 : blocks[b].end - blocks[b].begin;
     points.first[b + 1] =
         points.first[b] + static_cast<std::uint32_t>((rows + k_cluster - 1) / k_cluster * k_cluster);
+    points.first_row[b] = bodies[blocks[b].range].begin + blocks[b].begin;
   }
   const std::size_t n = points.first[blocks.size()];
-  points.row.resize_unset(n);
   points.position.resize_unset(n);
+  points.inverse_mass.resize_unset(n);
   for (Column<float>* rows : {&points.place, &points.outward, &points.matter, &points.velocity})
     rows->resize_unset(4 * n);
   for (VectorColumn* corner : {&points.low, &points.high}) corner->resize_unset(n / k_cluster);
   const PointLanes& lanes = MALLOW_SELECT(execution.level, point_lanes);
   const PointColumns columns{raw(points.position), points.place.data(), points.outward.data(),
-                             points.matter.data()};
+                             points.matter.data(), points.inverse_mass.data()};
   const FewColumns fews{raw(points.low), raw(points.high), {}, nullptr};
   parallel_for(execution.threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
-    const std::uint32_t first = points.first[number], end = points.first[number + 1];
-    if (first == end) return;
+    if (points.first[number] == points.first[number + 1]) return;
     thread_local VectorColumn outwards;
-    const TouchingBody& body = bodies[block.range];
-    const std::uint32_t rows = block.end - block.begin;
-    lanes.place(columns_of(positions, pin, body, block, outwards), rows, first, columns, fews);
-    const auto row = static_cast<std::uint32_t>(body.begin + block.begin);
-    std::iota(points.row.data() + first, points.row.data() + first + rows, row);
-    std::fill(points.row.data() + first + rows, points.row.data() + end, row + rows - 1);
+    lanes.place(columns_of(positions, pin, bodies[block.range], block, outwards), block.end - block.begin,
+                points.first[number], columns, fews);
   });
 }
 
-void move_points(const VectorColumn& velocities, const std::vector<TouchingBody>& bodies,
-                 const NearBlocks& near, const Execution& execution, ContactPoints& points) {
-  const std::size_t fews = points.row.size() / k_cluster;
+void move_points(const VectorColumn& velocities, const NearBlocks& near, const Execution& execution,
+                 ContactPoints& points) {
+  const std::size_t fews = points.size() / k_cluster;
   points.motion.velocity.resize_unset(fews);
   points.motion.spread.resize_unset(fews);
   const PointLanes& lanes = MALLOW_SELECT(execution.level, point_lanes);
   const FewColumns columns{{}, {}, raw(points.motion.velocity), points.motion.spread.data()};
   parallel_for(execution.threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     if (points.first[number] == points.first[number + 1]) return;
-    lanes.set_velocities(from(velocities, bodies[block.range].begin + block.begin), block.end - block.begin,
+    lanes.set_velocities(from(velocities, points.first_row[number]), block.end - block.begin,
                          points.first[number], points.velocity.data(), columns);
+  });
+}
+
+void return_points(const ContactPoints& points, const NearBlocks& near, const Execution& execution,
+                   VectorColumn& velocities) {
+  const PointLanes& lanes = MALLOW_SELECT(execution.level, point_lanes);
+  const Vectors to = raw(velocities);
+  parallel_for(execution.threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
+    if (points.first[number] == points.first[number + 1]) return;
+    const std::size_t row = points.first_row[number];
+    lanes.get_velocities(points.velocity.data(), block.end - block.begin, points.first[number],
+                         {to.x + row, to.y + row, to.z + row});
   });
 }
 

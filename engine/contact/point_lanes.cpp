@@ -114,6 +114,7 @@ void place(const BlockColumns& of, std::size_t n, std::size_t first, const Point
     Floats inverse_mass = all(of.inverse_mass);
     if (of.pin) inverse_mass = where(is_equal(load(of.pin + k), 0), inverse_mass);
     put_rows({inverse_mass, all(of.friction), all(of.adhesion)}, Floats{}, points.matter + 4 * p);
+    store(inverse_mass, points.inverse_mass + p);
     const std::size_t few = p / k_cluster;
     const Floats end = all(k_infinity);
     fews.low.x[few] = smallest(smaller(x.x, end))[0];
@@ -139,6 +140,22 @@ void set_velocities(const ConstVectors& of, std::size_t n, std::size_t first, fl
     fews.velocity.y[few] = mean[1];
     fews.velocity.z[few] = mean[2];
     fews.spread[few] = root(largest(larger(square, Floats{})));
+  }
+}
+
+void get_velocities(const float* rows, std::size_t n, std::size_t first, const Vectors& to) noexcept {
+  const float* const from = rows + 4 * first;
+  std::size_t k = 0;
+  for (; k + k_cluster <= n; k += k_cluster) {
+    Floats numbers[4];
+    for (std::size_t t = 0; t < 4; ++t) numbers[t] = load_halves(from + 4 * (k + t), from + 4 * (k + t + 4));
+    transpose_halves(numbers);
+    put({numbers[0], numbers[1], numbers[2]}, to, k);
+  }
+  for (; k < n; ++k) {
+    to.x[k] = from[4 * k];
+    to.y[k] = from[4 * k + 1];
+    to.z[k] = from[4 * k + 2];
   }
 }
 
@@ -228,6 +245,7 @@ std::size_t near_points(const ConstVectors& positions, const FewColumns& of, std
 }  // namespace
 
 extern const PointLanes point_lanes;
-const PointLanes point_lanes = {motion, place, set_velocities, fews_in_box, near_fews, near_points};
+const PointLanes point_lanes = {motion,      place,     set_velocities, get_velocities,
+                                fews_in_box, near_fews, near_points};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -5,6 +5,9 @@
 
 namespace mallow {
 
+/// Of a block.
+inline constexpr std::size_t k_most_points = 256;
+
 /// Where particles are, and how they move: from the middle of some, none is faster than `spread`.
 struct LaneMotion {
   float low[3], high[3];  ///< [m]
@@ -29,10 +32,11 @@ struct BlockColumns {
 
 /// Points as lanes read them: in rows of four floats, and positions by themselves.
 struct PointColumns {
-  Vectors position;  ///< [m]
-  float* place;      ///< position [m], h/2 [m]
-  float* outward;    ///< N/|N|, which way out of its body it lies, 0 where nothing says it; |N| [m]
-  float* matter;     ///< 1/m [kg⁻¹], 0 where it is pinned; √μ_f, √a [√Pa]; nothing
+  Vectors position;     ///< [m]
+  float* place;         ///< position [m], h/2 [m]
+  float* outward;       ///< N/|N|, which way out of its body it lies, 0 where nothing says it; |N| [m]
+  float* matter;        ///< 1/m [kg⁻¹], 0 where it is pinned; √μ_f, √a [√Pa]; nothing
+  float* inverse_mass;  ///< the first of these by itself
 };
 
 /// How near each other points of two fews are that may touch in this step.
@@ -60,6 +64,8 @@ struct PointLanes {
   /// The same for velocities. rows: of four floats, three and 0.
   void (*set_velocities)(const ConstVectors&, std::size_t n, std::size_t first, float* rows,
                          const FewColumns&) noexcept;
+  /// The reverse: n points from `first` on -> velocities, each column from the block's first row on.
+  void (*get_velocities)(const float* rows, std::size_t n, std::size_t first, const Vectors&) noexcept;
   /// A bit for each of the fews [begin, end) of a block that is in a box.
   std::uint32_t (*fews_in_box)(const FewColumns&, std::size_t begin, std::size_t end, const float* low,
                                const float* high) noexcept;

@@ -252,13 +252,13 @@ void wake_pushed(Simulation::State& state, float time_step) {
   const ContactPairs& pairs = state.contact_pairs;
   if (pairs.points.empty()) return;
   std::vector<std::uint32_t> pushed;
-  for (std::size_t k = 0; k < pairs.sides.size(); ++k) {
+  for (std::size_t k = 0; k < pairs.blocks.size(); ++k) {
     const std::uint32_t body = pairs.near.blocks.blocks[k].range;
     if (state.bodies[body].island == 0 || (!pushed.empty() && pushed.back() == body)) continue;
-    const auto moves = [&](const TouchingPoint& touching) {
-      return !pairs.points.velocity_of(touching.point).isZero(0);
-    };
-    if (std::ranges::any_of(pairs.sides[k].points, moves)) pushed.push_back(body);
+    std::uint32_t point = pairs.points.first[k];
+    const std::uint32_t end = pairs.points.first[k + 1];
+    while (point < end && pairs.points.velocity_of(point).isZero(0)) ++point;
+    if (point < end) pushed.push_back(body);
   }
   for (const std::uint32_t body : pushed) {
     wake_island(state, state.bodies[body]);
