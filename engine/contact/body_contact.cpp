@@ -1,7 +1,6 @@
 #include "contact/body_contact.h"
 
 #include <algorithm>
-#include <span>
 
 #include "core/parallel.h"
 
@@ -13,7 +12,7 @@ namespace {
 constexpr int k_least_rounds = 4, k_most_rounds = 8;
 constexpr float k_tolerance = 0.01f;
 
-/// Calls body(block, its number) for every block that has points.
+/// Calls body(number) for every block that has points.
 template <class Body>
 void for_blocks(const Execution& execution, const ContactPairs& pairs, const Body& body) {
   parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
@@ -44,15 +43,17 @@ void add_impulses(const BlockPairs& block, ContactPairs& pairs) {
 void push_apart(const Execution& execution, const ContactLanes& lanes, ContactPairs& pairs) {
   const float* const inverse_mass = pairs.points.inverse_mass.data();
   float* const shares = pairs.shares.data();
-  for_blocks(execution, pairs,
-             [&](std::size_t number) { lanes.share(pairs.touching(number), inverse_mass, shares); });
+  for_blocks(execution, pairs, [&](std::size_t number) {
+    pairs.acting[number] = lanes.share(pairs.touching(number), inverse_mass, shares);
+  });
   for_blocks(execution, pairs, [&](std::size_t number) {
     BlockPairs& block = pairs.blocks[number];
     lanes.impulses(block.columns(), block.count, shares, pairs.round(block));
     if (!pairs.sums.empty()) add_impulses(block, pairs);
   });
   for_blocks(execution, pairs, [&](std::size_t number) {
-    lanes.push(pairs.touching(number), inverse_mass, shares, pairs.points.velocity.data());
+    if (const std::uint32_t acting = pairs.acting[number])
+      lanes.push(pairs.touching(number), acting, inverse_mass, shares, pairs.points.velocity.data());
   });
 }
 

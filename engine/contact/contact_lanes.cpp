@@ -170,14 +170,19 @@ MALLOW_INLINE void for_acting_earlier(const TouchingPoints& of, const Body& body
   }
 }
 
-void share(const TouchingPoints& of, const float* inverse_mass, float* shares) noexcept {
+std::uint32_t share(const TouchingPoints& of, const float* inverse_mass, float* shares) noexcept {
   float* const counts = shares + of.begin;
   const std::size_t n = of.end - of.begin;
   clear_bytes(counts, n * sizeof(float));
   for_acting(of.own, [&](std::size_t k) { counts[of.own.points[k] - of.begin] += 1; });
   for_acting_earlier(of, [&](const PointPairs&, std::size_t, std::uint32_t at) { counts[at] += 1; });
-  for (std::size_t i = 0; i < n; i += k_cluster)
-    store(load(counts + i) * load(inverse_mass + of.begin + i), counts + i);
+  std::uint32_t acting = 0;
+  for (std::size_t i = 0; i < n; i += k_cluster) {
+    const Floats count = load(counts + i);
+    acting |= std::uint32_t{any(is_larger(count, Floats{}))} << (i / k_cluster);
+    store(count * load(inverse_mass + of.begin + i), counts + i);
+  }
+  return acting;
 }
 
 /// Of each of eight points that names say.
@@ -206,11 +211,11 @@ void impulses(const PairColumns& pairs, std::size_t n, const float* shares,
   }
 }
 
-void push(const TouchingPoints& of, const float* inverse_mass, const float* shares,
+void push(const TouchingPoints& of, std::uint32_t acting, const float* inverse_mass, const float* shares,
           float* velocities) noexcept {
   alignas(32) float sums[4 * k_most_points];
-  const std::size_t n = of.end - of.begin;
-  clear_bytes(sums, 4 * n * sizeof(float));
+  for (std::uint32_t left = acting; left != 0; left &= left - 1)
+    clear_bytes(sums + 4 * k_cluster * static_cast<unsigned>(first_bit(left)), 4 * k_cluster * sizeof(float));
   for_acting(of.own, [&](std::size_t k) {
     float* const sum = sums + 4 * (of.own.points[k] - of.begin);
     store_quad(load_quad(sum) + load_quad(of.own.impulses + 4 * k), sum);
@@ -219,10 +224,10 @@ void push(const TouchingPoints& of, const float* inverse_mass, const float* shar
     float* const sum = sums + 4 * at;
     store_quad(load_quad(sum) - load_quad(pairs.impulses + 4 * k), sum);
   });
-  for (std::size_t i = 0; i < n; i += k_cluster) {
-    const Floats shared = load(shares + of.begin + i);
-    for (unsigned left = bits(is_larger(shared, Floats{})); left != 0; left &= left - 1) {
-      const std::size_t at = i + static_cast<unsigned>(first_bit(left)), p = of.begin + at;
+  for (std::uint32_t left = acting; left != 0; left &= left - 1) {
+    const std::size_t few = k_cluster * static_cast<unsigned>(first_bit(left));
+    for (unsigned set = bits(is_larger(load(shares + of.begin + few), Floats{})); set != 0; set &= set - 1) {
+      const std::size_t at = few + static_cast<unsigned>(first_bit(set)), p = of.begin + at;
       float* const velocity = velocities + 4 * p;
       store_quad(load_quad(velocity) + inverse_mass[p] * load_quad(sums + 4 * at), velocity);
     }

@@ -64,11 +64,12 @@ struct ContactLanes {
   /// by which the velocity of one misses its target.
   float (*acting)(const float* velocities, const PairColumns&, std::size_t n, const RoundColumns&) noexcept;
   /// Points of a block share their masses between their pairs that act. shares: 1/m times how many do [kg⁻¹].
-  void (*share)(const TouchingPoints&, const float* inverse_mass, float* shares) noexcept;
+  /// Returns a bit for each few of the block in which one has any.
+  std::uint32_t (*share)(const TouchingPoints&, const float* inverse_mass, float* shares) noexcept;
   /// Impulses of those of n pairs that act.
   void (*impulses)(const PairColumns&, std::size_t n, const float* shares, const RoundColumns&) noexcept;
-  /// Gives points of a block those of their pairs.
-  void (*push)(const TouchingPoints&, const float* inverse_mass, const float* shares,
+  /// Gives points of a block those of their pairs. acting: what share() returned.
+  void (*push)(const TouchingPoints&, std::uint32_t acting, const float* inverse_mass, const float* shares,
                float* velocities) noexcept;
 };
 MALLOW_DECLARE_LEVELS(ContactLanes, contact_lanes)

@@ -1,6 +1,8 @@
 #include "contact/contact_pairs.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 #include "core/bounds.h"
@@ -15,7 +17,7 @@ constexpr std::size_t k_room = 4;
 /// The same of fews near each of a block.
 constexpr std::size_t k_room_near = 24;
 /// The same of pairs of a block, whichever of its points have come near.
-std::size_t room(const NearBlocks& near, std::size_t number) {
+std::size_t room_of_pairs(const NearBlocks& near, std::size_t number) {
   const RangeBlocks::Block& block = near.blocks.blocks[number];
   return k_room * (block.end - block.begin);
 }
@@ -29,76 +31,84 @@ bool are_as_found(const ContactPoints& points) {
   return true;
 }
 
-/// A block that another may touch.
-struct OtherBlock {
-  std::uint32_t body;
-  FewReach reach;
-  std::size_t first, last;  ///< fews
-  std::uint32_t near;       ///< a bit for each few of the one that is near
+/// Some fews, side by side, and which they are.
+struct FewList {
+  std::vector<std::uint32_t> few;
+  std::array<std::vector<float>, 10> columns;
+
+  void reserve(std::size_t room) {
+    if (few.size() >= room) return;
+    few.resize(room);
+    for (std::vector<float>& column : columns) column.resize(room);
+  }
+  FewColumns from(std::size_t first) {
+    const auto at = [&](std::size_t k) { return columns[k].data() + first; };
+    return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}, at(9)};
+  }
 };
 
-/// Later ones of other bodies.
-void list_others(std::size_t number, const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
-                 const FewColumns& fews, const PointLanes& lanes, const ContactPairs& pairs,
-                 std::vector<OtherBlock>& others) {
-  const NearBlocks& near = pairs.near;
+/// The fews of a body's later blocks that a block may touch.
+struct OtherBody {
+  std::uint32_t near = 0;  ///< a bit for each few of the block that is near them
+  std::size_t count = 0;
+  FewList fews;
+};
+
+/// others: of one body.
+void list_fews(std::size_t number, std::span<const NearBlocks::Other> others, const FewColumns& fews,
+               const PointLanes& lanes, const ContactPairs& pairs, OtherBody& body) {
   const ContactPoints& points = pairs.points;
-  const float own_spacing = bodies[near.blocks.blocks[number].range].spacing;
-  others.clear();
-  for (const auto& [other, reach] : near.others[number]) {
-    if (other < number) continue;
-    const std::uint32_t body = near.blocks.blocks[other].range;
-    const Aabb& box = near.block_motion[other].box;
-    const Vec3 low = box.min.array() - reach, high = box.max.array() + reach;
-    const std::uint32_t found = lanes.fews_in_box(fews, points.first_few(number),
-                                                  points.first_few(number + 1), low.data(), high.data());
-    if (found == 0) continue;
-    const float spacing = 0.5f * (own_spacing + bodies[body].spacing);
-    others.push_back({.body = body,
-                      .reach = {.time_step = step.time_step,
-                                .across = k_across * spacing,
-                                .along = spacing + pushed_together(step),
-                                .most = step.reach},
-                      .first = points.first_few(other),
-                      .last = points.first_few(other + 1),
-                      .near = found});
+  const std::vector<Moving>& motion = pairs.near.block_motion;
+  body.near = 0;
+  body.count = 0;
+  for (const auto& [other, reach] : others) {
+    const std::uint32_t near = lanes.fews_in_box(fews, points.first_few(number), points.first_few(number + 1),
+                                                 lane_box(motion[other].box, reach));
+    if (near == 0) continue;
+    body.near |= near;
+    body.fews.reserve(body.count + k_most_points / k_cluster + k_cluster);
+    body.count += lanes.list_fews(fews, points.first_few(other), points.first_few(other + 1),
+                                  lane_box(motion[number].box, reach), body.fews.few.data() + body.count,
+                                  body.fews.from(body.count));
   }
 }
 
 /// Fews of later blocks of other bodies near each of a block.
 void find_near_fews(std::size_t number, const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
                     const PointLanes& lanes, ContactPairs& pairs) {
+  const std::vector<RangeBlocks::Block>& blocks = pairs.near.blocks.blocks;
   ContactPoints& points = pairs.points;
   BlockCandidates& block = pairs.candidates[number];
-  block.clear();
-  const auto begin = static_cast<std::uint32_t>(points.first_few(number)),
-             end = static_cast<std::uint32_t>(points.first_few(number + 1));
-  if (begin == end) return;
+  block.bodies.clear();
+  block.own_count = 0;
   const FewColumns columns{raw(points.low), raw(points.high), raw(points.found_motion.velocity),
                            points.found_motion.spread.data()};
-  thread_local std::vector<OtherBlock> others;
-  list_others(number, bodies, step, columns, lanes, pairs, others);
-  block.reserve(k_room_near * (end - begin));
+  const std::span<const NearBlocks::Other> others = pairs.near.others[number];
+  if (others.empty()) return;
+  constexpr std::size_t most_own = k_most_points / k_cluster;
+  block.reserve(k_room_near * most_own);
   std::uint32_t count = 0;
-  for (std::size_t first = 0, last; first < others.size(); first = last) {
-    std::uint32_t near_any = 0;
-    std::size_t most = 0;
-    for (last = first; last < others.size() && others[last].body == others[first].body; ++last) {
-      near_any |= others[last].near;
-      most += others[last].last - others[last].first;
-    }
-    for (std::uint32_t few = begin; few < end; ++few) {
-      if ((near_any >> (few - begin) & 1) == 0) continue;
-      block.reserve(count + most + k_cluster);
-      const std::uint32_t before = count;
-      for (std::size_t o = first; o < last; ++o)
-        if (others[o].near >> (few - begin) & 1)
-          count += static_cast<std::uint32_t>(lanes.near_fews(columns, others[o].reach, few, others[o].first,
-                                                              others[o].last, block.fews.data() + count,
-                                                              block.squares.data() + count));
-      if (count > before) block.own.push_back({few, count});
-    }
-    block.bodies.push_back({others[first].body, static_cast<std::uint32_t>(block.own.size())});
+  const auto of = [&](const NearBlocks::Other& other) { return blocks[other.block].range; };
+  auto first = std::ranges::upper_bound(others, number, {}, &NearBlocks::Other::block);
+  for (auto last = first; first != others.end(); first = last) {
+    while (last != others.end() && of(*last) == of(*first)) ++last;
+    thread_local OtherBody body;
+    list_fews(number, {first, last}, columns, lanes, pairs, body);
+    if (body.count == 0) continue;
+    const float spacing = 0.5f * (bodies[blocks[number].range].spacing + bodies[of(*first)].spacing);
+    const FewReach reach{.time_step = step.time_step,
+                         .across = k_across * spacing,
+                         .along = spacing + pushed_together(step),
+                         .most = step.reach};
+    block.reserve(count + most_own * body.count + k_cluster);
+    if (block.own.size() < block.own_count + most_own) block.own.resize(block.own_count + most_own);
+    const std::size_t found = lanes.near_fews(
+        columns, points.first_few(number), body.near, reach, body.fews.from(0), body.fews.few.data(),
+        body.count, count, block.fews.data(), block.squares.data(), block.own.data() + block.own_count);
+    if (found == 0) continue;
+    block.own_count += found;
+    count = block.own[block.own_count - 1].end;
+    block.bodies.push_back(of(*first));
   }
 }
 
@@ -106,51 +116,41 @@ void find_near_fews(std::size_t number, const std::vector<TouchingBody>& bodies,
 struct PairSearch {
   std::vector<std::uint32_t> scratch, own, other;
 };
-void make_room(std::vector<std::uint32_t>& list, std::size_t room) {
-  if (list.size() < room) list.resize(room);
-}
 
 /// Where the pairs of a block with each body are.
 void list_bodies(const BlockCandidates& candidates, const NearBlocks& near, const ContactPoints& points,
                  BlockPairs& block) {
+  const std::span<const std::uint32_t> others(block.other.data(), block.count);
   std::uint32_t begin = 0;
-  for (const BlockCandidates::OtherBody& other : candidates.bodies) {
-    const std::uint32_t behind = points.first[near.blocks.first[other.body + 1]];
-    const auto end = static_cast<std::uint32_t>(
-        std::partition_point(block.other.begin() + begin,
-                             block.other.begin() + static_cast<std::ptrdiff_t>(block.count),
-                             [&](std::uint32_t point) { return point < behind; }) -
-        block.other.begin());
-    if (begin < end) block.bodies.push_back({other.body, begin, end});
+  for (const std::uint32_t body : candidates.bodies) {
+    const std::uint32_t behind = points.first[near.blocks.first[body + 1]];
+    const auto found = std::ranges::partition_point(others.subspan(begin),
+                                                    [&](std::uint32_t point) { return point < behind; });
+    const auto end = static_cast<std::uint32_t>(found - others.subspan(begin).begin()) + begin;
+    if (begin < end) block.bodies.push_back({body, begin, end});
     begin = end;
   }
 }
 
-/// The pairs of the points of a block with those of later ones: a few of them at a time with all that are
-/// near of another body.
+/// The pairs of the points of a block with those of later ones.
 void find_pairs(std::size_t number, const PairStep& step, const Execution& execution, ContactPairs& pairs) {
-  const PointLanes& lanes = MALLOW_SELECT(execution.level, point_lanes);
   ContactPoints& points = pairs.points;
   BlockPairs& block = pairs.blocks[number];
   block.count = 0;
   block.bodies.clear();
-  if (points.first[number] == points.first[number + 1]) return;
-  thread_local PairSearch search;
-  const FewColumns columns{raw(points.low), raw(points.high), {}, nullptr};
   const BlockCandidates& candidates = pairs.candidates[number];
-  std::uint32_t next = 0;
-  std::size_t count = 0;
-  for (const auto& [few, end] : candidates.own) {
-    const std::uint32_t first = std::exchange(next, end);
-    const std::size_t room = k_cluster * room_of(end - first);
-    make_room(search.scratch, room);
-    make_room(search.own, count + room);
-    make_room(search.other, count + room);
-    count += lanes.near_points(raw(std::as_const(points.position)), columns, few,
-                               candidates.fews.data() + first, candidates.squares.data() + first, end - first,
-                               search.scratch.data(), search.own.data() + count, search.other.data() + count);
-  }
-  block.reserve(std::max(room(pairs.near, number), count));
+  const std::size_t fews = candidates.own_count;
+  if (fews == 0) return;
+  thread_local PairSearch search;
+  const std::size_t room = k_cluster * room_of(candidates.own[fews - 1].end);
+  for (std::vector<std::uint32_t>* list : {&search.scratch, &search.own, &search.other})
+    if (list->size() < room) list->resize(room);
+  const std::size_t count =
+      MALLOW_SELECT(execution.level, point_lanes)
+          .near_points(raw(std::as_const(points.position)), {raw(points.low), raw(points.high), {}, nullptr},
+                       candidates.own.data(), fews, candidates.fews.data(), candidates.squares.data(),
+                       search.scratch.data(), search.own.data(), search.other.data());
+  block.reserve(std::max(room_of_pairs(pairs.near, number), count));
   block.count =
       MALLOW_SELECT(execution.level, contact_lanes)
           .add_pairs(points.rows(), step, search.own.data(), search.other.data(), count, block.columns());
@@ -192,6 +192,7 @@ std::size_t number_pairs(ContactPairs& pairs) {
   pairs.sums.resize_unset(pairs.keeps_sums ? 4 * count : 0);
   std::fill_n(pairs.sums.data(), pairs.sums.size(), 0.0f);
   pairs.shares.resize_unset(pairs.points.size());
+  pairs.acting.resize(pairs.blocks.size());
   return count;
 }
 
@@ -216,11 +217,6 @@ std::size_t BlockPairs::bytes() const {
          bodies.capacity() * sizeof(OtherBody);
 }
 
-void BlockCandidates::clear() {
-  own.clear();
-  bodies.clear();
-}
-
 void BlockCandidates::reserve(std::size_t fews_near) {
   if (fews.size() >= fews_near) return;
   fews.resize(fews_near);
@@ -229,7 +225,7 @@ void BlockCandidates::reserve(std::size_t fews_near) {
 
 std::size_t BlockCandidates::bytes() const {
   return fews.capacity() * sizeof(std::uint32_t) + squares.capacity() * sizeof(float) +
-         own.capacity() * sizeof(OwnFew) + bodies.capacity() * sizeof(OtherBody);
+         own.capacity() * sizeof(OwnFew) + bodies.capacity() * sizeof(std::uint32_t);
 }
 
 RoundColumns ContactPairs::round(const BlockPairs& block) {

@@ -27,16 +27,10 @@ struct BlockPairs {
 struct BlockCandidates {
   std::vector<std::uint32_t> fews;
   std::vector<float> squares;  ///< of how near each other points of the two are that may touch [m²]
-  struct OwnFew {
-    std::uint32_t few, end;  ///< those near it begin where those of the one before end
-  };
   std::vector<OwnFew> own;
-  struct OtherBody {
-    std::uint32_t body, end;  ///< in `own`
-  };
-  std::vector<OtherBody> bodies;
+  std::size_t own_count = 0;
+  std::vector<std::uint32_t> bodies;  ///< ascending
 
-  void clear();
   void reserve(std::size_t fews_near);
   std::size_t bytes() const;
 };
@@ -63,7 +57,9 @@ struct ContactPairs {
   bool keeps_sums = false;  ///< somebody asks what pairs gave
   Column<float> sums;       ///< of the impulses of all rounds; empty where nobody asks
 
-  std::vector<float> partial_miss;  ///< scratch
+  // By block, of a round.
+  std::vector<float> partial_miss;
+  std::vector<std::uint32_t> acting;  ///< see ContactLanes::share
 
   RoundColumns round(const BlockPairs& block);
   TouchingPoints touching(std::size_t block) const;

@@ -128,6 +128,11 @@ std::size_t NearBlocks::bytes() const {
   return sum;
 }
 
+LaneBox lane_box(const Aabb& box, float reach) {
+  const Vec3 low = box.min.array() - reach, high = box.max.array() + reach;
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
 bool find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,
                       const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
                       const Execution& execution, NearBlocks& near) {

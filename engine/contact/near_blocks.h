@@ -68,6 +68,9 @@ inline float pushed_together(const BodyContactStep& step) {
   return 0.25f * step.time_step * step.max_push;
 }
 
+/// A box, so much wider.
+LaneBox lane_box(const Aabb& box, float reach);
+
 /// velocities: predicted. The same for any number of threads. Returns whether it looked for them: not where
 /// all that the call before found may stay.
 bool find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,

@@ -171,73 +171,104 @@ MALLOW_INLINE Floats squared_gap(const ClusterVec3& low, const ClusterVec3& high
                              gap(low.y, high.y, other_low.y, other_high.y),
                              gap(low.z, high.z, other_low.z, other_high.z)});
 }
-std::uint32_t fews_in_box(const FewColumns& of, std::size_t begin, std::size_t end, const float* low,
-                          const float* high) noexcept {
-  const ClusterVec3 box_low = get_one(low), box_high = get_one(high);
-  std::uint32_t found = 0;
+/// Calls body(k, bits) for the fews [begin, end), a cluster at a time: those that meet a box.
+template <class Body>
+MALLOW_INLINE void for_fews_in(const FewColumns& of, std::size_t begin, std::size_t end, const LaneBox& box,
+                               const Body& body) {
+  const ClusterVec3 low = get_one(box.low), high = get_one(box.high);
   for (std::size_t k = begin; k < end; k += k_cluster) {
     const ClusterVec3 few_low = get(of.low, k), few_high = get(of.high, k);
-    const Ints meets = is_at_most(few_low.x, box_high.x) & is_at_most(box_low.x, few_high.x) &
-                       is_at_most(few_low.y, box_high.y) & is_at_most(box_low.y, few_high.y) &
-                       is_at_most(few_low.z, box_high.z) & is_at_most(box_low.z, few_high.z);
-    found |= bits_of(meets, end - k) << (k - begin);
+    const Ints meets = is_at_most(few_low.x, high.x) & is_at_most(low.x, few_high.x) &
+                       is_at_most(few_low.y, high.y) & is_at_most(low.y, few_high.y) &
+                       is_at_most(few_low.z, high.z) & is_at_most(low.z, few_high.z);
+    body(k, bits_of(meets, end - k));
   }
+}
+
+std::uint32_t fews_in_box(const FewColumns& of, std::size_t begin, std::size_t end,
+                          const LaneBox& box) noexcept {
+  std::uint32_t found = 0;
+  for_fews_in(of, begin, end, box, [&](std::size_t k, unsigned set) { found |= set << (k - begin); });
   return found;
 }
 
-std::size_t near_fews(const FewColumns& of, const FewReach& reach, std::size_t own, std::size_t begin,
-                      std::size_t end, std::uint32_t* fews, float* squares) noexcept {
-  const ClusterVec3 low = get_one(of.low, own), high = get_one(of.high, own),
-                    velocity = get_one(of.velocity, own);
-  const Floats spread = all(of.spread[own]);
+std::size_t list_fews(const FewColumns& of, std::size_t begin, std::size_t end, const LaneBox& box,
+                      std::uint32_t* few, const FewColumns& list) noexcept {
+  const float* const from[10] = {of.low.x,  of.low.y,      of.low.z,      of.high.x,     of.high.y,
+                                 of.high.z, of.velocity.x, of.velocity.y, of.velocity.z, of.spread};
+  float* const to[10] = {list.low.x,  list.low.y,      list.low.z,      list.high.x,     list.high.y,
+                         list.high.z, list.velocity.x, list.velocity.y, list.velocity.z, list.spread};
   std::size_t count = 0;
-  for (std::size_t k = begin; k < end; k += k_cluster) {
-    const Floats closing =
-        square_root(squared(velocity - get(of.velocity, k))) + (spread + load(of.spread + k));
-    const Floats along = reach.along + reach.time_step * closing;
-    const Floats square = smaller(k_wider * k_wider * (reach.across * reach.across + along * along),
-                                  all(reach.most * reach.most));
-    const Ints near = is_at_most(squared_gap(low, high, get(of.low, k), get(of.high, k)), square);
-    const unsigned found = bits_of(near, end - k);
-    if (found == 0) continue;
-    compress(found, k_count + static_cast<int>(k), fews + count);
-    count += compress(found, square, squares + count);
-  }
+  for_fews_in(of, begin, end, box, [&](std::size_t k, unsigned set) {
+    if (set == 0) return;
+    for (int c = 0; c < 10; ++c) compress(set, load(from[c] + k), to[c] + count);
+    count += compress(set, k_count + static_cast<int>(k), few + count);
+  });
   return count;
 }
 
-std::size_t near_points(const ConstVectors& positions, const FewColumns& of, std::size_t own,
-                        const std::uint32_t* fews, const float* squares, std::size_t n,
-                        std::uint32_t* scratch, std::uint32_t* own_points,
-                        std::uint32_t* other_points) noexcept {
-  const std::size_t first = own * k_cluster;
-  const ClusterVec3 points = load(positions, first);
-  std::uint32_t* ends[k_cluster];
-  for (std::size_t i = 0; i < k_cluster; ++i) ends[i] = scratch + i * room_of(n);
-  for (std::size_t f = 0; f < n; ++f) {
-    const std::size_t few = fews[f];
-    const Floats square = all(squares[f]);
-    const Ints near =
-        is_at_most(squared_gap(points, points, get_one(of.low, few), get_one(of.high, few)), square);
-    unsigned left = bits(near);
-    if (left == 0) continue;
-    const ClusterVec3 others = load(positions, few * k_cluster);
-    const Ints names = k_count + static_cast<int>(few * k_cluster);
-    for (; left != 0; left &= left - 1) {
-      const auto i = static_cast<std::size_t>(first_bit(left));
-      const ClusterVec3 r = difference(positions, first + i, others);
-      ends[i] += compress(bits(is_at_most(squared(r), square)), names, ends[i]);
+std::size_t near_fews(const FewColumns& of, std::size_t begin, std::uint32_t bits, const FewReach& reach,
+                      const FewColumns& list, const std::uint32_t* few, std::size_t n, std::uint32_t count,
+                      std::uint32_t* near, float* squares, OwnFew* own) noexcept {
+  const FewColumns others = list;
+  const Floats across = all(reach.across * reach.across), most = all(reach.most * reach.most);
+  OwnFew* end = own;
+  for (; bits != 0; bits &= bits - 1) {
+    const std::size_t one = begin + static_cast<unsigned>(first_bit(bits));
+    const ClusterVec3 low = get_one(of.low, one), high = get_one(of.high, one),
+                      velocity = get_one(of.velocity, one);
+    const Floats spread = all(of.spread[one]);
+    const std::uint32_t before = count;
+    for (std::size_t k = 0; k < n; k += k_cluster) {
+      const Floats closing =
+          square_root(squared(velocity - get(others.velocity, k))) + (spread + load(others.spread + k));
+      const Floats along = reach.along + reach.time_step * closing;
+      const Floats square = smaller(k_wider * k_wider * (across + along * along), most);
+      const Ints meets = is_at_most(squared_gap(low, high, get(others.low, k), get(others.high, k)), square);
+      const unsigned found = bits_of(meets, n - k);
+      compress(found, load(few + k), near + count);
+      count += static_cast<std::uint32_t>(compress(found, square, squares + count));
     }
+    if (count > before) *end++ = {static_cast<std::uint32_t>(one), count};
   }
+  return static_cast<std::size_t>(end - own);
+}
+
+std::size_t near_points(const ConstVectors& positions, const FewColumns& of, const OwnFew* own, std::size_t n,
+                        const std::uint32_t* near, const float* squares, std::uint32_t* scratch,
+                        std::uint32_t* own_points, std::uint32_t* other_points) noexcept {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < k_cluster; ++i) {
-    const std::uint32_t* const list = scratch + i * room_of(n);
-    const auto found = static_cast<std::size_t>(ends[i] - list);
-    for (std::size_t k = 0; k < found; k += k_cluster) {
-      store(Ints{} + static_cast<int>(first + i), own_points + count + k);
-      store(load(list + k), other_points + count + k);
+  std::uint32_t f = 0;
+  for (const OwnFew* one = own; one != own + n; ++one) {
+    const std::size_t first = one->few * k_cluster, room = room_of(one->end - f);
+    const ClusterVec3 points = load(positions, first);
+    std::uint32_t* ends[k_cluster];
+    for (std::size_t i = 0; i < k_cluster; ++i) ends[i] = scratch + i * room;
+    unsigned meeting = 0;
+    for (; f != one->end; ++f) {
+      const std::size_t few = near[f];
+      const Floats square = all(squares[f]);
+      unsigned left =
+          bits(is_at_most(squared_gap(points, points, get_one(of.low, few), get_one(of.high, few)), square));
+      meeting |= left;
+      const ClusterVec3 others = load(positions, few * k_cluster);
+      const Ints names = k_count + static_cast<int>(few * k_cluster);
+      for (; left != 0; left &= left - 1) {
+        const auto i = static_cast<std::size_t>(first_bit(left));
+        const ClusterVec3 r = difference(positions, first + i, others);
+        ends[i] += compress(bits(is_at_most(squared(r), square)), names, ends[i]);
+      }
     }
-    count += found;
+    for (; meeting != 0; meeting &= meeting - 1) {
+      const auto i = static_cast<std::size_t>(first_bit(meeting));
+      const std::uint32_t* const list = scratch + i * room;
+      const auto found = static_cast<std::size_t>(ends[i] - list);
+      for (std::size_t k = 0; k < found; k += k_cluster) {
+        store(Ints{} + static_cast<int>(first + i), own_points + count + k);
+        store(load(list + k), other_points + count + k);
+      }
+      count += found;
+    }
   }
   return count;
 }
@@ -246,6 +277,6 @@ std::size_t near_points(const ConstVectors& positions, const FewColumns& of, std
 
 extern const PointLanes point_lanes;
 const PointLanes point_lanes = {motion,      place,     set_velocities, get_velocities,
-                                fews_in_box, near_fews, near_points};
+                                fews_in_box, list_fews, near_fews,      near_points};
 
 }  // namespace mallow::MALLOW_LEVEL

@@ -8,6 +8,10 @@ namespace mallow {
 /// Of a block.
 inline constexpr std::size_t k_most_points = 256;
 
+struct LaneBox {
+  float low[3], high[3];  ///< [m]
+};
+
 /// Where particles are, and how they move: from the middle of some, none is faster than `spread`.
 struct LaneMotion {
   float low[3], high[3];  ///< [m]
@@ -51,6 +55,11 @@ constexpr std::size_t room_of(std::size_t fews) {
   return k_cluster * (fews + 1);
 }
 
+/// A few of a block, and where in a list those near it end; they begin where those of the one before end.
+struct OwnFew {
+  std::uint32_t few, end;
+};
+
 /// Of particles near other bodies: where they are, how they move, and which are near each other.
 struct PointLanes {
   /// How the particles [begin, end) move. What is no number is left for later phases to find: it counts as no
@@ -66,19 +75,24 @@ struct PointLanes {
                          const FewColumns&) noexcept;
   /// The reverse: n points from `first` on -> velocities, each column from the block's first row on.
   void (*get_velocities)(const float* rows, std::size_t n, std::size_t first, const Vectors&) noexcept;
-  /// A bit for each of the fews [begin, end) of a block that is in a box.
-  std::uint32_t (*fews_in_box)(const FewColumns&, std::size_t begin, std::size_t end, const float* low,
-                               const float* high) noexcept;
-  /// Of the fews [begin, end) those that few `own` may touch, in order, and the squares of how near points of
-  /// the two are that do; returns how many. fews, squares: room for all and k_cluster more.
-  std::size_t (*near_fews)(const FewColumns&, const FewReach&, std::size_t own, std::size_t begin,
-                           std::size_t end, std::uint32_t* fews, float* squares) noexcept;
-  /// Pairs of points of few `own` and of n others that are so near, in the order of its points and then of
-  /// theirs; returns how many. scratch, own_points, other_points: room for k_cluster times room_of(n).
-  std::size_t (*near_points)(const ConstVectors& positions, const FewColumns&, std::size_t own,
-                             const std::uint32_t* fews, const float* squares, std::size_t n,
-                             std::uint32_t* scratch, std::uint32_t* own_points,
-                             std::uint32_t* other_points) noexcept;
+  /// A bit for each of the fews [begin, end) of a block that meets a box.
+  std::uint32_t (*fews_in_box)(const FewColumns&, std::size_t begin, std::size_t end,
+                               const LaneBox&) noexcept;
+  /// The same fews, and which they are; returns how many. few, list: room for all and k_cluster more.
+  std::size_t (*list_fews)(const FewColumns&, std::size_t begin, std::size_t end, const LaneBox&,
+                           std::uint32_t* few, const FewColumns& list) noexcept;
+  /// For each few of a block that has a bit, counted from `begin`, those of a list of n fews that it may
+  /// touch, in order and behind the `count` that are there, and the squares of how near points of the two are
+  /// that do. own: those that have any; returns how many. near, squares: room for all, and k_cluster more.
+  std::size_t (*near_fews)(const FewColumns&, std::size_t begin, std::uint32_t bits, const FewReach&,
+                           const FewColumns& list, const std::uint32_t* few, std::size_t n,
+                           std::uint32_t count, std::uint32_t* near, float* squares, OwnFew* own) noexcept;
+  /// Pairs of points of n fews and those near them that are so near, few by few in the order of its points
+  /// and then of the others; returns how many. scratch: room for k_cluster times room_of(what is near one),
+  /// own_points, other_points: for k_cluster times room_of() of what is near each.
+  std::size_t (*near_points)(const ConstVectors& positions, const FewColumns&, const OwnFew*, std::size_t n,
+                             const std::uint32_t* near, const float* squares, std::uint32_t* scratch,
+                             std::uint32_t* own_points, std::uint32_t* other_points) noexcept;
 };
 MALLOW_DECLARE_LEVELS(PointLanes, point_lanes)
 
