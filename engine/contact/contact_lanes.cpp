@@ -78,8 +78,9 @@ MALLOW_INLINE Meeting meeting_of(const Row& i, const Row& j, const ClusterVec3& 
 }
 
 std::size_t add_pairs(const ContactRows& of, const PairStep& step, std::uint32_t* own, std::uint32_t* other,
-                      std::size_t n, const PairColumns& pairs) noexcept {
+                      std::size_t n, const PairColumns& to) noexcept {
   if (n == 0) return 0;
+  const PairColumns pairs = to;
   std::size_t count = 0;
   fill(own, n);
   fill(other, n);
@@ -120,9 +121,10 @@ MALLOW_INLINE ClusterVec3 vectors(const Vectors& from, std::size_t k) {
   return {load(from.x + k), load(from.y + k), load(from.z + k)};
 }
 
-float acting(const float* velocities, const PairColumns& pairs, std::size_t n,
-             const RoundColumns& round) noexcept {
+float acting(const float* velocities, const PairColumns& of, std::size_t n, const RoundColumns& to) noexcept {
   if (n == 0) return 0;
+  const PairColumns pairs = of;  // copies, which what is stored cannot alias
+  const RoundColumns round = to;
   fill(pairs.own, n);
   fill(pairs.other, n);
   Floats most = {};

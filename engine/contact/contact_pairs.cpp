@@ -85,8 +85,8 @@ void find_near_fews(std::size_t number, const std::vector<TouchingBody>& bodies,
                            points.found_motion.spread.data()};
   const std::span<const NearBlocks::Other> others = pairs.near.others[number];
   if (others.empty()) return;
-  constexpr std::size_t most_own = k_most_points / k_cluster;
-  block.reserve(k_room_near * most_own);
+  constexpr std::size_t k_most_own = k_most_points / k_cluster;
+  block.reserve(k_room_near * k_most_own);
   std::uint32_t count = 0;
   const auto of = [&](const NearBlocks::Other& other) { return blocks[other.block].range; };
   auto first = std::ranges::upper_bound(others, number, {}, &NearBlocks::Other::block);
@@ -100,8 +100,8 @@ void find_near_fews(std::size_t number, const std::vector<TouchingBody>& bodies,
                          .across = k_across * spacing,
                          .along = spacing + pushed_together(step),
                          .most = step.reach};
-    block.reserve(count + most_own * body.count + k_cluster);
-    if (block.own.size() < block.own_count + most_own) block.own.resize(block.own_count + most_own);
+    block.reserve(count + k_most_own * body.count + k_cluster);
+    if (block.own.size() < block.own_count + k_most_own) block.own.resize(block.own_count + k_most_own);
     const std::size_t found = lanes.near_fews(
         columns, points.first_few(number), body.near, reach, body.fews.from(0), body.fews.few.data(),
         body.count, count, block.fews.data(), block.squares.data(), block.own.data() + block.own_count);

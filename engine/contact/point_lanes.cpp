@@ -234,9 +234,11 @@ std::size_t near_fews(const FewColumns& of, std::size_t begin, std::uint32_t bit
   return static_cast<std::size_t>(end - own);
 }
 
-std::size_t near_points(const ConstVectors& positions, const FewColumns& of, const OwnFew* own, std::size_t n,
+std::size_t near_points(const ConstVectors& from, const FewColumns& of, const OwnFew* own, std::size_t n,
                         const std::uint32_t* near, const float* squares, std::uint32_t* scratch,
                         std::uint32_t* own_points, std::uint32_t* other_points) noexcept {
+  const ConstVectors positions = from;  // copies, which what is stored cannot alias
+  const FewColumns fews = of;
   std::size_t count = 0;
   std::uint32_t f = 0;
   for (const OwnFew* one = own; one != own + n; ++one) {
@@ -248,8 +250,8 @@ std::size_t near_points(const ConstVectors& positions, const FewColumns& of, con
     for (; f != one->end; ++f) {
       const std::size_t few = near[f];
       const Floats square = all(squares[f]);
-      unsigned left =
-          bits(is_at_most(squared_gap(points, points, get_one(of.low, few), get_one(of.high, few)), square));
+      unsigned left = bits(
+          is_at_most(squared_gap(points, points, get_one(fews.low, few), get_one(fews.high, few)), square));
       meeting |= left;
       const ClusterVec3 others = load(positions, few * k_cluster);
       const Ints names = k_count + static_cast<int>(few * k_cluster);
