@@ -1,7 +1,6 @@
 #include "contact/body_contact.h"
 
 #include <algorithm>
-#include <span>
 
 #include "core/parallel.h"
 
@@ -13,53 +12,48 @@ namespace {
 constexpr int k_least_rounds = 4, k_most_rounds = 8;
 constexpr float k_tolerance = 0.01f;
 
-/// Calls body(point, its sides) for all of a block that have any.
+/// Calls body(number) for every block that has points.
 template <class Body>
-void for_touching(const BlockSides& block, const Body& body) {
-  std::uint32_t first = 0;
-  for (const auto& [point, end] : block.points) {
-    body(point, std::span(block.sides).subspan(first, end - first));
-    first = end;
-  }
+void for_blocks(const Execution& execution, const ContactPairs& pairs, const Body& body) {
+  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+    if (pairs.points.first[number] < pairs.points.first[number + 1]) body(number);
+  });
 }
 
 /// Which pairs come nearer than they may, or stick. Returns the most by which one misses its target.
 float find_acting(const Execution& execution, const ContactLanes& lanes, ContactPairs& pairs) {
   pairs.partial_miss.assign(pairs.blocks.size(), 0);
-  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+  for_blocks(execution, pairs, [&](std::size_t number) {
     BlockPairs& block = pairs.blocks[number];
     pairs.partial_miss[number] =
-        lanes.acting(pairs.rows().velocities, block.columns(), block.count, pairs.acts.data() + block.first);
+        lanes.acting(pairs.points.velocity.data(), block.columns(), block.count, pairs.round(block));
   });
   return std::ranges::max(pairs.partial_miss);
+}
+
+/// Adds what the pairs of a block got in a round.
+void add_impulses(const BlockPairs& block, ContactPairs& pairs) {
+  for (std::size_t k = block.first; k < block.first + block.count; ++k)
+    if (pairs.acts[k / k_word] >> (k % k_word) & 1)
+      for (std::size_t a = 4 * k; a < 4 * k + 3; ++a) pairs.sums[a] += pairs.impulses[a];
 }
 
 /// One round of impulses. Each particle shares its mass between its pairs that act, so that all of them
 /// together do not overshoot.
 void push_apart(const Execution& execution, const ContactLanes& lanes, ContactPairs& pairs) {
-  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
-    for_touching(pairs.sides[number], [&](std::uint32_t i, std::span<const BlockSides::Side> sides) {
-      float acting = 0;
-      for (const BlockSides::Side& side : sides) acting += pairs.acts[side.pair];
-      pairs.velocity[i].share = acting * pairs.points[i].inverse_mass;
-    });
+  const float* const inverse_mass = pairs.points.inverse_mass.data();
+  float* const shares = pairs.shares.data();
+  for_blocks(execution, pairs, [&](std::size_t number) {
+    pairs.acting[number] = lanes.share(pairs.touching(number), inverse_mass, shares);
   });
-  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+  for_blocks(execution, pairs, [&](std::size_t number) {
     BlockPairs& block = pairs.blocks[number];
-    lanes.impulses(pairs.rows().velocities, block.columns(), block.count, pairs.acts.data() + block.first,
-                   pairs.impulses.data() + 4 * block.first);
-    if (pairs.sums.size() == 0) return;
-    for (std::size_t k = 4 * block.first; k < 4 * (block.first + block.count); ++k)
-      pairs.sums.data()[k] += pairs.impulses.data()[k];
+    lanes.impulses(block.columns(), block.count, shares, pairs.round(block));
+    if (!pairs.sums.empty()) add_impulses(block, pairs);
   });
-  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
-    for_touching(pairs.sides[number], [&](std::uint32_t i, std::span<const BlockSides::Side> sides) {
-      if (pairs.velocity[i].share == 0) return;
-      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-      for (const auto& [pair, sign] : sides)
-        sum += sign * Eigen::Map<const Eigen::Vector4f>(pairs.impulses.data() + 4 * pair);
-      pairs.velocity[i].velocity += pairs.points[i].inverse_mass * sum.head<3>();
-    });
+  for_blocks(execution, pairs, [&](std::size_t number) {
+    if (const std::uint32_t acting = pairs.acting[number])
+      lanes.push(pairs.touching(number), acting, inverse_mass, shares, pairs.points.velocity.data());
   });
 }
 
@@ -76,37 +70,36 @@ void resolve_body_contacts(const VectorColumn& positions, const std::uint16_t* p
     if (excess == 0 || (round >= k_least_rounds && excess < tolerance)) break;
     push_apart(execution, lanes, pairs);
   }
-  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
-    for (const auto& [point, end] : pairs.sides[number].points)
-      if (pairs.points[point].inverse_mass > 0)
-        velocities.set(pairs.near.row[point], pairs.velocity[point].velocity);
-  });
+  return_points(pairs.points, pairs.near, execution, velocities);
 }
 
 void list_touches(const VectorColumn& before, const ContactPairs& pairs, std::vector<BodyTouch>& touches) {
+  const ContactPoints& points = pairs.points;
+  if (points.empty() || pairs.sums.empty()) return;
   const NearBlocks& near = pairs.near;
-  if (near.row.empty() || pairs.sums.size() == 0) return;
-  const std::vector<RangeBlocks::Block>& blocks = near.blocks.blocks;
+  const auto velocity = [&](std::size_t block, std::uint32_t point) {
+    return before.get(points.first_row[block] + (point - points.first[block]));
+  };
   for (std::size_t number = 0; number < pairs.blocks.size(); ++number) {
     const BlockPairs& block = pairs.blocks[number];
-    const std::size_t first = touches.size();
-    std::size_t other_block = 0;
-    for (std::size_t k = 0; k < block.count; ++k) {
-      const auto got = Eigen::Map<const Vec3>(pairs.sums.data() + 4 * (block.first + k));
-      if (got.isZero(0)) continue;
-      const std::uint32_t i = block.own[k], j = block.other[k];
-      if (j < near.first_point[other_block] || j >= near.first_point[other_block + 1])
-        other_block = static_cast<std::size_t>(
-            std::upper_bound(near.first_point.data(), near.first_point.data() + blocks.size() + 1, j) -
-            near.first_point.data() - 1);
-      const std::uint32_t other = blocks[other_block].range;
-      auto touch = std::find_if(touches.begin() + static_cast<std::ptrdiff_t>(first), touches.end(),
-                                [&](const BodyTouch& known) { return known.other == other; });
-      if (touch == touches.end()) touch = touches.insert(touch, {blocks[number].range, other, {}});
-      const Vec3 v = before.get(near.row[i]) - before.get(near.row[j]);
-      const Eigen::Vector3d normal(block.normal_x[k], block.normal_y[k], block.normal_z[k]);
-      touch->sums.add_between(got.cast<double>(), pairs.points[i].position.cast<double>(),
-                              pairs.points[j].position.cast<double>(), v.cast<double>(), normal);
+    for (const auto& [body, begin, end] : block.bodies) {
+      BodyTouch touch{near.blocks.blocks[number].range, body, {}};
+      bool any = false;
+      std::size_t other_block = near.blocks.first[body];
+      for (std::size_t k = begin; k < end; ++k) {
+        const auto got = Eigen::Map<const Vec3>(pairs.sums.data() + 4 * (block.first + k));
+        if (got.isZero(0)) continue;
+        any = true;
+        const std::uint32_t i = block.own[k], j = block.other[k];
+        if (j < points.first[other_block] || j >= points.first[other_block + 1])
+          other_block = static_cast<std::size_t>(
+              std::upper_bound(points.first.begin(), points.first.end(), j) - points.first.begin() - 1);
+        const Vec3 v = velocity(number, i) - velocity(other_block, j);
+        const Eigen::Vector3d normal(block.normal_x[k], block.normal_y[k], block.normal_z[k]);
+        touch.sums.add_between(got.cast<double>(), points.position.get(i).cast<double>(),
+                               points.position.get(j).cast<double>(), v.cast<double>(), normal);
+      }
+      if (any) touches.push_back(touch);
     }
   }
 }

@@ -1,5 +1,4 @@
-// Contact between bodies, eight points or pairs at a time: which points one may touch, what way they push,
-// and by how much.
+// Contact between bodies, eight pairs at a time: which touch, what way they push, and by how much.
 #include "contact/contact_lanes.h"
 
 #include "core/cluster_lanes.h"
@@ -7,8 +6,6 @@
 namespace mallow::MALLOW_LEVEL {
 namespace {
 
-/// So much wider than they would be where nothing rounds are the tests by which points are left out.
-constexpr float k_wider = 1.001f;
 /// Share of an overlap that a step takes away, but for what is left in peace, in d0: all of it at once would
 /// throw particles apart, and what rests would tremble [Baumgarte 1972]. Of 200 cubes in a heap the one that
 /// moves most does so at a third of the speed, and head-on nothing comes nearer than without.
@@ -16,116 +13,28 @@ constexpr float k_correction = 0.3f, k_slop = 0.02f;
 /// Gap up to which what sticks is held, in d0.
 constexpr float k_sticking = 0.1f;
 
-std::size_t in_boxes(const ConstVectors& of, std::size_t begin, std::size_t end, const LaneBox* boxes,
-                     std::size_t box_count, std::uint32_t* out) noexcept {
-  const std::uint32_t* const start = out;
-  const float* const axes[3] = {of.x, of.y, of.z};
-  for (std::size_t j = begin; j < end; j += k_cluster) {
-    Ints in_any = {};
-    for (std::size_t b = 0; b < box_count; ++b) {
-      Ints inside = ~Ints{};
-      for (int a = 0; a < 3; ++a) {
-        const Floats x = load(axes[a] + j);
-        inside &= is_at_most(all(boxes[b].low[a]), x) & is_at_most(x, all(boxes[b].high[a]));
-      }
-      in_any |= inside;
-    }
-    out += compress(bits_of(in_any, end - j), k_count + static_cast<int>(j), out);
-  }
-  return static_cast<std::size_t>(out - start);
-}
-
-std::size_t in_box(const ConstVectors& of, std::size_t begin, std::size_t end, const LaneBox& box,
-                   const ConstVectors& low, const ConstVectors& high, std::uint32_t* out) noexcept {
-  const std::uint32_t* const start = out;
-  const float *const axes[3] = {of.x, of.y, of.z}, *const lows[3] = {low.x, low.y, low.z},
-                     *const highs[3] = {high.x, high.y, high.z};
-  Floats from[3], to[3];
-  for (int a = 0; a < 3; ++a) {
-    from[a] = all(box.low[a]);
-    to[a] = all(box.high[a]);
-  }
-  const std::size_t boxes = (end - begin + k_cluster - 1) / k_cluster;
-  for (std::size_t b = 0; b < boxes; b += k_cluster) {
-    Ints meets = ~Ints{};
-    for (int a = 0; a < 3; ++a)
-      meets &= is_at_most(load(lows[a] + b), to[a]) & is_at_most(from[a], load(highs[a] + b));
-    for (unsigned left = bits_of(meets, boxes - b); left != 0; left &= left - 1) {
-      const std::size_t j = begin + k_cluster * (b + static_cast<unsigned>(first_bit(left)));
-      Ints inside = ~Ints{};
-      for (int a = 0; a < 3; ++a) {
-        const Floats x = load(axes[a] + j);
-        inside &= is_at_most(from[a], x) & is_at_most(x, to[a]);
-      }
-      out += compress(bits_of(inside, end - j), k_count + static_cast<int>(j), out);
-    }
-  }
-  return static_cast<std::size_t>(out - start);
-}
-
 /// Four numbers of each of eight points: a vector, and one more.
 struct Row {
   ClusterVec3 vector;
   Floats number;
 };
-MALLOW_INLINE Row load_row(const float* from, std::size_t stride, const std::uint32_t* names) {
+MALLOW_INLINE Row load_row(const float* rows, const std::uint32_t* names) {
   Floats numbers[4];
-  load_named(from, stride, names, numbers);
+  load_named(rows, 4, names, numbers);
   return {{numbers[0], numbers[1], numbers[2]}, numbers[3]};
 }
 
-/// The rows of points: see ContactPoint and ContactVelocity.
-constexpr std::size_t k_point = 12, k_velocity = 4;
-MALLOW_INLINE Row place(const ContactRows& of, const std::uint32_t* names) {
-  return load_row(of.points, k_point, names);
-}
-MALLOW_INLINE Row outward(const ContactRows& of, const std::uint32_t* names) {
-  return load_row(of.points + 4, k_point, names);
-}
 struct Matter {
   Floats inverse_mass, friction, adhesion;
 };
-MALLOW_INLINE Matter matter(const ContactRows& of, const std::uint32_t* names) {
-  const Row row = load_row(of.points + 8, k_point, names);
+MALLOW_INLINE Matter matter(const float* rows, const std::uint32_t* names) {
+  const Row row = load_row(rows, names);
   return {row.vector.x, row.vector.y, row.vector.z};
-}
-MALLOW_INLINE Row velocity(const float* velocities, const std::uint32_t* names) {
-  return load_row(velocities, k_velocity, names);
 }
 
 /// Names behind the last of n become that one, so that lanes may load what they name.
 MALLOW_INLINE void fill(std::uint32_t* names, std::size_t n) {
   for (std::size_t k = n; k % k_cluster != 0; ++k) names[k] = names[n - 1];
-}
-
-void gather(const ContactRows& of, const PairStep& step, const float* frame, std::size_t n,
-            const MeetingPoints& points) noexcept {
-  fill(points.name, n);
-  const ClusterVec3 frame_velocity = {all(frame[0]), all(frame[1]), all(frame[2])};
-  for (std::size_t k = 0; k < n; k += k_cluster) {
-    const Row at = place(of, points.name + k), moves = velocity(of.velocities, points.name + k);
-    store(at.vector.x, points.position.x + k);
-    store(at.vector.y, points.position.y + k);
-    store(at.vector.z, points.position.z + k);
-    const Floats way = step.time_step * square_root(squared(moves.vector - frame_velocity));
-    store(k_wider * (at.number + 0.5f * step.pushed + way), points.along + k);
-    store(k_wider * k_across * at.number, points.across + k);
-  }
-}
-
-std::size_t meeting(const MeetingPoints& own, std::size_t i, const MeetingPoints& of, std::size_t n,
-                    std::uint32_t* out) noexcept {
-  const ClusterVec3 from{all(own.position.x[i]), all(own.position.y[i]), all(own.position.z[i])};
-  const Floats own_along = all(own.along[i]), own_across = all(own.across[i]);
-  const ConstVectors positions{of.position.x, of.position.y, of.position.z};
-  const std::uint32_t* const start = out;
-  for (std::size_t k = 0; k < n; k += k_cluster) {
-    const ClusterVec3 r = load(positions, k) - from;
-    const Floats along = load(of.along + k) + own_along, across = load(of.across + k) + own_across;
-    const Ints near = is_at_most(squared(r), across * across + along * along);
-    out += compress(bits_of(near, n - k), load(of.name + k), out);
-  }
-  return static_cast<std::size_t>(out - start);
 }
 
 MALLOW_INLINE Floats clamped(const Floats& value, float low, float high) {
@@ -169,23 +78,26 @@ MALLOW_INLINE Meeting meeting_of(const Row& i, const Row& j, const ClusterVec3& 
 }
 
 std::size_t add_pairs(const ContactRows& of, const PairStep& step, std::uint32_t* own, std::uint32_t* other,
-                      std::size_t n, const PairColumns& pairs, std::size_t count) noexcept {
-  if (n == 0) return count;
+                      std::size_t n, const PairColumns& to) noexcept {
+  if (n == 0) return 0;
+  const PairColumns pairs = to;
+  std::size_t count = 0;
   fill(own, n);
   fill(other, n);
   for (std::size_t k = 0; k < n; k += k_cluster) {
-    const Row at_i = place(of, own + k), at_j = place(of, other + k);
+    const Row at_i = load_row(of.place, own + k), at_j = load_row(of.place, other + k);
     const ClusterVec3 r = at_i.vector - at_j.vector;
     const Floats square = squared(r), spacing = at_i.number + at_j.number, across = k_across * spacing;
-    const Floats closing = square_root(
-        squared(velocity(of.velocities, own + k).vector - velocity(of.velocities, other + k).vector));
+    const Floats closing =
+        square_root(squared(load_row(of.velocity, own + k).vector - load_row(of.velocity, other + k).vector));
     const Floats most = step.time_step * closing + step.pushed, along = spacing + most;
     // In one point nothing says which way.
     Ints touch =
         is_at_most(square, across * across + along * along) & is_larger(square, 1e-12f * spacing * spacing);
     if (!any(touch)) continue;
-    const Meeting meeting = meeting_of(outward(of, own + k), outward(of, other + k), r, square, spacing);
-    const Matter i = matter(of, own + k), j = matter(of, other + k);
+    const Meeting meeting =
+        meeting_of(load_row(of.outward, own + k), load_row(of.outward, other + k), r, square, spacing);
+    const Matter i = matter(of.matter, own + k), j = matter(of.matter, other + k);
     touch &=
         meeting.meets & is_at_most(meeting.gap, most) & is_larger(i.inverse_mass + j.inverse_mass, Floats{});
     const Floats closes = -meeting.gap / step.time_step, slop = k_slop * spacing / step.time_step;
@@ -205,32 +117,31 @@ std::size_t add_pairs(const ContactRows& of, const PairStep& step, std::uint32_t
   return count;
 }
 
-/// How two points move against each other.
-struct Closing {
-  ClusterVec3 velocity;  ///< v_i − v_j
-  Floats along;          ///< its part along n
-  Floats share;          ///< of their inverse masses, those of pairs that act at the same time
-  ClusterVec3 normal;
-  Floats target, sticks;
-};
-MALLOW_INLINE Closing closing_of(const float* velocities, const PairColumns& pairs, std::size_t k) {
-  const Row i = velocity(velocities, pairs.own + k), j = velocity(velocities, pairs.other + k);
-  const ClusterVec3 w = i.vector - j.vector;
-  const ClusterVec3 n{load(pairs.normal.x + k), load(pairs.normal.y + k), load(pairs.normal.z + k)};
-  return {w, dot(w, n), i.number + j.number, n, load(pairs.target + k), load(pairs.sticks + k)};
+MALLOW_INLINE ClusterVec3 vectors(const Vectors& from, std::size_t k) {
+  return {load(from.x + k), load(from.y + k), load(from.z + k)};
 }
 
-float acting(const float* velocities, const PairColumns& pairs, std::size_t n, float* acts) noexcept {
+float acting(const float* velocities, const PairColumns& of, std::size_t n, const RoundColumns& to) noexcept {
   if (n == 0) return 0;
+  const PairColumns pairs = of;  // copies, which what is stored cannot alias
+  const RoundColumns round = to;
   fill(pairs.own, n);
   fill(pairs.other, n);
   Floats most = {};
+  std::uint64_t word = 0;
   for (std::size_t k = 0; k < n; k += k_cluster) {
-    const Closing c = closing_of(velocities, pairs, k);
-    const Ints act =
-        (is_larger(c.target, c.along) | is_larger(c.sticks, Floats{})) & (k_count < static_cast<int>(n - k));
-    store(where(act, all(1)), acts + k);
-    const Floats miss = c.target - c.along;
+    const ClusterVec3 w =
+        load_row(velocities, pairs.own + k).vector - load_row(velocities, pairs.other + k).vector;
+    const Floats along = dot(w, vectors(pairs.normal, k)), target = load(pairs.target + k);
+    const Ints act = (is_larger(target, along) | is_larger(load(pairs.sticks + k), Floats{})) &
+                     (k_count < static_cast<int>(n - k));
+    store(w.x, round.closing.x + k);
+    store(w.y, round.closing.y + k);
+    store(w.z, round.closing.z + k);
+    word |= std::uint64_t{bits(act)} << (k % k_word);
+    round.acts[k / k_word] = word;
+    if (k % k_word == k_word - k_cluster) word = 0;
+    const Floats miss = target - along;
     most = larger(where(act, larger(miss, -miss)), most);
   }
   float result = 0;
@@ -238,32 +149,96 @@ float acting(const float* velocities, const PairColumns& pairs, std::size_t n, f
   return result;
 }
 
-void impulses(const float* velocities, const PairColumns& pairs, std::size_t n, const float* acts,
-              float* rows) noexcept {
+/// Calls body(k) for each pair that acts, in order.
+template <class Body>
+MALLOW_INLINE void for_acting(const PointPairs& pairs, const Body& body) {
+  for (std::size_t k = pairs.begin / k_word * k_word; k < pairs.end; k += k_word) {
+    std::uint64_t left = pairs.acts[k / k_word];
+    if (k < pairs.begin) left &= ~std::uint64_t{0} << (pairs.begin - k);
+    if (pairs.end - k < k_word) left &= (std::uint64_t{1} << (pairs.end - k)) - 1;
+    for (; left != 0; left &= left - 1) body(k + static_cast<std::size_t>(first_bit(left)));
+  }
+}
+/// Calls body(pairs, k, place of the point in the block) for each pair that acts of those in which points of
+/// a block are the second.
+template <class Body>
+MALLOW_INLINE void for_acting_earlier(const TouchingPoints& of, const Body& body) {
+  for (std::size_t e = 0; e < of.earlier_count; ++e) {
+    const PointPairs& pairs = of.earlier[e];
+    for_acting(pairs, [&](std::size_t k) {
+      const std::uint32_t at = pairs.points[k] - of.begin;  // below begin it wraps around
+      if (at < of.end - of.begin) body(pairs, k, at);
+    });
+  }
+}
+
+std::uint32_t share(const TouchingPoints& of, const float* inverse_mass, float* shares) noexcept {
+  float* const counts = shares + of.begin;
+  const std::size_t n = of.end - of.begin;
+  clear_bytes(counts, n * sizeof(float));
+  for_acting(of.own, [&](std::size_t k) { counts[of.own.points[k] - of.begin] += 1; });
+  for_acting_earlier(of, [&](const PointPairs&, std::size_t, std::uint32_t at) { counts[at] += 1; });
+  std::uint32_t acting = 0;
+  for (std::size_t i = 0; i < n; i += k_cluster) {
+    const Floats count = load(counts + i);
+    acting |= std::uint32_t{any(is_larger(count, Floats{}))} << (i / k_cluster);
+    store(count * load(inverse_mass + of.begin + i), counts + i);
+  }
+  return acting;
+}
+
+/// Of each of eight points that names say.
+MALLOW_INLINE Floats named(const float* values, const std::uint32_t* names) {
+  return Floats{values[names[0]], values[names[1]], values[names[2]], values[names[3]],
+                values[names[4]], values[names[5]], values[names[6]], values[names[7]]};
+}
+
+void impulses(const PairColumns& pairs, std::size_t n, const float* shares,
+              const RoundColumns& round) noexcept {
   for (std::size_t k = 0; k < n; k += k_cluster) {
-    if (!any(is_larger(load(acts + k), Floats{}))) {
-      for (std::size_t t = 0; t < 4; ++t) store(Floats{}, rows + 4 * k + t * k_cluster);
-      continue;
-    }
-    const Closing c = closing_of(velocities, pairs, k);
-    const Floats mass = 1 / c.share;
-    const Floats push = larger(mass * (c.target - c.along), -c.sticks);
-    const ClusterVec3 slip = c.velocity - c.along * c.normal;
+    if ((round.acts[k / k_word] >> (k % k_word) & 0xff) == 0) continue;
+    const ClusterVec3 w = vectors(round.closing, k), normal = vectors(pairs.normal, k);
+    const Floats along = dot(w, normal), sticks = load(pairs.sticks + k);
+    const Floats mass = 1 / (named(shares, pairs.own + k) + named(shares, pairs.other + k));
+    const Floats push = larger(mass * (load(pairs.target + k) - along), -sticks);
+    const ClusterVec3 slip = w - along * normal;
     const Floats speed = square_root(squared(slip));
-    const Floats rub = smaller(load(pairs.friction + k) * (larger(push, Floats{}) + c.sticks), mass * speed);
+    const Floats rub = smaller(load(pairs.friction + k) * (larger(push, Floats{}) + sticks), mass * speed);
     const Floats per_speed = where(is_larger(speed, Floats{}), rub / speed);
-    const ClusterVec3 impulse =
-        where(is_larger(load(acts + k), Floats{}), push * c.normal - per_speed * slip);
+    const ClusterVec3 impulse = push * normal - per_speed * slip;
     Floats numbers[4] = {impulse.x, impulse.y, impulse.z, Floats{}};
-    store_rows(numbers, rows + 4 * k);
-    if (any(is_larger(c.sticks, Floats{})))
-      store(larger(c.sticks - larger(-push, Floats{}), Floats{}), pairs.sticks + k);
+    store_rows(numbers, round.impulses + 4 * k);
+    if (any(is_larger(sticks, Floats{})))
+      store(larger(sticks - larger(-push, Floats{}), Floats{}), pairs.sticks + k);
+  }
+}
+
+void push(const TouchingPoints& of, std::uint32_t acting, const float* inverse_mass, const float* shares,
+          float* velocities) noexcept {
+  alignas(32) float sums[4 * k_most_points];
+  for (std::uint32_t left = acting; left != 0; left &= left - 1)
+    clear_bytes(sums + 4 * k_cluster * static_cast<unsigned>(first_bit(left)), 4 * k_cluster * sizeof(float));
+  for_acting(of.own, [&](std::size_t k) {
+    float* const sum = sums + 4 * (of.own.points[k] - of.begin);
+    store_quad(load_quad(sum) + load_quad(of.own.impulses + 4 * k), sum);
+  });
+  for_acting_earlier(of, [&](const PointPairs& pairs, std::size_t k, std::uint32_t at) {
+    float* const sum = sums + 4 * at;
+    store_quad(load_quad(sum) - load_quad(pairs.impulses + 4 * k), sum);
+  });
+  for (std::uint32_t left = acting; left != 0; left &= left - 1) {
+    const std::size_t few = k_cluster * static_cast<unsigned>(first_bit(left));
+    for (unsigned set = bits(is_larger(load(shares + of.begin + few), Floats{})); set != 0; set &= set - 1) {
+      const std::size_t at = few + static_cast<unsigned>(first_bit(set)), p = of.begin + at;
+      float* const velocity = velocities + 4 * p;
+      store_quad(load_quad(velocity) + inverse_mass[p] * load_quad(sums + 4 * at), velocity);
+    }
   }
 }
 
 }  // namespace
 
 extern const ContactLanes contact_lanes;
-const ContactLanes contact_lanes = {in_boxes, in_box, gather, meeting, add_pairs, acting, impulses};
+const ContactLanes contact_lanes = {add_pairs, acting, share, impulses, push};
 
 }  // namespace mallow::MALLOW_LEVEL

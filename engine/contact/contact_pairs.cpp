@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numeric>
+#include <span>
 #include <utility>
 
 #include "core/bounds.h"
 #include "core/parallel.h"
-#include "shape_matching/run_tables.h"
-#include "shape_matching/shape_matching.h"
 
 namespace mallow {
 namespace {
@@ -17,228 +14,186 @@ namespace {
 /// Pairs of a point that there is room for from the start: more than rest or flow asks for, so that a motion
 /// that goes on takes no more memory.
 constexpr std::size_t k_room = 4;
-/// The same of those near each of its points.
-constexpr std::size_t k_room_near = 8;
-/// The same of a block, whichever of its points have come near.
-std::size_t room(const NearBlocks& near, std::size_t number) {
+/// The same of fews near each of a block.
+constexpr std::size_t k_room_near = 24;
+/// The same of pairs of a block, whichever of its points have come near.
+std::size_t room_of_pairs(const NearBlocks& near, std::size_t number) {
   const RangeBlocks::Block& block = near.blocks.blocks[number];
   return k_room * (block.end - block.begin);
 }
 
-/// From the middle of the regions of a particle to it, in the reference shape.
-Vec3 rest_outward(const ShapeMatching& shape, std::size_t i) {
-  const Vec3 x = shape.reference.get(i);
-  if (shape.region_stride == 1) return x - shape.center.get(i);
-  Vec3 middle = Vec3::Zero();
-  const std::vector<std::uint32_t> regions = decode(shape.by_particle(), i);
-  for (const std::uint32_t region : regions) middle += shape.center.get(region);
-  return x - middle / static_cast<float>(regions.size());
+/// Whether no few moves otherwise than it was thought to when near ones were found.
+bool are_as_found(const ContactPoints& points) {
+  const FewMotion &now = points.motion, &found = points.found_motion;
+  for (std::size_t k = 0; k < now.spread.size(); ++k)
+    if (!((now.velocity.get(k) - found.velocity.get(k)).norm() + now.spread[k] <= found.spread[k]))
+      return false;
+  return true;
 }
 
-/// N_i: which way out of its body a particle lies, and how near the surface. 0 in a fluid, which has no
-/// shape.
-Vec3 outward(const TouchingBody& body, std::size_t row) {
-  if (!body.shape) return Vec3::Zero();
-  const std::size_t i = row - body.begin, region = body.shape->first_region(i);
-  const auto& q = body.shape->rotation;
-  return Eigen::Quaternionf(q[3][region], q[0][region], q[1][region], q[2][region]) *
-         rest_outward(*body.shape, i);
-}
+/// Some fews, side by side, and which they are.
+struct FewList {
+  std::vector<std::uint32_t> few;
+  std::array<std::vector<float>, 10> columns;
 
-/// What is known of the points.
-void gather(const VectorColumn& positions, const VectorColumn& velocities, const std::uint16_t* pin,
-            const std::vector<TouchingBody>& bodies, const Threads& threads, ContactPairs& pairs) {
-  const NearBlocks& near = pairs.near;
-  const std::size_t n = near.row.size();
-  pairs.positions.resize_unset(n);
-  pairs.points.resize(n);
-  pairs.velocity.resize(n);
-  const std::size_t blocks = near.blocks.blocks.size();
-  pairs.first_few.resize_unset(blocks + 1);
-  pairs.first_few[0] = 0;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    const std::size_t points = near.first_point[b + 1] - near.first_point[b];
-    pairs.first_few[b + 1] =
-        pairs.first_few[b] + static_cast<std::uint32_t>((points + k_cluster - 1) / k_cluster);
+  void reserve(std::size_t room) {
+    if (few.size() >= room) return;
+    few.resize(room);
+    for (std::vector<float>& column : columns) column.resize(room);
   }
-  pairs.few_low.resize_unset(pairs.first_few[blocks]);
-  pairs.few_high.resize_unset(pairs.first_few[blocks]);
-  parallel_for(threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
-    const TouchingBody& body = bodies[block.range];
-    const float friction = std::sqrt(body.friction), adhesion = std::sqrt(body.adhesion);
-    for (std::uint32_t p = near.first_point[number]; p < near.first_point[number + 1]; ++p) {
-      const std::uint32_t row = near.row[p];
-      const Vec3 x = positions.get(row), v = velocities.get(row), out = outward(body, row);
-      const float depth = out.norm();
-      pairs.positions.set(p, x);
-      pairs.velocity[p] = {v, 0};
-      pairs.points[p] = {.position = x,
-                         .half_spacing = 0.5f * body.spacing,
-                         .outward = depth > 0 ? Vec3(out / depth) : Vec3(0, 0, 0),
-                         .depth = depth,
-                         .inverse_mass = pin && pin[row] != 0 ? 0.0f : 1.0f / body.mass,
-                         .friction = friction,
-                         .adhesion = adhesion,
-                         .unused = 0};
-    }
-    const std::size_t begin = near.first_point[number], end = near.first_point[number + 1];
-    for (std::size_t few = pairs.first_few[number], from = begin; from < end; ++few, from += k_cluster) {
-      const Aabb box = box_around(pairs.positions, from, std::min(from + k_cluster, end));
-      pairs.few_low.set(few, box.min);
-      pairs.few_high.set(few, box.max);
-    }
-  });
-}
+  FewColumns from(std::size_t first) {
+    const auto at = [&](std::size_t k) { return columns[k].data() + first; };
+    return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}, at(9)};
+  }
+};
 
-/// How points move, which is all that changes from call to call of one step.
-void gather_velocities(const VectorColumn& velocities, const Threads& threads, ContactPairs& pairs) {
-  parallel_for(threads, pairs.near.row.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) pairs.velocity[p] = {velocities.get(pairs.near.row[p]), 0};
-  });
-}
-
-/// Points that are tried with others, with room for what lanes write behind them.
-struct Candidates {
-  std::vector<std::uint32_t> name;
-  std::vector<float> x, y, z, along, across;
+/// The fews of a body's later blocks that a block may touch.
+struct OtherBody {
+  std::uint32_t near = 0;  ///< a bit for each few of the block that is near them
   std::size_t count = 0;
-
-  void reserve(std::size_t points) {
-    const std::size_t room = points + k_cluster;
-    if (name.size() >= room) return;
-    name.resize(room);
-    for (std::vector<float>* column : {&x, &y, &z, &along, &across}) column->resize(room);
-  }
-  MeetingPoints columns() {
-    return {name.data(), {x.data(), y.data(), z.data()}, along.data(), across.data()};
-  }
+  FewList fews;
 };
 
-/// What finding the pairs of a block needs on the way.
-struct PairSearch {
-  Candidates own, others;
-  std::vector<std::uint32_t> first, second;  ///< points that may touch
-};
-
-ConstVectors from(const VectorColumn& column, std::size_t first) {
-  return {column.x() + first, column.y() + first, column.z() + first};
-}
-
-/// Points of later blocks of other bodies near the box of some of a block.
-void find_candidates(const ContactPairs& pairs, std::size_t number, const Aabb& box,
-                     const ContactLanes& lanes, Candidates& found) {
-  const NearBlocks& near = pairs.near;
-  found.count = 0;
-  for (const auto& [other, reach] : near.others[number]) {
-    if (other < number || !are_near(box, near.block_motion[other].box, reach)) continue;
-    const std::uint32_t first = near.first_point[other], last = near.first_point[other + 1];
-    found.reserve(found.count + (last - first));
-    const LaneBox wide = lane_box(box, reach);
-    const std::size_t few = pairs.first_few[other];
-    found.count += lanes.in_box(raw(pairs.positions), first, last, wide, from(pairs.few_low, few),
-                                from(pairs.few_high, few), found.name.data() + found.count);
+/// others: of one body.
+void list_fews(std::size_t number, std::span<const NearBlocks::Other> others, const FewColumns& fews,
+               const PointLanes& lanes, const ContactPairs& pairs, OtherBody& body) {
+  const ContactPoints& points = pairs.points;
+  const std::vector<Moving>& motion = pairs.near.block_motion;
+  body.near = 0;
+  body.count = 0;
+  for (const auto& [other, reach] : others) {
+    const std::uint32_t near = lanes.fews_in_box(fews, points.first_few(number), points.first_few(number + 1),
+                                                 lane_box(motion[other].box, reach));
+    if (near == 0) continue;
+    body.near |= near;
+    body.fews.reserve(body.count + k_most_points / k_cluster + k_cluster);
+    body.count += lanes.list_fews(fews, points.first_few(other), points.first_few(other + 1),
+                                  lane_box(motion[number].box, reach), body.fews.few.data() + body.count,
+                                  body.fews.from(body.count));
   }
 }
 
-/// Those of all points of a block, a few of them at a time.
-void find_all_candidates(std::size_t number, const ContactLanes& lanes, ContactPairs& pairs) {
-  const NearBlocks& near = pairs.near;
-  const std::uint32_t begin = near.first_point[number], end = near.first_point[number + 1];
+/// Fews of later blocks of other bodies near each of a block.
+void find_near_fews(std::size_t number, const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
+                    const PointLanes& lanes, ContactPairs& pairs) {
+  const std::vector<RangeBlocks::Block>& blocks = pairs.near.blocks.blocks;
+  ContactPoints& points = pairs.points;
   BlockCandidates& block = pairs.candidates[number];
-  block.points.clear();
-  block.ends.clear();
-  if (begin == end) return;
-  thread_local Candidates others;
-  others.reserve(4 * k_block);
-  const std::size_t rows = near.blocks.blocks[number].end - near.blocks.blocks[number].begin;
-  block.points.reserve(k_room_near * rows);
-  block.ends.reserve((rows + k_cluster - 1) / k_cluster);
-  for (std::size_t few = pairs.first_few[number]; few < pairs.first_few[number + 1]; ++few) {
-    find_candidates(pairs, number, {pairs.few_low.get(few), pairs.few_high.get(few)}, lanes, others);
-    block.points.insert(block.points.end(), others.name.begin(),
-                        others.name.begin() + static_cast<std::ptrdiff_t>(others.count));
-    block.ends.push_back(static_cast<std::uint32_t>(block.points.size()));
+  block.bodies.clear();
+  block.own_count = 0;
+  const FewColumns columns{raw(points.low), raw(points.high), raw(points.found_motion.velocity),
+                           points.found_motion.spread.data()};
+  const std::span<const NearBlocks::Other> others = pairs.near.others[number];
+  if (others.empty()) return;
+  constexpr std::size_t k_most_own = k_most_points / k_cluster;
+  block.reserve(k_room_near * k_most_own);
+  std::uint32_t count = 0;
+  const auto of = [&](const NearBlocks::Other& other) { return blocks[other.block].range; };
+  auto first = std::ranges::upper_bound(others, number, {}, &NearBlocks::Other::block);
+  for (auto last = first; first != others.end(); first = last) {
+    while (last != others.end() && of(*last) == of(*first)) ++last;
+    thread_local OtherBody body;
+    list_fews(number, {first, last}, columns, lanes, pairs, body);
+    if (body.count == 0) continue;
+    const float spacing = 0.5f * (bodies[blocks[number].range].spacing + bodies[of(*first)].spacing);
+    const FewReach reach{.time_step = step.time_step,
+                         .across = k_across * spacing,
+                         .along = spacing + pushed_together(step),
+                         .most = step.reach};
+    block.reserve(count + k_most_own * body.count + k_cluster);
+    if (block.own.size() < block.own_count + k_most_own) block.own.resize(block.own_count + k_most_own);
+    const std::size_t found = lanes.near_fews(
+        columns, points.first_few(number), body.near, reach, body.fews.from(0), body.fews.few.data(),
+        body.count, count, block.fews.data(), block.squares.data(), block.own.data() + block.own_count);
+    if (found == 0) continue;
+    block.own_count += found;
+    count = block.own[block.own_count - 1].end;
+    block.bodies.push_back(of(*first));
   }
 }
 
-/// The pairs of the points of a block with those of later ones. A few points at a time, which lie side by
-/// side, are tried with what is near all of them.
-void find_pairs(std::size_t number, const PairStep& step, const ContactLanes& lanes, ContactPairs& pairs) {
-  const NearBlocks& near = pairs.near;
-  const std::uint32_t begin = near.first_point[number], end = near.first_point[number + 1];
+/// Pairs of points that may touch, and what finding them needs on the way.
+struct PairSearch {
+  std::vector<std::uint32_t> scratch, own, other;
+};
+
+/// Where the pairs of a block with each body are.
+void list_bodies(const BlockCandidates& candidates, const NearBlocks& near, const ContactPoints& points,
+                 BlockPairs& block) {
+  const std::span<const std::uint32_t> others(block.other.data(), block.count);
+  std::uint32_t begin = 0;
+  for (const std::uint32_t body : candidates.bodies) {
+    const std::uint32_t behind = points.first[near.blocks.first[body + 1]];
+    const auto found = std::ranges::partition_point(others.subspan(begin),
+                                                    [&](std::uint32_t point) { return point < behind; });
+    const auto end = static_cast<std::uint32_t>(found - others.subspan(begin).begin()) + begin;
+    if (begin < end) block.bodies.push_back({body, begin, end});
+    begin = end;
+  }
+}
+
+/// The pairs of the points of a block with those of later ones.
+void find_pairs(std::size_t number, const PairStep& step, const Execution& execution, ContactPairs& pairs) {
+  ContactPoints& points = pairs.points;
   BlockPairs& block = pairs.blocks[number];
   block.count = 0;
-  pairs.sides[number].points.clear();
-  if (begin == end) return;
-  block.reserve(room(near, number));
-  thread_local PairSearch search;
-  auto& [own, others, first, second] = search;
-  own.reserve(k_cluster);
-  others.reserve(4 * k_block);
-  const float* const velocity = near.block_motion[number].velocity.data();
+  block.bodies.clear();
   const BlockCandidates& candidates = pairs.candidates[number];
-  std::uint32_t next = 0;
-  for (std::uint32_t from = begin; from < end; from += k_cluster) {
-    own.count = std::min<std::size_t>(k_cluster, end - from);
-    const std::uint32_t first_other = next;
-    next = candidates.ends[(from - begin) / k_cluster];
-    others.count = next - first_other;
-    if (others.count == 0) continue;
-    others.reserve(others.count);
-    std::copy_n(candidates.points.begin() + first_other, others.count, others.name.begin());
-    std::iota(own.name.begin(), own.name.begin() + k_cluster, from);
-    lanes.gather(pairs.rows(), step, velocity, own.count, own.columns());
-    lanes.gather(pairs.rows(), step, velocity, others.count, others.columns());
-    const std::size_t most = k_cluster * others.name.size();
-    if (second.size() < most) {
-      first.resize(most);
-      second.resize(most);
-    }
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < own.count; ++i) {
-      const std::size_t found =
-          lanes.meeting(own.columns(), i, others.columns(), others.count, second.data() + count);
-      std::fill_n(first.begin() + static_cast<std::ptrdiff_t>(count), found, own.name[i]);
-      count += found;
-    }
-    block.reserve(block.count + count);
-    block.count =
-        lanes.add_pairs(pairs.rows(), step, first.data(), second.data(), count, block.columns(), block.count);
-  }
+  const std::size_t fews = candidates.own_count;
+  if (fews == 0) return;
+  thread_local PairSearch search;
+  const std::size_t room = k_cluster * room_of(candidates.own[fews - 1].end);
+  for (std::vector<std::uint32_t>* list : {&search.scratch, &search.own, &search.other})
+    if (list->size() < room) list->resize(room);
+  const std::size_t count =
+      MALLOW_SELECT(execution.level, point_lanes)
+          .near_points(raw(std::as_const(points.position)), {raw(points.low), raw(points.high), {}, nullptr},
+                       candidates.own.data(), fews, candidates.fews.data(), candidates.squares.data(),
+                       search.scratch.data(), search.own.data(), search.other.data());
+  block.reserve(std::max(room_of_pairs(pairs.near, number), count));
+  block.count =
+      MALLOW_SELECT(execution.level, contact_lanes)
+          .add_pairs(points.rows(), step, search.own.data(), search.other.data(), count, block.columns());
+  list_bodies(candidates, pairs.near, points, block);
+}
+
+PointPairs point_pairs(const std::vector<std::uint32_t>& of, const BlockPairs& block, std::uint32_t begin,
+                       std::uint32_t end, ContactPairs& pairs) {
+  const RoundColumns round = pairs.round(block);
+  return {of.data(), round.acts, round.impulses, begin, end};
 }
 
 /// In which pairs the points of a block are.
-void find_sides(std::uint32_t number, ContactPairs& pairs) {
-  struct Found {
-    std::uint32_t point;
-    BlockSides::Side side;
-  };
-  thread_local std::vector<Found> found;
-  found.clear();
-  found.reserve(4 * k_room * k_block);
-  const NearBlocks& near = pairs.near;
-  const std::uint32_t begin = near.first_point[number], end = near.first_point[number + 1];
-  const auto find = [&](const BlockPairs& of, const std::vector<std::uint32_t>& points, float sign) {
-    for (std::size_t k = 0; k < of.count; ++k)
-      if (points[k] - begin < end - begin)  // below begin it wraps around
-        found.push_back({points[k] - begin, {static_cast<std::uint32_t>(of.first + k), sign}});
-  };
-  find(pairs.blocks[number], pairs.blocks[number].own, 1);
-  for (const NearBlocks::Other& other : near.others[number])
-    if (other.block < number) find(pairs.blocks[other.block], pairs.blocks[other.block].other, -1);
-
-  std::array<std::uint32_t, k_block> next{};
-  for (const Found& one : found) ++next[one.point];
-  BlockSides& block = pairs.sides[number];
-  block.points.reserve(near.blocks.blocks[number].end - near.blocks.blocks[number].begin);
-  std::uint32_t count = 0;
-  for (std::uint32_t p = begin; p < end; ++p) {
-    const std::uint32_t own = std::exchange(next[p - begin], count);
-    count += own;
-    if (own > 0) block.points.push_back({p, count});
+void find_sides(std::size_t number, ContactPairs& pairs) {
+  const std::vector<RangeBlocks::Block>& blocks = pairs.near.blocks.blocks;
+  BlockSides& sides = pairs.sides[number];
+  const BlockPairs& own = pairs.blocks[number];
+  sides.own = point_pairs(own.own, own, 0, static_cast<std::uint32_t>(own.count), pairs);
+  sides.earlier.clear();
+  for (const NearBlocks::Other& other : pairs.near.others[number]) {
+    if (other.block > number) break;
+    const BlockPairs& block = pairs.blocks[other.block];
+    for (const BlockPairs::OtherBody& with : block.bodies)
+      if (with.body == blocks[number].range)
+        sides.earlier.push_back(point_pairs(block.other, block, with.begin, with.end, pairs));
   }
-  if (block.sides.size() < count) block.sides.resize(std::max<std::size_t>(count, 2 * room(near, number)));
-  for (const Found& one : found) block.sides[next[one.point]++] = one.side;
+}
+
+/// Numbers the pairs of all blocks, whole words of bits for each. Returns how many numbers there are.
+std::size_t number_pairs(ContactPairs& pairs) {
+  std::size_t count = 0;
+  for (BlockPairs& block : pairs.blocks) {
+    block.first = count;
+    count += (block.count + k_word - 1) / k_word * k_word;
+  }
+  pairs.acts.resize_unset(count / k_word);
+  pairs.closing.resize_unset(count);
+  pairs.impulses.resize_unset(4 * count);
+  pairs.sums.resize_unset(pairs.keeps_sums ? 4 * count : 0);
+  std::fill_n(pairs.sums.data(), pairs.sums.size(), 0.0f);
+  pairs.shares.resize_unset(pairs.points.size());
+  pairs.acting.resize(pairs.blocks.size());
+  return count;
 }
 
 }  // namespace
@@ -258,59 +213,66 @@ void BlockPairs::reserve(std::size_t pairs) {
 }
 
 std::size_t BlockPairs::bytes() const {
-  return own.capacity() * (2 * sizeof(std::uint32_t) + 6 * sizeof(float));
+  return own.capacity() * (2 * sizeof(std::uint32_t) + 6 * sizeof(float)) +
+         bodies.capacity() * sizeof(OtherBody);
 }
 
-ContactRows ContactPairs::rows() const {
-  static_assert(sizeof(ContactPoint) == 12 * sizeof(float) && sizeof(ContactVelocity) == 4 * sizeof(float));
-  return {points.empty() ? nullptr : points.front().position.data(),
-          velocity.empty() ? nullptr : velocity.front().velocity.data()};
+void BlockCandidates::reserve(std::size_t fews_near) {
+  if (fews.size() >= fews_near) return;
+  fews.resize(fews_near);
+  squares.resize(fews_near);
+}
+
+std::size_t BlockCandidates::bytes() const {
+  return fews.capacity() * sizeof(std::uint32_t) + squares.capacity() * sizeof(float) +
+         own.capacity() * sizeof(OwnFew) + bodies.capacity() * sizeof(std::uint32_t);
+}
+
+RoundColumns ContactPairs::round(const BlockPairs& block) {
+  const std::size_t k = block.first;
+  return {
+      acts.data() + k / k_word, {closing.x() + k, closing.y() + k, closing.z() + k}, impulses.data() + 4 * k};
+}
+
+TouchingPoints ContactPairs::touching(std::size_t block) const {
+  return {points.first[block], points.first[block + 1], sides[block].own, sides[block].earlier.data(),
+          sides[block].earlier.size()};
 }
 
 std::size_t ContactPairs::bytes() const {
-  std::size_t sum = near.bytes() + positions.bytes() + few_low.bytes() + few_high.bytes() +
-                    first_few.bytes() + acts.bytes() + impulses.bytes() + sums.bytes() +
-                    points.capacity() * sizeof(ContactPoint) + velocity.capacity() * sizeof(ContactVelocity);
+  std::size_t sum = near.bytes() + points.bytes() + closing.bytes() + acts.bytes();
+  for (const Column<float>* column : {&impulses, &shares, &sums}) sum += column->bytes();
   for (const BlockPairs& block : blocks) sum += block.bytes();
-  for (const BlockCandidates& block : candidates)
-    sum += (block.points.capacity() + block.ends.capacity()) * sizeof(std::uint32_t);
-  for (const BlockSides& block : sides)
-    sum += block.points.capacity() * sizeof(BlockSides::Touching) +
-           block.sides.capacity() * sizeof(BlockSides::Side);
+  for (const BlockCandidates& block : candidates) sum += block.bytes();
+  for (const BlockSides& block : sides) sum += block.earlier.capacity() * sizeof(PointPairs);
   return sum;
 }
 
 bool find_contact_pairs(const VectorColumn& positions, const VectorColumn& velocities,
                         const std::uint16_t* pin, const std::vector<TouchingBody>& bodies,
                         const BodyContactStep& step, const Execution& execution, ContactPairs& pairs) {
-  const bool anew = find_near_blocks(positions, velocities, bodies, step, execution, pairs.near);
-  if (pairs.near.row.empty()) return false;
-  if (anew)
-    gather(positions, velocities, pin, bodies, execution.threads, pairs);
-  else
-    gather_velocities(velocities, execution.threads, pairs);
+  ContactPoints& points = pairs.points;
+  bool anew = find_near_blocks(positions, velocities, bodies, step, execution, pairs.near);
+  if (anew) place_points(positions, pin, bodies, pairs.near, execution, points);
+  if (points.empty()) return false;
+  move_points(velocities, pairs.near, execution, points);
+  if (anew || !are_as_found(points)) {
+    anew = true;
+    std::swap(points.motion, points.found_motion);
+    if (step.slack > 0)
+      for (float& spread : points.found_motion.spread) spread += step.slack;
+  }
   pairs.blocks.resize(pairs.near.blocks.blocks.size());
   pairs.candidates.resize(pairs.blocks.size());
   pairs.sides.resize(pairs.blocks.size());
-  const ContactLanes& lanes = MALLOW_SELECT(execution.level, contact_lanes);
   const PairStep pair_step{step.time_step, step.max_push, pushed_together(step)};
   parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
-    if (anew) find_all_candidates(number, lanes, pairs);
-    find_pairs(number, pair_step, lanes, pairs);
+    if (anew) find_near_fews(number, bodies, step, MALLOW_SELECT(execution.level, point_lanes), pairs);
+    find_pairs(number, pair_step, execution, pairs);
   });
-  std::size_t count = 0;
-  for (BlockPairs& block : pairs.blocks) {
-    block.first = count;
-    count += (block.count + k_cluster - 1) / k_cluster * k_cluster;  // lanes write whole clusters
-  }
-  if (count == 0) return false;
-  pairs.acts.resize_unset(count);
-  pairs.impulses.resize_unset(4 * count);
-  pairs.sums.resize_unset(pairs.keeps_sums ? 4 * count : 0);
-  std::fill_n(pairs.sums.data(), pairs.sums.size(), 0.0f);
-  parallel_for(execution.threads, pairs.near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
-    find_sides(static_cast<std::uint32_t>(number), pairs);
-  });
+  if (number_pairs(pairs) == 0) return false;
+  parallel_for(execution.threads, pairs.near.blocks,
+               [&](const RangeBlocks::Block&, std::size_t number) { find_sides(number, pairs); });
   return true;
 }
 

@@ -1,88 +1,68 @@
 #pragma once
 
-#include <span>
-
-#include "contact/contact_lanes.h"
-#include "contact/near_blocks.h"
+#include "contact/contact_points.h"
 
 namespace mallow {
 
-/// A particle near another body: three rows of four floats, as lanes load them.
-struct ContactPoint {
-  Vec3 position;       ///< [m]
-  float half_spacing;  ///< h/2 [m]
-  Vec3 outward;        ///< N/|N|, which way out of its body it lies; 0 where nothing says it
-  float depth;         ///< |N|, from the middle of its region to it [m]
-  float inverse_mass;  ///< 1/m, 0 where it is pinned [1/kg]
-  float friction;      ///< √μ_f
-  float adhesion;      ///< √a [√Pa]
-  float unused;
-};
-
-/// A velocity, and the inverse mass of its point times how many of its pairs act in a round: a row of four
-/// floats.
-struct ContactVelocity {
-  Vec3 velocity;  ///< [m/s]
-  float share;    ///< [1/kg]
-};
-
-/// Pairs of the points of one block with those of later ones.
+/// Pairs of the points of one block with those of later ones: body by body, and of one body in the order of
+/// both points.
 struct BlockPairs {
   std::size_t count = 0;
   std::size_t first = 0;  ///< number of the first among the pairs of all blocks
   std::vector<std::uint32_t> own, other;
   std::vector<float> normal_x, normal_y, normal_z, target, sticks, friction;
+  struct OtherBody {
+    std::uint32_t body;
+    std::uint32_t begin, end;  ///< pairs with it, at least one
+  };
+  std::vector<OtherBody> bodies;  ///< ascending
 
-  std::span<const std::uint32_t> others() const { return {other.data(), count}; }
   PairColumns columns();
   /// Room for so many pairs, and what lanes write behind them.
   void reserve(std::size_t pairs);
   std::size_t bytes() const;
 };
 
-/// Points of later blocks of other bodies near each few points of one block, one's behind the other's.
+/// Fews of later blocks of other bodies near those of one block, body by body.
 struct BlockCandidates {
-  std::vector<std::uint32_t> points;
-  std::vector<std::uint32_t> ends;  ///< of each few
+  std::vector<std::uint32_t> fews;
+  std::vector<float> squares;  ///< of how near each other points of the two are that may touch [m²]
+  std::vector<OwnFew> own;
+  std::size_t own_count = 0;
+  std::vector<std::uint32_t> bodies;  ///< ascending
+
+  void reserve(std::size_t fews_near);
+  std::size_t bytes() const;
 };
 
-/// The points of one block that have pairs, and for each which, one point's behind the other's: those in
-/// which it is the first, then those in which it is the second.
+/// In which pairs the points of one block are: those of the block, and of earlier ones those with its body.
 struct BlockSides {
-  struct Touching {
-    std::uint32_t point, end;
-  };
-  struct Side {
-    std::uint32_t pair;  ///< of the pairs of all blocks
-    float sign;          ///< −1 where the point is the second
-  };
-  std::vector<Touching> points;
-  std::vector<Side> sides;
+  PointPairs own;
+  std::vector<PointPairs> earlier;
 };
 
 /// What a step of contact between bodies needs and finds.
 struct ContactPairs {
   NearBlocks near;
+  ContactPoints points;
   // By block.
   std::vector<BlockCandidates> candidates;
   std::vector<BlockPairs> blocks;
   std::vector<BlockSides> sides;
-  // By point.
-  std::vector<ContactPoint> points;
-  std::vector<ContactVelocity> velocity;
-  VectorColumn positions;
-  // By k_cluster points of a block, those of one block behind those of the other.
-  Column<std::uint32_t> first_few;  ///< per block, and one more
-  VectorColumn few_low, few_high;   ///< corners of the box around them [m]
-  // By pair, of a round.
-  Column<float> acts;       ///< 1 or 0
-  Column<float> impulses;   ///< on the first point, rows of four: three, and nothing [N s]
+  // Of a round: by pair see RoundColumns, by point see ContactLanes::share.
+  Column<std::uint64_t> acts;
+  VectorColumn closing;
+  Column<float> impulses;
+  Column<float> shares;
   bool keeps_sums = false;  ///< somebody asks what pairs gave
   Column<float> sums;       ///< of the impulses of all rounds; empty where nobody asks
 
-  std::vector<float> partial_miss;  ///< scratch
+  // By block, of a round.
+  std::vector<float> partial_miss;
+  std::vector<std::uint32_t> acting;  ///< see ContactLanes::share
 
-  ContactRows rows() const;
+  RoundColumns round(const BlockPairs& block);
+  TouchingPoints touching(std::size_t block) const;
   std::size_t bytes() const;
 };
 

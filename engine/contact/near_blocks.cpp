@@ -10,35 +10,26 @@
 namespace mallow {
 namespace {
 
-/// The motion of some particles that is seen from their mean. What is no number is left for later phases to
-/// find: it counts as no motion here.
-Moving motion_of(const VectorColumn& positions, const VectorColumn& velocities, std::size_t begin,
-                 std::size_t end) {
-  Moving moving{.box = box_around(positions, begin, end), .velocity = {0, 0, 0}};
-  for (std::size_t i = begin; i < end; ++i) moving.velocity += velocities.get(i);
-  moving.velocity /= static_cast<float>(end - begin);
-  if (!moving.velocity.allFinite()) moving.velocity.setZero();
-  float square = 0;
-  for (std::size_t i = begin; i < end; ++i)
-    square = std::max(square, (velocities.get(i) - moving.velocity).squaredNorm());
-  moving.spread = std::sqrt(square);
-  return moving;
-}
-
 void join(Moving& all, const Moving& part) {
   all.box = box_around(all.box, part.box);
   all.spread = std::max(all.spread, (part.velocity - all.velocity).norm() + part.spread);
 }
 
 void find_block_motions(const VectorColumn& positions, const VectorColumn& velocities,
-                        const std::vector<TouchingBody>& bodies, const Threads& threads, NearBlocks& near) {
+                        const std::vector<TouchingBody>& bodies, const Execution& execution,
+                        NearBlocks& near) {
   near.blocks.clear();
   for (const TouchingBody& body : bodies) near.blocks.add(body.end - body.begin);
   const std::vector<RangeBlocks::Block>& blocks = near.blocks.blocks;
   near.block_motion.resize(blocks.size());
-  parallel_for(threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
+  const PointLanes& lanes = MALLOW_SELECT(execution.level, point_lanes);
+  parallel_for(execution.threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t number) {
     const std::size_t first = bodies[block.range].begin;
-    near.block_motion[number] = motion_of(positions, velocities, first + block.begin, first + block.end);
+    LaneMotion found;
+    lanes.motion(raw(positions), raw(velocities), first + block.begin, first + block.end, found);
+    near.block_motion[number] = {{Eigen::Map<const Vec3>(found.low), Eigen::Map<const Vec3>(found.high)},
+                                 Eigen::Map<const Vec3>(found.velocity),
+                                 found.spread};
   });
 }
 
@@ -125,25 +116,11 @@ void find_other_blocks(const std::vector<TouchingBody>& bodies, const BodyContac
   }
 }
 
-/// Rows of a block that are near one of the others. Returns how many.
-std::uint32_t find_points(const VectorColumn& positions, const NearBlocks& near, std::uint32_t number,
-                          std::size_t begin, std::size_t end, const ContactLanes& lanes,
-                          std::uint32_t* found) {
-  thread_local std::vector<LaneBox> boxes;
-  boxes.clear();
-  for (const auto& [other, reach] : near.others[number])
-    boxes.push_back(lane_box(near.block_motion[other].box, reach));
-  std::uint32_t rows[k_block + k_cluster];
-  const std::size_t count = lanes.in_boxes(raw(positions), begin, end, boxes.data(), boxes.size(), rows);
-  std::copy_n(rows, count, found);
-  return static_cast<std::uint32_t>(count);
-}
-
 }  // namespace
 
 std::size_t NearBlocks::bytes() const {
   std::size_t sum =
-      first_point.bytes() + row.bytes() + found.bytes() + tree.bytes() + boxes.capacity() * sizeof(Aabb) +
+      tree.bytes() + boxes.capacity() * sizeof(Aabb) +
       (block_motion.capacity() + body_motion.capacity() + found_motion.capacity()) * sizeof(Moving) +
       others.capacity() * sizeof(others.front()) + blocks.blocks.capacity() * sizeof(RangeBlocks::Block) +
       blocks.first.capacity() * sizeof(std::uint32_t);
@@ -159,7 +136,7 @@ LaneBox lane_box(const Aabb& box, float reach) {
 bool find_near_blocks(const VectorColumn& positions, const VectorColumn& velocities,
                       const std::vector<TouchingBody>& bodies, const BodyContactStep& step,
                       const Execution& execution, NearBlocks& near) {
-  find_block_motions(positions, velocities, bodies, execution.threads, near);
+  find_block_motions(positions, velocities, bodies, execution, near);
   if (step.again && are_as_found(near)) return false;
   for (Moving& block : near.block_motion) block.spread += step.slack;
   near.found_motion = near.block_motion;
@@ -167,24 +144,9 @@ bool find_near_blocks(const VectorColumn& positions, const VectorColumn& velocit
   place_bodies(bodies, step, near);
   const std::size_t blocks = near.blocks.blocks.size();
   near.others.resize(blocks);
-  near.first_point.resize_unset(blocks + 1);
-  near.found.resize_unset(positions.size());
-  const ContactLanes& lanes = MALLOW_SELECT(execution.level, contact_lanes);
-  parallel_for(execution.threads, near.blocks, [&](const RangeBlocks::Block& block, std::size_t b) {
-    const auto number = static_cast<std::uint32_t>(b);
-    const std::size_t first = bodies[block.range].begin;
-    find_other_blocks(bodies, step, number, near);
-    near.first_point[b + 1] = find_points(positions, near, number, first + block.begin, first + block.end,
-                                          lanes, near.found.data() + first + block.begin);
+  parallel_for(execution.threads, near.blocks, [&](const RangeBlocks::Block&, std::size_t number) {
+    find_other_blocks(bodies, step, static_cast<std::uint32_t>(number), near);
   });
-  near.first_point[0] = 0;
-  for (std::size_t b = 0; b < blocks; ++b) near.first_point[b + 1] += near.first_point[b];
-  near.row.resize_unset(near.first_point[blocks]);
-  for (std::size_t b = 0; b < blocks; ++b) {
-    const RangeBlocks::Block& block = near.blocks.blocks[b];
-    std::copy_n(near.found.data() + bodies[block.range].begin + block.begin,
-                near.first_point[b + 1] - near.first_point[b], near.row.data() + near.first_point[b]);
-  }
   return true;
 }
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/contact_lanes.h"
+#include "contact/point_lanes.h"
 #include "core/box_tree.h"
 #include "core/column.h"
 #include "core/execution.h"
@@ -44,8 +44,7 @@ struct Moving {
   float spread = 0;  ///< [m/s]
 };
 
-/// Blocks of rows that may come near one of another body in this step, and the points that do: particles in
-/// the box of another block, as much wider as the two may come nearer. All others are not looked at again.
+/// Blocks of rows that may come near one of another body in this step. All others are not looked at again.
 struct NearBlocks {
   RangeBlocks blocks;
   struct Other {
@@ -53,8 +52,6 @@ struct NearBlocks {
     float reach;  ///< pairs farther apart do not touch in this step [m]
   };
   std::vector<std::vector<Other>> others;  ///< per block, ascending
-  Column<std::uint32_t> first_point;       ///< per block, and one more
-  Column<std::uint32_t> row;               ///< of each point, ascending
 
   // Scratch.
   std::vector<Moving> block_motion, body_motion;
@@ -62,7 +59,6 @@ struct NearBlocks {
   Vec3 mean_velocity;                ///< of bodies, where they were looked for [m/s]
   std::vector<Aabb> boxes;           ///< of bodies, as wide as they may reach
   BoxTree tree;                      ///< of these
-  Column<std::uint32_t> found;       ///< per block, from its first row on
 
   std::size_t bytes() const;
 };

@@ -23,6 +23,9 @@ constexpr std::int64_t k_sort_interval = 60;
 /// Way of a particle in one step, in spacings, that iterations of the volume constraint may add before those
 /// that may touch are looked for again: several times what gravity adds, and few more pairs to try.
 constexpr float k_contact_slack = 0.05f;
+/// How far apart two particles may be that touch in a step, in support radii. Each moves by one less half a
+/// spacing (step_length.cpp), so 2.06 are enough; more only if what they are thrown by is no number.
+constexpr float k_farthest_pair = 2.5f;
 
 }  // namespace
 
@@ -246,16 +249,16 @@ namespace {
 /// Bodies that slept until something pushed them move on with the others. They were at rest, where all that
 /// acts on a particle cancels: v' is what they got.
 void wake_pushed(Simulation::State& state, float time_step) {
-  const NearBlocks& near = state.contact_pairs.near;
-  if (near.row.empty()) return;
+  const ContactPairs& pairs = state.contact_pairs;
+  if (pairs.points.empty()) return;
   std::vector<std::uint32_t> pushed;
-  for (std::size_t k = 0; k < state.contact_pairs.sides.size(); ++k) {
-    const std::uint32_t body = near.blocks.blocks[k].range;
+  for (std::size_t k = 0; k < pairs.blocks.size(); ++k) {
+    const std::uint32_t body = pairs.near.blocks.blocks[k].range;
     if (state.bodies[body].island == 0 || (!pushed.empty() && pushed.back() == body)) continue;
-    const auto moves = [&](const BlockSides::Touching& point) {
-      return !state.contact_pairs.velocity[point.point].velocity.isZero(0);
-    };
-    if (std::ranges::any_of(state.contact_pairs.sides[k].points, moves)) pushed.push_back(body);
+    std::uint32_t point = pairs.points.first[k];
+    const std::uint32_t end = pairs.points.first[k + 1];
+    while (point < end && pairs.points.velocity_of(point).isZero(0)) ++point;
+    if (point < end) pushed.push_back(body);
   }
   for (const std::uint32_t body : pushed) {
     wake_island(state, state.bodies[body]);
@@ -286,7 +289,7 @@ void touch_bodies(Simulation::State& state, float time_step, const ContactCall& 
   const float spacing = std::ranges::min(state.touching, {}, &TouchingBody::spacing).spacing;
   resolve_body_contacts(store.position, store.pin.empty() ? nullptr : store.pin.data(), state.touching,
                         {.time_step = time_step,
-                         .reach = 2 * state.support_radius(),
+                         .reach = k_farthest_pair * state.support_radius(),
                          .max_push = state.support_radius() / (10.0f * state.base_step()),
                          .again = call.again,
                          .slack = state.keeps_volume() ? k_contact_slack * spacing / time_step : 0.0f},

@@ -96,17 +96,10 @@ void find_islands(Simulation::State& state) {
     if (state.bodies[b].island != 0) join_first(islands.first_of_sleepers[state.bodies[b].island], b);
   }
   const ContactPairs& pairs = state.contact_pairs;
-  const NearBlocks& near = pairs.near;
-  if (!state.bodies_touch() || near.row.empty()) return;
-  for (std::size_t k = 0; k < pairs.blocks.size(); ++k) {
-    const BodyState* other = nullptr;  // pairs with one body follow each other
-    for (const std::uint32_t point : pairs.blocks[k].others()) {
-      const std::uint32_t row = near.row[point];
-      if (other && row >= other->begin && row < other->end) continue;
-      other = &std::as_const(state).body_of(row);
-      islands.sets.join(near.blocks.blocks[k].range, state.place_of(*other));
-    }
-  }
+  if (!state.bodies_touch() || pairs.points.empty()) return;
+  for (std::size_t k = 0; k < pairs.blocks.size(); ++k)
+    for (const BlockPairs::OtherBody& other : pairs.blocks[k].bodies)
+      islands.sets.join(pairs.near.blocks.blocks[k].range, other.body);
 }
 
 void fall_asleep(Simulation::State& state, std::uint32_t island, BodyState& body) {

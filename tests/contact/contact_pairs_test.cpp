@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
+#include <vector>
 
 #include "contact/body_contact.h"
 
@@ -80,6 +82,55 @@ TEST(contact_pairs, are_the_same_where_those_who_may_touch_are_not_looked_for_ag
     for (std::size_t i = 0; i < once.size(); ++i) ASSERT_EQ(again.get(i), once.get(i)) << change;
     const bool looked = found.empty() || found[0].velocity != kept.near.found_motion[0].velocity;
     EXPECT_EQ(looked, found.empty() || change > 1) << change;
+  }
+}
+
+TEST(contact_pairs, are_all_that_come_near_enough_in_the_step_body_by_body_in_the_order_of_rows) {
+  constexpr BodyContactStep step{.time_step = k_time_step, .reach = 8, .max_push = 1};
+  for (const float speed : {0.0f, 1.0f, 8.0f}) {
+    SCOPED_TRACE(speed);
+    Cubes cubes;
+    cubes.change_velocities(speed);
+    // A third of the rows belong to a body of their own, in one group with the second.
+    cubes.bodies[1].end = 1200;
+    cubes.bodies.push_back(cubes.bodies[1]);
+    cubes.bodies.back().begin = 1200;
+    cubes.bodies.back().end = cubes.position.size();
+    ContactPairs pairs;
+    cubes.resolved(step, pairs);
+    struct Pair {
+      std::size_t body, own, other;
+      bool operator==(const Pair&) const = default;
+    };
+    std::vector<Pair> found, expected;
+    const NearBlocks& near = pairs.near;
+    for (std::size_t b = 0; b < pairs.blocks.size(); ++b)
+      for (const auto& [body, begin, end] : pairs.blocks[b].bodies)
+        for (std::size_t k = begin; k < end; ++k) {
+          std::size_t other = near.blocks.first[body];
+          while (pairs.points.first[other + 1] <= pairs.blocks[b].other[k]) ++other;
+          found.push_back(
+              {body, pairs.points.first_row[b] + pairs.blocks[b].own[k] - pairs.points.first[b],
+               pairs.points.first_row[other] + pairs.blocks[b].other[k] - pairs.points.first[other]});
+        }
+    for (std::size_t b = 0; b < pairs.blocks.size(); ++b) {
+      const RangeBlocks::Block& block = near.blocks.blocks[b];
+      const TouchingBody& own = cubes.bodies[block.range];
+      for (std::size_t body = block.range + 1; body < cubes.bodies.size(); ++body) {
+        if (cubes.bodies[body].group == own.group) continue;
+        for (std::size_t i = own.begin + block.begin; i < own.begin + block.end; ++i)
+          for (std::size_t j = cubes.bodies[body].begin; j < cubes.bodies[body].end; ++j) {
+            const float most =
+                k_time_step * (cubes.velocity.get(i) - cubes.velocity.get(j)).norm() + pushed_together(step);
+            const float gap = (cubes.position.get(i) - cubes.position.get(j)).norm() - 1;
+            ASSERT_GT(std::abs(gap - most), 1e-6f);  // no pair is told by how it was rounded
+            if (gap <= most) expected.push_back({body, i, j});
+          }
+      }
+    }
+    EXPECT_GT(expected.size(), 100u);
+    EXPECT_EQ(found.size(), expected.size());
+    EXPECT_TRUE(found == expected);
   }
 }
 
