@@ -1,6 +1,7 @@
 // Bodies that were torn: their parts become bodies of their own.
 #include <algorithm>
 #include <map>
+#include <ranges>
 
 #include "shape_matching/parts.h"
 #include "shape_matching/reshape.h"
@@ -13,11 +14,12 @@ namespace {
 
 using Places = std::vector<std::uint32_t>;  ///< of particles of a body, ascending
 
-/// The particle whose part keeps the id, where an emitter holds one.
+/// The particle whose part keeps the id, where an emitter holds one: of the last layer, as new ones are put
+/// behind that.
 std::optional<std::uint32_t> held_particle(const Simulation::State& s, const BodyState& body) {
   for (const EmitterState& emitter : s.emitters)
     if (emitter.body == body.id)
-      for (const std::vector<ParticleId>& layer : emitter.held)
+      for (const std::vector<ParticleId>& layer : std::views::reverse(emitter.held))
         for (const ParticleId id : layer)
           if (const std::optional<std::size_t> row = s.store.slots.find(id);
               row && *row >= body.begin && *row < body.end)  // an earlier part may have taken some along

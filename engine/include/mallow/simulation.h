@@ -177,9 +177,11 @@ class MALLOW_EXPORT Simulation {
   std::size_t remove_particles(const Aabb& region);
   /// Parts of a body that shape matching no longer holds together become bodies of their own, of the same
   /// material, that rest and move as they did: they touch each other as bodies do. The largest keeps the id,
-  /// or the one that an emitter holds; the others are named after it, and `split` events name them. Parts of
-  /// fewer than four particles stay with it. Returns all of them, the one that keeps the id first: that alone
-  /// where the body is in one part. Throws ConfigError where there is none of this id. See Body::splits.
+  /// or the one that an emitter puts new layers behind; the others are named after it, and `split` events
+  /// name them. Parts of fewer than four particles stay with it. Returns all of them, the one that keeps the
+  /// id first: that alone where the body is in one part now. What it lost before, by an earlier call or as
+  /// Body::splits says, is a body of its own and no part of it any more: the events of then named it. Throws
+  /// ConfigError where there is none of this id.
   std::vector<BodyId> split(BodyId body);
   /// An obstacle from the next step on. Throws ConfigError with every value that is out of range.
   ColliderId add_collider(const Collider& collider);
