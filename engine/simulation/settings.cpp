@@ -116,6 +116,7 @@ void settle(Simulation::State& state) {
   const TimeStepSource source = resolve_time_step(state, scale, config);
   Checks checks;
   for (const MaterialState& material : state.materials) {
+    if (!material.is_there()) continue;
     check_stiffness(config, material.settings, material.name, checks);
     if (!material.settings.pressure_coefficient &&
         !std::isfinite(default_pressure_coefficient(*config.support_radius, 0, 0, *config.time_step)))
@@ -191,7 +192,7 @@ void change_solver(Simulation::State& state, const SolverConfig& config) {
   checks.finish();
   if (config.time_step)
     for (const MaterialState& material : state.materials)
-      check_stiffness(config, material.settings, material.name, checks);
+      if (material.is_there()) check_stiffness(config, material.settings, material.name, checks);
   if (config.time_step) check_moduli(state, config, checks);
   checks.finish();
   const bool counted = counts_steps(state.config);

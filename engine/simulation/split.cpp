@@ -109,6 +109,8 @@ std::vector<BodyId> split_body(Simulation::State& s, BodyState& body) {
     rebuild_shape(s, part, shapes[k - 1].carried);
     ids.push_back(part.id);
     s.next_events.push_back({.kind = BodyEvent::Kind::split, .body = body.id, .other = part.id});
+    ++part.material->bodies;
+    s.body_names.add(part);
     s.bodies.insert(++place, std::move(part));
   }
   number_bodies(s);

@@ -120,7 +120,7 @@ float Simulation::spacing(BodyId id) const {
   return std::as_const(*state_).body(id).spacing;
 }
 MaterialId Simulation::material(BodyId id) const {
-  return MaterialId{std::as_const(*state_).body(id).material->number};
+  return std::as_const(*state_).body(id).material->id;
 }
 
 std::size_t Simulation::row(ParticleId id) const {

@@ -153,7 +153,8 @@ class MALLOW_EXPORT Simulation {
   /// @copydoc Simulation(Simulation&&)
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// A material that bodies share. Throws ConfigError with every value that is out of range.
+  /// A material that bodies share; it stays, whoever is made of it. Throws ConfigError with every value that
+  /// is out of range.
   MaterialId add_material(const Material& material, std::string name = {});
   /// Adds a body; its particles get the next ids. Throws ConfigError, and changes nothing, also where a point
   /// is nearer than a tenth of the spacing to another one of the body or to a particle that is there, or
@@ -343,8 +344,8 @@ class MALLOW_EXPORT Simulation {
   std::size_t body_count() const;
   /// Those that there are, in the order of their rows.
   std::vector<BodyId> bodies() const;
-  /// The first body of this name, in the order of bodies(); nullopt where none is called so. Compares with
-  /// each name: keep the id.
+  /// The first body of this name, in the order of bodies(); nullopt where none is called so. The first call
+  /// looks at each body, later ones only at those of the name.
   std::optional<BodyId> find_body(std::string_view name) const;
   /// As it was added; where that was without one, a name was made. Valid until bodies come or go. Throws
   /// ConfigError where there is none of this id, or no longer.
