@@ -247,10 +247,16 @@ void Simulation::prepare() {
 void prepare(Simulation::State& s) {
   s.refuse_in_callback();
   if (s.prepared) return;
-  Checks checks;
-  if (s.store.size() == 0 && s.scale.spacing == 0)
-    checks.problem("body", "no particles: a simulation needs at least one");
-  checks.finish();
+  if (s.store.size() == 0 && s.scale.spacing == 0) {  // nothing follows from it, and nothing is settled
+    Checks checks;
+    if (!s.config.time_step)
+      checks.problem(
+          "solver.time_step",
+          "is missing, and there are no particles by whose spacing it would follow; give it, or add "
+          "a body first");
+    checks.finish();
+    return;
+  }
   resolve_settings(s);
   check_elasticities(s);
   check_memory(s);

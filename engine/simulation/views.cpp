@@ -216,7 +216,7 @@ SimulationInfo Simulation::info() const {
   info.bytes = s.store.bytes() + s.sph.bytes() + s.fluid_order.bytes() + s.user_acceleration.bytes() +
                s.far_position.bytes() + s.region_scratch.bytes() + s.led_position.bytes() +
                s.contact_pairs.bytes() + s.volume.bytes();
-  info.support_radius = s.support_radius();
+  info.support_radius = s.config.support_radius.value_or(0.0f);  // not settled where nothing has come yet
   info.time_step = s.base_step();
   info.time_step_source = s.time_step_source;
   info.longest_step = s.longest_step();

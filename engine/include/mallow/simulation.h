@@ -322,8 +322,9 @@ class MALLOW_EXPORT Simulation {
 
   /// Allocates, sorts and builds what the first step needs; step() does it where it was not done. The first
   /// call settles what a config leaves out, from the bodies that are there; later ones do not change it.
-  /// Throws ConfigError where there are no particles, nothing says how long a step is, steps are too long for
-  /// a material's springs, or neighbour lists would take more than memory_limit.
+  /// Where no particle has come yet, they are left to a later call, and steps only pass the time: a level may
+  /// begin empty where SolverConfig::time_step is given. Throws ConfigError where nothing says how long a step
+  /// is, steps are too long for a material's springs, or neighbour lists would take more than memory_limit.
   void prepare();
   /// One step of algorithm 3.3 of the paper. Throws StepError and keeps the state where Δt would fall below
   /// Δt0/1000 or a number is not finite: it names the particle and the phase.
