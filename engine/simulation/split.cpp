@@ -1,7 +1,6 @@
 // Bodies that were torn: their parts become bodies of their own.
 #include <algorithm>
 #include <map>
-#include <ranges>
 
 #include "shape_matching/parts.h"
 #include "shape_matching/reshape.h"
@@ -19,8 +18,8 @@ using Places = std::vector<std::uint32_t>;  ///< of particles of a body, ascendi
 std::optional<std::uint32_t> held_particle(const Simulation::State& s, const BodyState& body) {
   for (const EmitterState& emitter : s.emitters)
     if (emitter.body == body.id)
-      for (const std::vector<ParticleId>& layer : std::views::reverse(emitter.held))
-        for (const ParticleId id : layer)
+      for (auto layer = emitter.held.rbegin(); layer != emitter.held.rend(); ++layer)
+        for (const ParticleId id : *layer)
           if (const std::optional<std::size_t> row = s.store.slots.find(id);
               row && *row >= body.begin && *row < body.end)  // an earlier part may have taken some along
             return static_cast<std::uint32_t>(*row - body.begin);

@@ -64,6 +64,7 @@ void AdvanceReport::add(const StepReport& step) {
   max_velocity = std::max(max_velocity, step.max_velocity);
   if (step.limited) ++limited_steps;
   updated_references += step.updated_references;
+  drained += static_cast<std::int64_t>(step.drained);
   volume_iterations += step.volume_iterations;
   largest_compression = std::max(largest_compression, step.largest_compression);
   for (std::size_t i = 0; i < k_phase_count; ++i) seconds[i] += step.seconds[i];

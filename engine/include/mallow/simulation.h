@@ -160,7 +160,8 @@ class MALLOW_EXPORT Simulation {
   /// is nearer than a tenth of the spacing to another one of the body or to a particle that is there, or
   /// where floats cannot tell points apart so far from 0.
   BodyId add_body(const Body& body, MaterialId material, std::string name = {});
-  /// Adds a body of a material of its own.
+  /// Adds a body of a material of its own, which material(BodyId) names: others may be made of it too. It goes
+  /// with the last of them, and its id names nobody again.
   BodyId add_body(const Body& body, const Material& material, std::string name = {});
   /// Adds particles to a body, with its spacing: all of it is one piece, with one reference shape. In one
   /// that already moved the others keep where they rest, and a new particle rests beside the one that it is
@@ -192,8 +193,9 @@ class MALLOW_EXPORT Simulation {
   void set_collider(ColliderId id, const Collider& collider);
   /// It is gone from the next step on. Throws ConfigError where there is none of this id.
   void remove_collider(ColliderId collider);
-  /// A nozzle, and a body that is its strand: what it holds behind it is there at once. Throws what
-  /// add_body() throws.
+  /// A nozzle, and a body that is its strand: what it holds behind it is there at once, and is part of the
+  /// body in all that is asked of it (volume(), heat(), bounds(), motion()); held() names it, for who wants
+  /// only what has left. Throws what add_body() throws.
   EmitterId add_emitter(const Emitter& emitter, MaterialId material, std::string name = {});
   /// Its strand.
   BodyId body(EmitterId emitter) const;
@@ -291,7 +293,7 @@ class MALLOW_EXPORT Simulation {
   std::size_t add_impulse(const Vec3& center, float radius, const Vec3& impulse);
   /// A body that is not enabled stands where it is, is met by nothing, and costs nothing. It is still seen in
   /// every view, goes on as fast as it was when it is enabled again, and nothing may be added where it
-  /// overlaps it. Throws ConfigError where there is none of this id, or no longer.
+  /// overlaps it: enabled again, the two would stand in one place. Throws ConfigError where there is none of this id, or no longer.
   void enable(BodyId body, bool enabled);
   /// As set last; true at first. Throws as enable() does.
   bool is_enabled(BodyId body) const;
