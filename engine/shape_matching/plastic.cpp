@@ -77,6 +77,7 @@ bool any_below(std::size_t n, const Threads& threads, const Holds& holds) {
 /// Whether two are nearer than `near` in one place and farther apart than `far` in the other.
 bool any_part_ways(const VectorColumn& here, float near, const VectorColumn& there, float far,
                    const Execution& execution, FlowScratch& scratch) {
+  if (here.size() < 2) return false;  // a region that has flowed may be the first of no particle
   const CellGrid& grid = scratch.grid;
   build_cell_grid(here, 0, here.size(), near, execution, scratch.grid);
   build_neighbor_lists(grid, near, execution, scratch.lists);
