@@ -77,6 +77,7 @@ bool any_below(std::size_t n, const Threads& threads, const Holds& holds) {
 /// Whether two are nearer than `near` in one place and farther apart than `far` in the other.
 bool any_part_ways(const VectorColumn& here, float near, const VectorColumn& there, float far,
                    const Execution& execution, FlowScratch& scratch) {
+  if (here.size() < 2) return false;  // a region that has flowed may be the first of no particle
   const CellGrid& grid = scratch.grid;
   build_cell_grid(here, 0, here.size(), near, execution, scratch.grid);
   build_neighbor_lists(grid, near, execution, scratch.lists);
@@ -88,9 +89,17 @@ bool any_part_ways(const VectorColumn& here, float near, const VectorColumn& the
   });
 }
 
-/// Whether two that are in one's region, and have flowed, are farther apart than `far`.
-bool any_torn(const VectorColumn& positions, std::size_t begin, float far, const Execution& execution,
-              const ShapeMatching& shape, FlowScratch& scratch) {
+float most_flow(const ShapeMatching& shape) {
+  const std::span<const float> flow = shape.plastic.flow.span();
+  return flow.empty() ? 0.0f : *std::ranges::max_element(flow);
+}
+
+}  // namespace
+
+bool is_torn(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
+             const Execution& execution, const ShapeMatching& shape, FlowScratch& scratch) {
+  if (most_flow(shape) == 0) return false;
+  const float far = (1 + limits.tear_strain) * shape.region_radius;
   if (shape.region_stride != 1) {  // regions are not those of all particles: who is near is searched for
     gather_flowed(positions, begin, 0, shape, scratch);
     return any_part_ways(scratch.rest, shape.region_radius, scratch.here, far, execution, scratch);
@@ -110,8 +119,6 @@ bool any_torn(const VectorColumn& positions, std::size_t begin, float far, const
     return farthest > far * far;
   });
 }
-
-}  // namespace
 
 std::size_t PlasticColumns::bytes() const {
   std::size_t sum = flow.bytes() + yield.bytes();
@@ -191,15 +198,11 @@ void list_flowed(float least, const ShapeMatching& shape, Column<std::uint32_t>&
 
 bool reframe_is_due(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
                     const Execution& execution, const ShapeMatching& shape, FlowScratch& scratch) {
-  const std::span<const float> flow = shape.plastic.flow.span();
-  const float most = flow.empty() ? 0.0f : *std::ranges::max_element(flow);
+  const float most = most_flow(shape);
   if (most > k_far_flow) return true;
-  if (most == 0 || !(shape.spacing > 0)) return false;
-  const float radius = shape.region_radius;
-  if (any_torn(positions, begin, (1 + limits.tear_strain) * radius, execution, shape, scratch)) return true;
-  if (most <= limits.merge_flow) return false;
+  if (most <= limits.merge_flow || !(shape.spacing > 0)) return false;
   gather_flowed(positions, begin, limits.merge_flow, shape, scratch);
-  return any_part_ways(scratch.here, shape.spacing, scratch.rest, radius, execution, scratch);
+  return any_part_ways(scratch.here, shape.spacing, scratch.rest, shape.region_radius, execution, scratch);
 }
 
 bool has_flowed_too_far(const ShapeMatching& shape) {

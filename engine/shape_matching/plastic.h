@@ -80,10 +80,13 @@ struct FlowScratch {
 };
 /// Particles of a body, ascending, in regions that have flowed by more than `least`.
 void list_flowed(float least, const ShapeMatching& shape, Column<std::uint32_t>& which);
-/// Whether the positions of a body, from row `begin` on, should become its reference shape: a region has
-/// flowed by more than k_far_flow; or two that are in one's region, and have flowed, are farther apart than
-/// 1 + tear_strain of its radius, so that they tear; or two that are not are nearer than a spacing, and both
-/// have flowed by more than merge_flow, so that they merge.
+/// Whether two of a body, from row `begin` on, that are in one's region, and have flowed, are farther apart
+/// than 1 + tear_strain of its radius: then it tears, and its positions should become its reference shape.
+bool is_torn(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
+             const Execution& execution, const ShapeMatching& shape, FlowScratch& scratch);
+/// Whether they should for another reason: a region has flowed by more than k_far_flow; or two that are in no
+/// region of each other are nearer than a spacing, and both have flowed by more than merge_flow, so that they
+/// merge.
 bool reframe_is_due(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
                     const Execution& execution, const ShapeMatching& shape, FlowScratch& scratch);
 /// Whether half of the regions have flowed by more than k_farthest_flow, so that no check is waited for.

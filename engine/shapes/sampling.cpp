@@ -34,10 +34,18 @@ struct Grid {
   }
 };
 
-std::string too_fine(double value) {
+/// Why a spacing gives more points than there may be. Who reads it may have taken centimetres for metres.
+std::string too_fine(const Aabb& bounds, double spacing, const std::string& what) {
+  const double width = static_cast<double>((bounds.max - bounds.min).maxCoeff());
   std::ostringstream text;
-  text << value << " is not allowed: the shape's bounds would hold more than " << k_most_cells
-       << " lattice points";
+  text << spacing << " is not allowed: the shape is " << width << " m wide, " << width / spacing
+       << " spacings, and " << what
+       << "; give a spacing that suits its width, or the width that it is meant to have (size)";
+  return text.str();
+}
+std::string too_many_cells() {
+  std::ostringstream text;
+  text << "its bounds would hold more than " << k_most_cells << " lattice points";
   return text.str();
 }
 
@@ -52,7 +60,7 @@ Grid grid_within(const Aabb& bounds, float spacing, unsigned alignment) {
     const double count =
         on_point ? 2.0 * std::floor(half / spacing) + 1.0 : 2.0 * std::floor(half / spacing + 0.5);
     cells *= std::max(count, 1.0);
-    if (cells > k_most_cells) throw ConfigError("spacing", too_fine(spacing));
+    if (cells > k_most_cells) throw ConfigError("spacing", too_fine(bounds, spacing, too_many_cells()));
     grid.first[axis] = double(bounds.min[axis]) + half - 0.5 * (count - 1.0) * spacing;
     grid.count[std::size_t(axis)] = static_cast<std::int64_t>(count);
   }
@@ -331,7 +339,9 @@ Body sample(const ImplicitShape& shape, const Sampling& sampling) {
     throw ConfigError(sampling.spacing ? "spacing" : "count", text.str());
   }
   if (chosen.count > k_most_particles)
-    throw ConfigError("spacing", std::to_string(chosen.count) + " points lie inside: " + k_too_many);
+    throw ConfigError("spacing",
+                      too_fine(shape.bounds, chosen.spacing,
+                               std::to_string(chosen.count) + " points lie inside: " + k_too_many));
 
   const Grid grid = grid_within(shape.bounds, chosen.spacing, chosen.alignment);
   const float jitter = sampling.jitter * chosen.spacing;

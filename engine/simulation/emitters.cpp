@@ -190,7 +190,7 @@ void flow_out(Simulation::State& s, EmitterState& emitter) {
   hold_layers(extend(s, body, points), k_batch, s, emitter);
 }
 
-void drain(Simulation::State& s, const SinkState& sink) {
+std::size_t drain(Simulation::State& s, const SinkState& sink) {
   std::vector<ParticleId> ids;
   const Aabb box{relative_to(s.origin, sink.box.min), relative_to(s.origin, sink.box.max)};
   for (const BodyState& body : s.bodies) {
@@ -202,6 +202,7 @@ void drain(Simulation::State& s, const SinkState& sink) {
     }
   }
   if (!ids.empty()) erase_particles(s, ids);
+  return ids.size();
 }
 
 std::size_t place_of(const Simulation::State& s, EmitterId id) {
@@ -232,7 +233,7 @@ void check_emitters(const Simulation::State& s) {
   checks.finish();
 }
 
-void flow(Simulation::State& s) {
+std::size_t flow(Simulation::State& s) {
   // Whoever removes its body, or lets go what it holds, takes an emitter with it.
   std::erase_if(s.emitters, [&](const EmitterState& emitter) {
     const bool holds = s.pin_slots.find(static_cast<std::uint64_t>(emitter.pin)).has_value();
@@ -241,7 +242,9 @@ void flow(Simulation::State& s) {
     return true;
   });
   for (EmitterState& emitter : s.emitters) flow_out(s, emitter);
-  for (const SinkState& sink : s.sinks) drain(s, sink);
+  std::size_t drained = 0;
+  for (const SinkState& sink : s.sinks) drained += drain(s, sink);
+  return drained;
 }
 
 void drive_emitters(Simulation::State& s, double end, double time_step) {

@@ -162,7 +162,11 @@ void rebuild_shape(Simulation::State& s, BodyState& body, CarriedRegions& carrie
 }
 
 void forget_bodies(Simulation::State& s, std::span<BodyState* const> gone) {
-  for (const BodyState* body : gone) s.body_slots.give_back(static_cast<std::uint64_t>(body->id));
+  for (const BodyState* body : gone) {
+    s.body_names.erase(*body);
+    s.body_slots.give_back(static_cast<std::uint64_t>(body->id));
+    leave_material(s, *body->material);
+  }
   s.bodies.erase_if(
       [&](const BodyState& body) { return !s.body_slots.find(static_cast<std::uint64_t>(body.id)); });
   number_bodies(s);
@@ -183,10 +187,10 @@ void Simulation::State::rows_changed() {
   blend_changed = true;
 }
 
-BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name) {
-  state_->refuse_in_callback();
-  State& s = *state_;
-  MaterialState& material = s.material(id);
+namespace {
+
+/// A body of these points, whose rows are there. Throws ConfigError, and changes nothing.
+BodyState place_points(Simulation::State& s, const Body& points, MaterialState& material, std::string name) {
   Checks checks;
   check(points, checks);
   checks.finish();
@@ -208,26 +212,36 @@ BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name)
   refuse_yields(body, points);
   refuse_temperatures(body, points);
   insert_points(s, checked_points(s, body, points), points, body);
+  return body;
+}
+
+BodyId keep_body(Simulation::State& s, BodyState body) {
   const std::uint64_t number = s.body_slots.take();
   s.body_slots.place(s.bodies.size(), {&number, 1});
   body.id = BodyId{number};
+  ++body.material->bodies;
+  s.body_names.add(body);
   s.bodies.push_back(std::move(body));
   return BodyId{number};
 }
 
-BodyId Simulation::add_body(const Body& points, const Material& material, std::string name) {
+}  // namespace
+
+BodyId Simulation::add_body(const Body& points, MaterialId id, std::string name) {
+  state_->refuse_in_callback();
+  return keep_body(*state_, place_points(*state_, points, state_->material(id), std::move(name)));
+}
+
+BodyId Simulation::add_body(const Body& points, const Material& settings, std::string name) {
+  state_->refuse_in_callback();
   Checks checks;
   check(points, checks);
   checks.finish();
-  const bool was_prepared = state_->prepared;
-  const MaterialId id = add_material(material, name);
-  try {
-    return add_body(points, id, std::move(name));
-  } catch (...) {
-    state_->materials.pop_back();
-    state_->prepared = was_prepared;
-    throw;
-  }
+  MaterialState material = checked_material(*state_, settings, name);
+  BodyState body = place_points(*state_, points, material, std::move(name));
+  material.stays = false;
+  body.material = &keep_material(*state_, std::move(material));
+  return keep_body(*state_, std::move(body));
 }
 
 void Simulation::extend_body(BodyId id, const Body& points) {

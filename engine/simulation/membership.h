@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "shape_matching/reshape.h"
@@ -9,6 +10,12 @@
 /// What of coming and going more than applications do.
 namespace mallow {
 
+/// A material as Simulation::add_material() takes it. Throws ConfigError.
+MaterialState checked_material(const Simulation::State& state, const Material& material, std::string name);
+/// It gets an id.
+MaterialState& keep_material(Simulation::State& state, MaterialState material);
+/// A body is made of it no more: it goes with the last one, unless it stays.
+void leave_material(Simulation::State& state, MaterialState& material);
 /// As Simulation::extend_body(), unchecked. Returns the ids of the new particles, in their order.
 std::vector<ParticleId> extend(Simulation::State& state, BodyState& body, const Body& points);
 /// The reference shape of a body has changed: its rows are sorted for it, and its regions built of what their

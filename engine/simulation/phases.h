@@ -108,8 +108,9 @@ void split_torn(Simulation::State& state);
 /// of them in the order of rows. Returns how many reference shapes that took anew. [model 2, section 5]
 /// Throws StepError.
 int join_bodies(Simulation::State& state);
-/// time -> layers that leave their emitters, or are put behind them; particles that sinks take.
-void flow(Simulation::State& state);
+/// time -> layers that leave their emitters, or are put behind them; particles that sinks take. Returns how
+/// many these are.
+std::size_t flow(Simulation::State& state);
 /// Throws ConfigError where one lets its strand out faster than steps carry.
 void check_emitters(const Simulation::State& state);
 /// Those that were given before the first step said what it carries.

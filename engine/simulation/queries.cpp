@@ -203,9 +203,15 @@ std::vector<ColliderId> Simulation::collider_ids() const {
 }
 
 std::optional<BodyId> Simulation::find_body(std::string_view name) const {
-  for (const BodyState& body : state_->bodies)
-    if (body.name == name) return body.id;
-  return std::nullopt;
+  State& s = *state_;
+  if (!s.body_names.is_kept()) {
+    s.body_names.keep();
+    for (const BodyState& body : s.bodies) s.body_names.add(body);
+  }
+  const std::vector<BodyId>& ids = s.body_names.of(name);
+  const auto place = [&](BodyId id) { return s.body_slots.index[slot_of(id)]; };
+  const auto first = std::ranges::min_element(ids, {}, place);
+  return first == ids.end() ? std::nullopt : std::optional(*first);
 }
 
 const std::string& Simulation::name(BodyId id) const {

@@ -135,14 +135,22 @@ void require_valid(const UnpackingArchive& archive, const Simulation::State& sta
   require(!body.shape.built || sizes.references > 0, "there are regions without a reference shape");
 }
 
+template <class Archive, class Material>
+void pass_material(Archive& archive, Material& material) {
+  pass_id(archive, material.id);
+  archive(material.name);
+  archive(material.stays);
+  pass_fields(archive, material.settings);
+  archive(material.alpha);
+}
+
 void unpack_materials(const SavedState& saved, Simulation::State& state) {
   unpack(saved, "materials", [&](UnpackingArchive& archive) {
     Checks checks;
     constexpr std::size_t k_least_bytes = 16;
     pass_list(archive, state.materials, k_least_bytes, [&](MaterialState& material) {
-      archive(material.name);
-      pass_fields(archive, material.settings);
-      archive(material.alpha);
+      pass_material(archive, material);
+      if (!material.is_there()) return;
       constexpr Range k_alpha = range_of(&Material::alpha);
       if (!k_alpha.holds(material.alpha))
         archive.fail("material '" + material.name + "': alpha must be" + range_text(k_alpha));
@@ -150,9 +158,16 @@ void unpack_materials(const SavedState& saved, Simulation::State& state) {
       check_stiffness(state.config, material.settings, material.name, checks);
     });
     checks.finish();
-    for (std::size_t m = 0; m < state.materials.size(); ++m)
-      state.materials[m].number = static_cast<std::uint32_t>(m);
   });
+  std::vector<std::uint64_t> ids;
+  for (const MaterialState& material : state.materials)
+    if (material.is_there()) ids.push_back(static_cast<std::uint64_t>(material.id));
+  unpack_slots(saved, "material_slots", ids, state.material_slots);
+  for (const std::uint64_t id : ids) {
+    if (slot_of(id) >= state.materials.size() || state.materials[slot_of(id)].id != MaterialId{id})
+      throw ConfigError("saved state, chunk 'materials'", "a material does not stand where its slot is");
+    state.material_slots.index[slot_of(id)] = slot_of(id);
+  }
 }
 
 std::vector<ShapeSizes> unpack_bodies(const SavedState& saved, Simulation::State& state) {
@@ -161,11 +176,12 @@ std::vector<ShapeSizes> unpack_bodies(const SavedState& saved, Simulation::State
     std::size_t rows = 0;
     constexpr std::size_t k_least_bytes = 64;
     pass_list(archive, state.bodies, k_least_bytes, [&](BodyState& body) {
-      std::uint32_t material = 0;
+      std::uint64_t material = 0;
       archive(material);
-      if (material >= state.materials.size())
-        archive.fail("there is no material " + std::to_string(material));
-      body.material = &state.materials[material];
+      const std::optional<std::size_t> slot = state.material_slots.find(material);
+      if (!slot) archive.fail("there is no material " + std::to_string(material));
+      body.material = &state.materials[*slot];
+      ++body.material->bodies;
       pass_body(archive, body, sizes.emplace_back());
       require_valid(archive, state, body, sizes.back(), rows);
       rows = body.end;
@@ -329,16 +345,14 @@ void unpack_obstacles(const SavedState& saved, Simulation::State& state) {
 void pack_lists(const Simulation::State& s, SavedState& saved) {
   const auto add = [&](Chunk chunk) { saved.chunks.push_back(std::move(chunk)); };
   add(packed("materials", [&](PackingArchive& archive) {
-    pass_list(archive, s.materials, 0, [&](const MaterialState& material) {
-      archive(material.name);
-      pass_fields(archive, material.settings);
-      archive(material.alpha);
-    });
+    pass_list(archive, s.materials, 0,
+              [&](const MaterialState& material) { pass_material(archive, material); });
   }));
+  pack_slots("material_slots", s.material_slots, saved);
   add(packed("bodies", [&](PackingArchive& archive) {
     pass_list(archive, s.bodies, 0, [&](const BodyState& body) {
       ShapeSizes sizes{body.shape.reference.size(), body.shape.built ? body.shape.region_weight.size() : 0};
-      archive(body.material->number);
+      archive(static_cast<std::uint64_t>(body.material->id));
       pass_body(archive, body, sizes);
     });
   }));

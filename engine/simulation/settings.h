@@ -49,6 +49,9 @@ float pressure_coefficient(const Simulation::State& state, const BodyState& body
 double update_period(const Simulation::State& state);
 /// Whether the step that starts now begins with a check of the reference shapes.
 bool update_is_due(const Simulation::State& state);
+/// Whether it begins with a look for what tears: a gap is judged while what made it is still there. By time,
+/// so that neither steps nor checks change what tears.
+bool tear_look_is_due(const Simulation::State& state);
 /// Whether the next check judges what acts on bodies in the step that starts now.
 bool is_judged(const Simulation::State& state);
 /// At the end of a step, before time moves on: what it measured counts at the check that is next, and what

@@ -7,6 +7,7 @@
 #include "colliders/collider_checks.h"
 #include "config/validation.h"
 #include "core/parallel.h"
+#include "simulation/membership.h"
 #include "simulation/overlaps.h"
 #include "simulation/phases.h"
 #include "simulation/settings.h"
@@ -32,7 +33,7 @@ class FirstBodies {
   /// The earliest that the body may be part of; null: there is none, and the body is one of them now.
   const BodyState* like(const BodyState& body) {
     if (!body.merges) return nullptr;
-    const std::uint32_t material = body.material->number;
+    const std::uint32_t material = slot_of(body.material->id);
     const float margin = 2 * k_same_spacing * body.spacing;
     const First* first = nullptr;
     for (auto one = firsts_.lower_bound({material, body.spacing - margin});
@@ -182,10 +183,9 @@ PinState& Simulation::State::pin(PinId id) {
 }
 
 MaterialState& Simulation::State::material(MaterialId id) {
-  const auto index = static_cast<std::size_t>(id);
-  if (index < materials.size()) return materials[index];
-  throw ConfigError("material", "there is no material " + std::to_string(index) + "; there are " +
-                                    std::to_string(materials.size()));
+  const auto number = static_cast<std::uint64_t>(id);
+  if (const std::optional<std::size_t> index = material_slots.find(number)) return materials[*index];
+  refuse_id("material", number, material_slots);
 }
 
 void Simulation::State::refuse_in_callback() const {
@@ -209,19 +209,35 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
-MaterialId Simulation::add_material(const Material& material, std::string name) {
-  state_->refuse_in_callback();
-  State& s = *state_;
+MaterialState checked_material(const Simulation::State& s, const Material& material, std::string name) {
   Checks checks;
   check(material, checks);
   checks.finish();
   check_stiffness(s.config, material, {}, checks);
   checks.finish();
-  if (name.empty()) name = "material " + std::to_string(s.materials.size());
-  const auto number = static_cast<std::uint32_t>(s.materials.size());
-  s.materials.push_back({.name = std::move(name), .number = number, .settings = material});
+  if (name.empty()) name = "material " + std::to_string(s.material_slots.size());
+  return {.name = std::move(name), .settings = material};
+}
+
+MaterialState& keep_material(Simulation::State& s, MaterialState material) {
+  material.id = MaterialId{s.material_slots.take()};
+  const std::uint32_t slot = slot_of(material.id);
+  s.material_slots.index[slot] = slot;
+  s.materials.resize(s.material_slots.size());
+  s.materials[slot] = std::move(material);
   s.prepared = false;
-  return MaterialId{number};
+  return s.materials[slot];
+}
+
+void leave_material(Simulation::State& s, MaterialState& material) {
+  if (--material.bodies > 0 || material.stays) return;
+  s.material_slots.give_back(static_cast<std::uint64_t>(material.id));
+  material = {};
+}
+
+MaterialId Simulation::add_material(const Material& material, std::string name) {
+  state_->refuse_in_callback();
+  return keep_material(*state_, checked_material(*state_, material, std::move(name))).id;
 }
 
 void Simulation::prepare() {
@@ -231,10 +247,16 @@ void Simulation::prepare() {
 void prepare(Simulation::State& s) {
   s.refuse_in_callback();
   if (s.prepared) return;
-  Checks checks;
-  if (s.store.size() == 0 && s.scale.spacing == 0)
-    checks.problem("body", "no particles: a simulation needs at least one");
-  checks.finish();
+  if (s.store.size() == 0 && s.scale.spacing == 0) {  // nothing follows from it, and nothing is settled
+    Checks checks;
+    if (!s.config.time_step)
+      checks.problem(
+          "solver.time_step",
+          "is missing, and there are no particles by whose spacing it would follow; give it, or add "
+          "a body first");
+    checks.finish();
+    return;
+  }
   const bool is_first = s.scale.spacing == 0;
   resolve_settings(s);
   check_elasticities(s);

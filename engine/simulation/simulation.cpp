@@ -92,14 +92,15 @@ StepReport take_step(Simulation::State& s, double end, const PhaseHook& after_ph
 StepReport Simulation::step_towards(double end) {
   prepare();
   state_->require_ahead(end);
-  split_torn(*state_);                      // parts that were torn off -> bodies
-  const int joined = join_bodies(*state_);  // κ -> bodies that are one   [model 2, section 5]
-  flow(*state_);                            // time -> rows of strands
+  split_torn(*state_);                        // parts that were torn off -> bodies
+  const int joined = join_bodies(*state_);    // κ -> bodies that are one   [model 2, section 5]
+  const std::size_t drained = flow(*state_);  // time -> rows of strands, what sinks take
   prepare();
   state_->events_of_calls = 0;
   try {
     StepReport report = take_step(*state_, end);
     report.updated_references += joined;
+    report.drained = drained;
     return report;
   } catch (...) {
     keep_events(*state_);

@@ -13,12 +13,13 @@ namespace {
 
 using Places = std::vector<std::uint32_t>;  ///< of particles of a body, ascending
 
-/// The particle whose part keeps the id, where an emitter holds one.
+/// The particle whose part keeps the id, where an emitter holds one: of the last layer, as new ones are put
+/// behind that.
 std::optional<std::uint32_t> held_particle(const Simulation::State& s, const BodyState& body) {
   for (const EmitterState& emitter : s.emitters)
     if (emitter.body == body.id)
-      for (const std::vector<ParticleId>& layer : emitter.held)
-        for (const ParticleId id : layer)
+      for (auto layer = emitter.held.rbegin(); layer != emitter.held.rend(); ++layer)
+        for (const ParticleId id : *layer)
           if (const std::optional<std::size_t> row = s.store.slots.find(id);
               row && *row >= body.begin && *row < body.end)  // an earlier part may have taken some along
             return static_cast<std::uint32_t>(*row - body.begin);
@@ -107,6 +108,8 @@ std::vector<BodyId> split_body(Simulation::State& s, BodyState& body) {
     rebuild_shape(s, part, shapes[k - 1].carried);
     ids.push_back(part.id);
     s.next_events.push_back({.kind = BodyEvent::Kind::split, .body = body.id, .other = part.id});
+    ++part.material->bodies;
+    s.body_names.add(part);
     s.bodies.insert(++place, std::move(part));
   }
   number_bodies(s);

@@ -21,6 +21,7 @@
 #include "particles/particle_store.h"
 #include "shape_matching/parts.h"
 #include "shape_matching/shape_matching.h"
+#include "simulation/body_names.h"
 #include "simulation/near_origin.h"
 #include "simulation/placed_rows.h"
 #include "sph/sph.h"
@@ -35,14 +36,17 @@ inline constexpr std::size_t k_max_pins = 65535;
 
 /// What bodies are made of, for all of them that share it.
 struct MaterialState {
-  std::string name;
-  std::uint32_t number = 0;  ///< its MaterialId
+  MaterialId id{};
+  std::string name;        ///< never empty, but where the slot is nobody's
+  bool stays = true;       ///< without bodies too
+  std::size_t bodies = 0;  ///< that are made of it
   Material settings;
   float alpha = 0;  ///< at the present time
   /// Of all particles of its bodies, where some have their own: that k suits.
   float most_alpha = 0, most_elasticity = 1;
   float update_threshold = 0;  ///< γ_u in force [m/s²]
 
+  bool is_there() const { return !name.empty(); }
   bool carries_heat() const { return settings.temperature.has_value(); }
   bool keeps_reference() const { return settings.alpha.lowest() < 1.0f; }
 };
@@ -227,9 +231,11 @@ struct Simulation::State {
 
   Vec3 origin{0, 0, 0};  ///< that positions in the store are relative to, see choose_origin() [m]
   ParticleStore store;
-  std::deque<MaterialState> materials;  ///< bodies point to them
+  std::deque<MaterialState> materials;  ///< by slot; bodies point to them
+  Slots material_slots;                 ///< MaterialId -> index, which is its slot
   StableList<BodyState> bodies;         ///< in the order of their rows
   Slots body_slots;                     ///< BodyId -> index
+  BodyNames body_names;
   std::vector<Collider> colliders;
   std::vector<std::uint64_t> collider_ids;  ///< of each collider
   Slots collider_slots;                     ///< ColliderId -> index

@@ -57,18 +57,26 @@ FlowRule flow_rule(const Material& material) {
           .creep = material.plastic_creep.value_or(std::numeric_limits<float>::infinity())};
 }
 
-bool frame_is_due(Simulation::State& state, const BodyState& body) {
+/// What the step that begins now looks for.
+struct Looks {
+  bool check, tears;
+};
+
+bool frame_is_due(Simulation::State& state, const BodyState& body, const Looks& looks) {
   const Material& material = body.material->settings;
-  return reframe_is_due(state.store.position, body.begin, {material.merge_flow, material.tear_strain},
-                        state.execution, body.shape, state.region_scratch.flow);
+  const FrameLimits limits{material.merge_flow, material.tear_strain};
+  const VectorColumn& x = state.store.position;
+  FlowScratch& scratch = state.region_scratch.flow;
+  return (looks.tears && is_torn(x, body.begin, limits, state.execution, body.shape, scratch)) ||
+         (looks.check && reframe_is_due(x, body.begin, limits, state.execution, body.shape, scratch));
 }
 
-/// What the regions of a body take along into a new frame, where it gets one now: at a check where one is due
-/// and no blow strains it, or where it has flowed too far to wait.
-std::optional<CarriedRegions> new_frame(Simulation::State& state, BodyState& body, bool check) {
+/// What the regions of a body take along into a new frame, where it gets one now: where one is due and no
+/// blow strains it, or where it has flowed too far to wait.
+std::optional<CarriedRegions> new_frame(Simulation::State& state, BodyState& body, const Looks& looks) {
   if (!body.flows()) return {};
   const bool far = has_flowed_too_far(body.shape);
-  if (!far && !(check && frame_is_due(state, body))) return {};
+  if (!far && !frame_is_due(state, body, looks)) return {};
   check_damage(state);
   ReframedShape found =
       reframe_regions(state.store.position, body.begin, flow_rule(body.material->settings).yield,
@@ -99,12 +107,13 @@ void judge_parts(Simulation::State& state, BodyState& body, bool was_apart) {
 int update_references(Simulation::State& state) {
   int updated = 0;
   const bool check = update_is_due(state);
+  const Looks looks{.check = check, .tears = check || tear_look_is_due(state)};
   for (BodyState* moving : state.awake) {
     BodyState& body = *moving;
     const double threshold =
         static_cast<double>(body.material->update_threshold * (1.0f - body.most_alpha()));
     const bool yields = check && body.follows_threshold() && body.judged_external > threshold;
-    std::optional<CarriedRegions> frame = yields ? std::nullopt : new_frame(state, body, check);
+    std::optional<CarriedRegions> frame = yields ? std::nullopt : new_frame(state, body, looks);
     const bool reframes = frame.has_value();
     const bool had_regions = body.matches_shape() && body.shape.built, was_apart = body.apart;
     const auto due = [&] { return body.matches_shape() && !body.shape.built; };

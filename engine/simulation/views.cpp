@@ -64,6 +64,7 @@ void AdvanceReport::add(const StepReport& step) {
   max_velocity = std::max(max_velocity, step.max_velocity);
   if (step.limited) ++limited_steps;
   updated_references += step.updated_references;
+  drained += static_cast<std::int64_t>(step.drained);
   volume_iterations += step.volume_iterations;
   largest_compression = std::max(largest_compression, step.largest_compression);
   for (std::size_t i = 0; i < k_phase_count; ++i) seconds[i] += step.seconds[i];
@@ -120,7 +121,7 @@ float Simulation::spacing(BodyId id) const {
   return std::as_const(*state_).body(id).spacing;
 }
 MaterialId Simulation::material(BodyId id) const {
-  return MaterialId{std::as_const(*state_).body(id).material->number};
+  return std::as_const(*state_).body(id).material->id;
 }
 
 std::size_t Simulation::row(ParticleId id) const {
@@ -216,7 +217,7 @@ SimulationInfo Simulation::info() const {
   info.bytes = s.store.bytes() + s.sph.bytes() + s.fluid_order.bytes() + s.user_acceleration.bytes() +
                s.far_position.bytes() + s.region_scratch.bytes() + s.led_position.bytes() +
                s.contact_pairs.bytes() + s.volume.bytes();
-  info.support_radius = s.support_radius();
+  info.support_radius = s.config.support_radius.value_or(0.0f);  // not settled where nothing has come yet
   info.time_step = s.base_step();
   info.time_step_source = s.time_step_source;
   info.longest_step = s.longest_step();

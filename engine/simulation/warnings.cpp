@@ -65,7 +65,7 @@ class Warnings {
         keeps_volume_(state.keeps_volume()),
         volume_iterations_(state.volume_iterations()),
         merging_(state.materials.size(), 0) {
-    for (const BodyState& body : state.bodies) merging_[body.material->number] += body.merges ? 1 : 0;
+    for (const BodyState& body : state.bodies) merging_[slot_of(body.material->id)] += body.merges ? 1 : 0;
   }
 
   std::vector<std::string> list() && {
@@ -139,7 +139,7 @@ class Warnings {
 
   /// Whoever merges needs somebody to merge with.
   void look_at_lone_merging(const BodyState& body) {
-    if (!body.merges || state_.bodies.size() < 2 || merging_[body.material->number] > 1) return;
+    if (!body.merges || state_.bodies.size() < 2 || merging_[slot_of(body.material->id)] > 1) return;
     add(body, "merges with nobody: no other body of its material '", body.material->name,
         "' merges; give both one material, and merges on both");
   }
@@ -162,7 +162,7 @@ class Warnings {
   /// What acts on another body as on itself rubs it only as a fluid does.
   void look_at_merging(const BodyState& body) {
     if (!body.merges || body.touches_what_it_merges_with() ||
-        body.material->settings.alpha.lowest() > k_all_but_fluid || merging_[body.material->number] < 2)
+        body.material->settings.alpha.lowest() > k_all_but_fluid || merging_[slot_of(body.material->id)] < 2)
       return;
     add(body, "slides along bodies that it merges with, as friction is between bodies that do not",
         body.shape.flows ? ": where they are not pressed together at once, leave merges out"

@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -152,6 +153,67 @@ TEST_F(cli_run_folder, that_lacks_the_last_surface_gets_no_picture_of_that_frame
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "pictures 2\n");
   EXPECT_EQ(names_in(at("out/images")).size(), 2u);
+}
+
+TEST_F(cli_run_folder, is_told_of_by_info) {
+  ASSERT_EQ(run({"--out", at("out"), "--set", "solver.time_step=0.1", "--checkpoint-every", "1"}).exit_code,
+            0);
+  const Outcome outcome = run_mallow({"info", at("out")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const std::string& line :
+       {"run              " + at("out"), "scene            " + scene_ + " --set solver.time_step=0.1",
+        std::string("particles        125 in 1 body"), std::string("frames           2 of 2, 0.45 s each"),
+        std::string("ended            complete"),
+        "to go on         mallow run --resume " + at("out") + " --frames N",
+        std::string("files            3 of particles, 3 surfaces, 0 pictures")})
+    EXPECT_NE(outcome.out.find(line + "\n"), std::string::npos) << line << " is not in\n" << outcome.out;
+  EXPECT_EQ(run_mallow({"info", at("out"), "--print"}).out, read_text(at("out/scene.toml")));
+  expect_refused(run_mallow({"info", at("out"), "--set", "solver.time_step=0.2"}),
+                 "--set and --quality go with");
+  fs::create_directory(at("empty"));
+  expect_refused(run_mallow({"info", at("empty")}), "empty: holds no run of mallow");
+}
+
+TEST_F(cli_run_folder, of_a_run_that_was_ended_says_so) {
+  Running running({"run", scene_, "--out", at("out"), "--frames", "1000000", "--no-surface", "--no-images"});
+  while (!fs::exists(at("out/particles/frame_000003.ply"))) ASSERT_TRUE(running.alive());
+  running.send(SIGTERM);
+  const Outcome ended = running.wait();
+  EXPECT_EQ(ended.exit_code, 128 + SIGTERM);
+  EXPECT_NE(ended.err.find(" frames are whole, and a checkpoint is there"), std::string::npos) << ended.err;
+  const std::string told = run_mallow({"info", at("out")}).out;
+  EXPECT_NE(told.find("ended            not complete: interrupted after "), std::string::npos) << told;
+}
+
+/// A run that waits for its scene, with its handlers in place.
+bool waits_with_handlers(Running& running) {
+  const std::string status = "/proc/" + std::to_string(running.process()) + "/status";
+  for (int k = 0; k < 10000 && running.alive(); ++k) {
+    const std::string text = read_text(status);
+    const std::size_t at = text.find("SigCgt:");
+    if (at != text.npos && (std::stoull(text.substr(at + 8), nullptr, 16) >> (SIGTERM - 1) & 1) != 0)
+      return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
+}
+
+TEST_F(cli_run_folder, is_not_touched_by_a_run_that_is_ended_before_it_began) {
+  ASSERT_EQ(run({"--out", at("old"), "--no-surface", "--checkpoint-every", "1"}).exit_code, 0);
+  const std::string report = read_text(at("old/report.json"));
+  ASSERT_EQ(::mkfifo(at("pipe.toml").c_str(), 0600), 0);
+  for (const int signal : {SIGINT, SIGTERM})
+    for (const std::string& out : {at("new"), at("old")}) {
+      Running running({"run", at("pipe.toml"), "--out", out, "--overwrite"});
+      ASSERT_TRUE(waits_with_handlers(running));
+      running.send(signal);
+      const Outcome outcome = running.wait();
+      EXPECT_EQ(outcome.exit_code, 128 + signal);
+      EXPECT_EQ(outcome.err, "mallow: interrupted before the run began; nothing was written\n");
+    }
+  EXPECT_FALSE(fs::exists(at("new")));
+  EXPECT_EQ(read_text(at("old/report.json")), report);
+  EXPECT_EQ(run_mallow({"run", "--resume", at("old"), "--frames", "3"}).exit_code, 0);
 }
 
 }  // namespace run_folder_test

@@ -219,6 +219,29 @@ paint = [{ box = { min = [-1, -1, 0.01], max = [1, 1, 1] }, temperature = 290 }]
       << free.out;
 }
 
+TEST_F(cli_run, says_where_matter_comes_from_and_goes_and_what_sinks_took) {
+  const std::string scene = read_text(scene_) + R"([[body]]
+material = "paste"
+box = { count = [2, 2, 2], spacing = 1.0, corner = [20.0, 0.0, 3.0] }
+[[sink]]
+box = { min = [15, -5, -5], max = [30, 9, 30] }
+[[sink]]
+box = { min = [-50, -50, -5], max = [50, 50, 50] }
+outside = true
+)";
+  const std::string file = write("sinks.toml", scene).string();
+  const Outcome outcome = run_mallow({"info", file});
+  EXPECT_NE(outcome.out.find("emitters         0\nsinks            2, taking what comes into [15, -5, -5] to "
+                             "[30, 9, 30], what comes out of [-50, -50, -5] to [50, 50, 50]\n"),
+            std::string::npos)
+      << outcome.out;
+  const Outcome ran = run_mallow({"run", file, "--out", at("out"), "--no-images", "--no-surface"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("\ndrained 8\n"), std::string::npos) << ran.out;
+  EXPECT_EQ(read_json(at("out/report.json")).at("drained"), 8);
+  EXPECT_EQ(run({}).out.find("drained"), std::string::npos) << "no sinks, no word";
+}
+
 TEST_F(cli_run, info_print_is_a_scene_that_gives_the_same_state) {
   const Outcome printed = run_mallow({"info", scene_, "--print"});
   ASSERT_EQ(printed.exit_code, 0) << printed.err;

@@ -354,8 +354,8 @@ bool Oracle::is_painted() const {
                      [](const Particle& p) { return p.own_alpha >= 0 || p.stiffness != 1; });
 }
 
-double Oracle::passed_periods(double time) const {
-  return std::floor((time + 1e-6 * dt0_) / period_);
+double Oracle::passed(double time, double period) const {
+  return std::floor((time + 1e-6 * dt0_) / period);
 }
 
 // The step before, where checks are counted in steps; else the largest mean over a Δt0 since the last check.
@@ -374,7 +374,12 @@ double Oracle::judged_acceleration(std::size_t group) const {
 
 bool Oracle::check_is_due() const {
   return counts_steps() ? steps_ > 0 && steps_ % *config_.update_interval == 0
-                        : passed_periods(time_) > passed_periods(last_start_);
+                        : passed(time_, period_) > passed(last_start_, period_);
+}
+
+// What tears is looked for every 2 Δt0, and at checks.
+bool Oracle::tears_are_looked_for() const {
+  return check_is_due() || passed(time_, 2 * dt0_) > passed(last_start_, 2 * dt0_);
 }
 
 std::vector<std::size_t> Oracle::update_references() {
@@ -382,15 +387,16 @@ std::vector<std::size_t> Oracle::update_references() {
   const bool check = check_is_due();
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const bool far = has_flowed_too_far(g);
+    const bool due = far || (check && reframe_is_due(g)) || (tears_are_looked_for() && is_torn(g));
     if (!check) {
-      if (far && reframe(g, false)) updated.push_back(g);
+      if (due && reframe(g, !far)) updated.push_back(g);
       continue;
     }
     const double threshold = groups_[g].update_threshold * (1 - groups_[g].most_alpha);
     const Material& material = groups_[g].material;
     const bool follows = !yields(material) || material.update_threshold || melts(groups_[g]);
     if (is_always_fluid(groups_[g]) || !follows || judged_acceleration(g) <= threshold) {
-      if ((far || reframe_is_due(g)) && reframe(g, !far)) updated.push_back(g);
+      if (due && reframe(g, !far)) updated.push_back(g);
       continue;
     }
     kick_by_pull(g, 0.5);
@@ -683,10 +689,22 @@ bool Oracle::reframe_is_due(std::size_t group) const {
       if (j.group != group) continue;
       const double flow = std::min(i.flow, j.flow);
       const double now = (i.x - j.x).norm(), rest = (i.reference - j.reference).norm();
-      if (flow > 0 && rest <= radius && now > (1 + double{g.material.tear_strain}) * radius) return true;
       if (flow > double{g.material.merge_flow} && rest > radius && now < g.spacing) return true;
     }
   }
+  return false;
+}
+
+bool Oracle::is_torn(std::size_t group) const {
+  const Group& g = groups_[group];
+  if (!flows(g)) return false;
+  const double radius = g.material.region_radius.value_or(*config_.support_radius);
+  for (const Particle& i : particles_)
+    for (const Particle& j : particles_) {
+      if (i.group != group || j.group != group || !(std::min(i.flow, j.flow) > 0)) continue;
+      const double now = (i.x - j.x).norm(), rest = (i.reference - j.reference).norm();
+      if (rest <= radius && now > (1 + double{g.material.tear_strain}) * radius) return true;
+    }
   return false;
 }
 

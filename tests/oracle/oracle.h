@@ -168,6 +168,7 @@ class Oracle {
   void rebuild_regions(std::size_t group);
   void flow(double dt);
   bool reframe_is_due(std::size_t group) const;
+  bool is_torn(std::size_t group) const;
   bool has_flowed_too_far(std::size_t group) const;
   bool reframe(std::size_t group, bool waits);
   void list_regions(std::size_t group);
@@ -178,7 +179,7 @@ class Oracle {
   double mean_external_acceleration(std::size_t group) const;
   double judged_acceleration(std::size_t group) const;
   bool counts_steps() const { return config_.update_interval && config_.time_step_factor == 1; }
-  double passed_periods(double time) const;
+  double passed(double time, double period) const;
   double alpha_of(const Particle& p) const;
   double yield_of(const Particle& p) const;
   double viscosity_of(const Particle& p) const;
@@ -191,6 +192,7 @@ class Oracle {
   bool is_painted() const;
   double stiffness(const Group& group) const;
   bool check_is_due() const;
+  bool tears_are_looked_for() const;
   std::vector<std::size_t> update_references();
   void find_walls(Particle& p) const;
   Vec wall_acceleration(const Particle& p) const;

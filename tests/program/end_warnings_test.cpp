@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "mallow/materials.h"
+#include "mallow/simulation.h"
+
 namespace mallow::program {
 namespace end_warnings_test {
 
@@ -52,6 +55,29 @@ TEST(end_warnings, name_one_elastic_body_of_a_material_that_yielded_to_what_nobo
       << all[0];
   for (BodyInfo& body : info.bodies) body.alpha = 0.8f;
   EXPECT_TRUE(end_warnings(scene, info, last).empty()) << "what splashes comes near";
+}
+
+TEST(end_warnings, name_matter_that_something_closed_on) {
+  const auto after = [](float lid, bool mould) {
+    RunReport report;
+    Simulation s(SolverConfig{.gravity = {0, 0, -9.81f}, .threads = 1});
+    s.add_body(sample(Lattice{.count = {6, 6, 6}, .spacing = 0.005f, .corner = {-0.015f, -0.015f, 0}}),
+               materials::dough());
+    s.add_collider({.shape = Plane{}, .friction = 0.5f});
+    if (mould) s.add_collider({.shape = Box{{-0.018f, -0.018f, -1}, {0.018f, 0.018f, 1}, true}});
+    const ColliderId press = s.add_collider({.shape = Plane{.normal = {0, 0, -1}}});
+    s.set_pose(press, Pose{.translation = {0, 0, 0.035}});
+    s.set_pose(press, Pose{.translation = {0, 0, static_cast<double>(lid)}}, 0.3);
+    while (s.time() < 0.3) report.add(s.step(), s);
+    return pressed_warning(report.compression);
+  };
+  EXPECT_FALSE(after(0.018f, false)) << "it goes aside";
+  const auto warning = after(0.018f, true);
+  ASSERT_TRUE(warning) << "where it cannot";
+  EXPECT_NE(warning->find("left it less room than it fills"), std::string::npos) << *warning;
+  EXPECT_FALSE(pressed_warning({.mean = 0.09, .largest = 3}));
+  EXPECT_EQ(pressed_warning({.mean = 0.164, .largest = 1})->substr(0, 38),
+            "matter was pressed together by 16% in ");
 }
 
 }  // namespace end_warnings_test

@@ -1,0 +1,67 @@
+// What a run says of bodies that come and go while it writes frames.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "mallow/scene.h"
+#include "program/body_appearances.h"
+#include "program/cache.h"
+#include "program/run_loop.h"
+
+namespace mallow::program {
+namespace run_loop_test {
+
+namespace fs = std::filesystem;
+
+const char* const k_scene = R"(
+[solver]
+time_step = 0.1
+gravity = [0, 0, 0]
+[[material]]
+name = "red"
+color = [0.8, 0.1, 0.1]
+[[material]]
+name = "blue"
+color = [0.1, 0.1, 0.8]
+[[body]]
+material = "blue"
+box = { count = [3, 3, 3], spacing = 1.0, corner = [20, 0, 0], jitter = 0 }
+[[body]]
+material = "red"
+box = { count = [3, 3, 3], spacing = 1.0, corner = [0, 0, 0], jitter = 0 }
+)";
+
+TEST(run_loop, keeps_what_a_body_looked_like_in_frames_before_another_had_its_slot) {
+  const Scene scene = parse_scene(k_scene, "scene.toml");
+  Simulation simulation = build(scene, 1);
+  const fs::path folder = fs::temp_directory_path() / "mallow-run-loop-test";
+  const Cache cache = Cache::create(folder, true);
+  RunReport report;
+  report.frame_time = 0.1;
+  follow_bodies(simulation, report.info.bodies);
+  const BodyId blue = simulation.bodies()[0], red = simulation.bodies()[1];
+  const MaterialId blue_matter = simulation.material(blue);
+  // Behind frame 2 the red one goes and a blue one comes, in its slot.
+  const auto trade = [&](const RunReport& so_far) {
+    if (so_far.frames != 2) return;
+    simulation.remove_body(red);
+    const Body body = sample(Lattice{.count = {2, 2, 2}, .spacing = 1, .corner = {0, 0, 0}});
+    EXPECT_EQ(slot_of(simulation.add_body(body, blue_matter, "late")), slot_of(red));
+  };
+  run_frames(scene, simulation, {},
+             {.frames = 4, .steps = {}, .surface = false, .images = false, .threads = 1, .checkpoints = {}},
+             &cache, report, {.after_step = {}, .after_frame = trade, .stop = {}});
+  const std::vector<std::string> now = material_names(report.info.bodies);
+  for (const auto& past : {report.past_bodies, past_bodies(to_json(report), "report.json")})
+    for (const auto& [frame, material] :
+         {std::pair{0, 0u}, std::pair{2, 0u}, std::pair{3, 1u}, std::pair{4, 1u}}) {
+      const std::vector<Appearance> looks = body_appearances(scene, materials_at(frame, now, past));
+      EXPECT_EQ(looks[slot_of(red)].color, *scene.materials[material].color) << frame;
+      EXPECT_EQ(looks[slot_of(blue)].color, *scene.materials[1].color) << frame;
+    }
+  fs::remove_all(folder);
+}
+
+}  // namespace run_loop_test
+}  // namespace mallow::program

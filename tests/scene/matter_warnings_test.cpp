@@ -61,6 +61,48 @@ TEST_F(matter_warnings, name_iterations_that_nothing_ends) {
   EXPECT_FALSE(with("10"));
 }
 
+TEST_F(matter_warnings, name_a_blade_that_is_too_thin_to_cut_and_nothing_that_is_no_blade) {
+  // Regions of 0.21 m, tear_strain 0.5: a gap of 0.315 m, and a blade of 0.215.
+  const auto of = [&](const std::string& collider, const std::string& material = "plastic_yield = 0.1") {
+    return warnings_of(read(jelly("alpha = 0.3\n" + material, "[[collider]]\n" + collider)));
+  };
+  const std::string thin = "too thin to cut", down = "velocity = [0.0, 0.0, -1.0]\n";
+  const std::string knife = "box = { min = [-0.05, -2, 1], max = [0.05, 2, 3] }\n";
+  EXPECT_TRUE(
+      warns(of(knife + down),
+            "collider 0 is 0.1 m thick across its way, too thin to cut: with a spacing it opens a gap of "
+            "0.2 m, and matter tears beyond 0.315 m"));
+  EXPECT_TRUE(warns(of(knife + down), "make it thicker than 0.215 m"));
+  EXPECT_TRUE(warns(of(knife + "keyframes = [{ time = 0 }, { time = 1, translate = [0, 0, -1] }]\n"), thin));
+  EXPECT_TRUE(warns(of("capsule = { start = [0, -2, 1], end = [0, 2, 1], radius = 0.1 }\n" + down), thin))
+      << "a wire";
+  EXPECT_FALSE(warns(of("box = { min = [-0.11, -2, 1], max = [0.11, 2, 3] }\n" + down), thin)) << "0.22 m";
+  EXPECT_FALSE(warns(of(knife + down, "plastic_yield = 0.1\ntear_strain = 0.0\nregion_radius = 0.19"), thin))
+      << "shorter matter";
+  EXPECT_FALSE(warns(of(knife + down, ""), thin)) << "what does not flow does not tear";
+  EXPECT_FALSE(warns(of(knife), thin)) << "it stands still";
+  EXPECT_FALSE(warns(of(knife + "velocity = [1.0, 0.0, 0.1]\n"), thin)) << "a plate that pushes";
+  EXPECT_FALSE(warns(of("sphere = { center = [0, 0, 2], radius = 0.05 }\n" + down), thin)) << "a ball";
+}
+
+TEST_F(matter_warnings, name_splits_of_what_is_not_torn_or_does_not_stay_apart) {
+  const auto of = [&](const std::string& material, const std::string& body, const std::string& more = "") {
+    std::string text = jelly(material, more);
+    return warnings_of(read(text.insert(text.find("box = "), body + "\n")));
+  };
+  const std::string blade =
+      "[[collider]]\nbox = { min = [-0.2, -2, 1], max = [0.2, 2, 3] }\nvelocity = [0.0, 0.0, -1.0]\n";
+  const std::string elastic = "what is elastic is not by what moves through it";
+  EXPECT_TRUE(warns(of("alpha = 0.3", "splits = true", blade), elastic));
+  EXPECT_FALSE(warns(of("alpha = 0.3", "splits = true"), elastic)) << "nothing moves through it";
+  EXPECT_FALSE(warns(of("alpha = 0.3\nupdate_threshold = 50.0", "splits = true", blade), elastic))
+      << "as asked";
+  EXPECT_FALSE(warns(of("alpha = 0.3\nplastic_yield = 0.1", "splits = true", blade), "splits"));
+  EXPECT_TRUE(warns(of("alpha = 1.0", "splits = true"), "splits has no effect where alpha is 1"));
+  EXPECT_TRUE(warns(of("alpha = 0.3\nplastic_yield = 0.1", "splits = true\nmerges = true"),
+                    "splits and merges undo each other"));
+}
+
 TEST_F(matter_warnings, name_lengths_in_centimetres_under_a_gravity_in_metres) {
   const auto of = [&](const std::string& material, const std::string& spacing,
                       const char* gravity = "-9.81") {

@@ -210,9 +210,17 @@ TEST(sampling, bad_values_are_named) {
 
 TEST(sampling, too_many_points_are_counted_and_refused) {
   // 4/3 π 300³ points, of 600³ in the bounds.
+  const std::string problem =
+      problem_of([] { sample(sphere_shape(Vec3::Zero(), 1.0f), {.spacing = 1.0f / 300.0f}); });
+  EXPECT_NE(problem.find(" and 113"), std::string::npos) << problem;
+}
+
+TEST(sampling, a_spacing_far_too_fine_names_the_width_of_the_shape_and_size) {
   EXPECT_EQ(
-      problem_of([] { sample(sphere_shape(Vec3::Zero(), 1.0f), {.spacing = 1.0f / 300.0f}); }).substr(0, 12),
-      "spacing: 113");
+      problem_of([] { sample(sphere_shape(Vec3::Zero(), 8.5f), {.spacing = 0.005f}); }),
+      "spacing: 0.005 is not allowed: the shape is 17 m wide, 3400 spacings, and its bounds would hold more "
+      "than 1e+09 lattice points; give a spacing that suits its width, or the width that it is meant to "
+      "have (size)");
 }
 
 TEST(sampling, a_count_that_symmetry_forbids_names_the_nearest) {

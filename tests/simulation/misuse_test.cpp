@@ -32,7 +32,32 @@ std::string refusal(const std::function<void()>& act) {
   return {};
 }
 
-TEST(misuse, an_empty_simulation_cannot_be_stepped_and_can_be_filled_later) {
+TEST(misuse, an_empty_simulation_with_a_time_step_lets_time_pass_until_it_is_filled) {
+  const auto run = [](bool waits) {
+    Simulation s({.time_step = 0.15f});
+    if (waits) {
+      s.set_gravity({0, 0, -0.3f});
+      s.add_collider({.shape = Plane{}});
+      const MaterialId material = s.add_material({.alpha = 0.3f});
+      EXPECT_EQ(s.advance(1.5).steps, 10);
+      EXPECT_EQ(s.time(), 1.5);
+      EXPECT_EQ(s.info().particles, 0u);
+      s = Simulation::restore(s.save(), 1);
+      EXPECT_EQ(s.step().time_step, static_cast<double>(0.15f));
+      s.add_body(sample(Lattice{.count = {4, 4, 4}, .corner = {0, 0, 1}, .jitter = 0}), material);
+    } else {
+      s.set_gravity({0, 0, -0.3f});
+      s.add_collider({.shape = Plane{}});
+      s.add_body(sample(Lattice{.count = {4, 4, 4}, .corner = {0, 0, 1}, .jitter = 0}),
+                 Material{.alpha = 0.3f});
+    }
+    for (int k = 0; k < 40; ++k) s.step();
+    return s.positions_by_id();
+  };
+  EXPECT_EQ(run(true), run(false)) << "what comes then moves as what was there at first";
+}
+
+TEST(misuse, an_empty_simulation_without_a_time_step_cannot_be_stepped_and_can_be_filled_later) {
   Simulation s({.support_radius = 2.0f});
   EXPECT_NE(refusal([&] { s.step(); }).find("no particles"), std::string::npos);
   const MaterialId material = s.add_material({});

@@ -107,6 +107,7 @@ TEST(oracle, is_matched_by_two_bodies_that_become_one) {
   ASSERT_NE(found, cases.end());
   Case lumps = *found;
   lumps.blobs[0].material.alpha = {{1e4f, 0.4f}, {2e4f, 1.0f}};
+  lumps.blobs[0].material.tear_strain = 5;  // whether a blow strains half of it is asked of each body by itself
   lumps.blobs[1].center.z() += 1.2f;
   lumps.blobs[1].velocity.z() = -3;
   Simulation engine = engine_of(lumps, true);

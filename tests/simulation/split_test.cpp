@@ -113,6 +113,58 @@ TEST(split, of_bodies_that_are_to_comes_with_the_step_after_they_were_torn) {
   EXPECT_EQ(kinds, (std::vector{BodyEvent::Kind::torn, BodyEvent::Kind::split}));
 }
 
+TEST(split, gives_the_parts_that_a_body_is_in_now_and_not_those_that_it_lost) {
+  Cut cut = cut_bar(solver(), {.alpha = 0}, true);
+  Simulation& s = cut.simulation;
+  s.step();
+  const auto lost = std::ranges::find(s.events(), BodyEvent::Kind::split, &BodyEvent::kind);
+  ASSERT_NE(lost, s.events().end());
+  const BodyId upper = *lost->other;
+  EXPECT_EQ(s.split(cut.body), std::vector{cut.body});
+  EXPECT_EQ(s.split(upper), std::vector{upper});
+  EXPECT_EQ(s.body_count(), 2u);
+  s.remove_particles(slab(14, 17));
+  const std::vector<BodyId> parts = s.split(cut.body);
+  ASSERT_EQ(parts.size(), 2u) << "the part that kept the id was cut once more";
+  EXPECT_EQ(parts[0], cut.body);
+  EXPECT_NE(parts[1], upper);
+  EXPECT_EQ(s.body_count(), 3u);
+}
+
+/// A strand that a nozzle at the origin lets out downwards, cut across at a height between layers that it
+/// holds.
+std::vector<BodyId> cut_strand(Simulation& s, EmitterId nozzle, float height) {
+  s.remove_particles(Aabb{{-9, -9, height}, {9, 9, height + 2.9f}});
+  return s.split(s.body(nozzle));
+}
+
+TEST(split, of_a_strand_leaves_its_emitter_the_part_that_new_layers_come_to) {
+  SolverConfig config = solver();
+  config.gravity = {0, 0, 0};
+  Simulation s(config);
+  Emitter nozzle{.radius = 2.0f, .spacing = 1, .speed = 1};
+  nozzle.pose.rotation = {1, 0, 0, 0};
+  const EmitterId id = s.add_emitter(nozzle, s.add_material({.alpha = 0.1f}), "strand");
+  s.advance(10);
+  const BodyId strand = s.body(id);
+  const std::vector<BodyId> first = cut_strand(s, id, 1);
+  ASSERT_EQ(first.size(), 2u);
+  EXPECT_EQ(first[0], strand);
+  EXPECT_GT(s.bounds(first[0]).min.z(), 3.5f) << "what is behind the cut goes on with the nozzle";
+  EXPECT_LT(s.bounds(first[1]).max.z(), 1.5f);
+  // What the nozzle holds of the other part leaves it; then both are cut once more.
+  s.advance(1);
+  s.remove_particles(slab(-7, -4));
+  for (const BodyId body : s.bodies()) s.split(body);
+  EXPECT_EQ(s.body_count(), 3u);
+  const std::vector<BodyId> second = cut_strand(s, id, 6);
+  ASSERT_EQ(second.size(), 2u);
+  EXPECT_EQ(second[0], strand);
+  s.advance(40);
+  EXPECT_EQ(s.body_count(), 4u);
+  EXPECT_EQ(s.split(strand), std::vector{strand}) << "new layers are held together with those before them";
+}
+
 TEST(split, has_the_same_bits_on_any_number_of_threads_and_after_a_restore_in_between) {
   const auto run = [](int threads, bool restores) {
     Cut cut = cut_bar(solver(threads), {.alpha = 0.1f}, true);

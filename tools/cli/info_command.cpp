@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "cli/messages.h"
+#include "cli/run_info.h"
 #include "cli/scene_options.h"
 #include "mallow/scene.h"
 #include "program/machine.h"
@@ -202,7 +205,25 @@ void print_sleep(const Scene& scene, const SimulationInfo& info) {
                 source(scene.solver.sleep_time.has_value(), "60 time steps or more"));
 }
 
+/// Where matter comes from and where it goes.
+void print_sources(const Scene& scene) {
+  std::printf("emitters         %zu\n", scene.emitters.size());
+  std::printf("sinks            %zu", scene.sinks.size());
+  const char* before = ", taking";
+  for (const SceneSink& sink : scene.sinks) {
+    const auto number = [](float value) { return static_cast<double>(value); };
+    const Vec3 &min = sink.box.min, &max = sink.box.max;
+    std::printf("%s what comes %s [%g, %g, %g] to [%g, %g, %g]", before, sink.outside ? "out of" : "into",
+                number(min.x()), number(min.y()), number(min.z()), number(max.x()), number(max.y()),
+                number(max.z()));
+    before = ",";
+  }
+  std::printf("\n");
+}
+
 void info(const InfoOptions& options) {
+  if (std::error_code unknown; std::filesystem::is_directory(options.scene.file, unknown))
+    return print_run(options.scene, options.print);
   const Scene scene = read_scene(options.scene);
   if (options.print) {
     std::fputs(print_scene(scene).c_str(), stdout);
@@ -231,6 +252,7 @@ void info(const InfoOptions& options) {
         "units            the scene's own, as no planet has such gravity: m, s and Pa stand for them\n");
   std::printf("colliders        %zu\n", scene.colliders.size());
   std::printf("pins             %zu\n", scene.pins.size());
+  print_sources(scene);
   std::printf("instructions     %s\n", name(info.instruction_level));
   std::printf("memory           %.1f MiB\n", static_cast<double>(info.bytes) / (1024.0 * 1024.0));
   std::printf("support radius   %g m, %s\n", static_cast<double>(info.support_radius),
@@ -248,9 +270,10 @@ void info(const InfoOptions& options) {
 
 void add_info_command(CLI::App& app) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* command =
-      app.add_subcommand("info", "Show what would run: particles, neighbours, phases, memory");
+  CLI::App* command = app.add_subcommand(
+      "info", "Show what would run: particles, neighbours, phases, memory; or what a run did");
   add_scene_options(*command, options->scene);
+  command->get_option("SCENE")->description("Scene file (TOML), or the folder of a run");
   program::add_threads_option(*command, options->threads);
   command->add_flag("--print", options->print, "Print only the scene, with every value in it, defaults too");
   command->callback([options] { info(*options); });

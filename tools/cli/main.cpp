@@ -20,7 +20,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
   using namespace mallow::cli;
   CLI::App app("mallow: fast animation of viscoelastic materials", "mallow");
   app.set_version_flag("--version", mallow::version());
-  app.footer("Exit codes: 0 done, 1 the run failed, 2 the input is wrong, 130 Ctrl-C ended it.");
+  app.footer("Exit codes: 0 done, 1 the run failed, 2 the input is wrong, 130 Ctrl-C ended it, 143 SIGTERM.");
   add_run_command(app);
   add_info_command(app);
   add_sample_command(app);

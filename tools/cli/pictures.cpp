@@ -64,7 +64,6 @@ program::Stills prepare(const Scene& scene, const program::Cache& cache, const P
                         const std::vector<int>& frames) {
   program::Stills stills = stills_of(scene, cache, run);
   stills.set_frame_time(run.frame_time);
-  stills.set_appearances(run.appearances);
   std::filesystem::create_directories(cache.images_folder());
   cache.remove_images_but(frames);
   return stills;
@@ -88,6 +87,7 @@ std::size_t share_pictures(const Scene& scene, const program::Cache& cache, cons
         const program::StageTimer timer(seconds, program::Stage::pictures);
         const ParticleFrame particles = read_particles(cache.particles_file(number));
         const Mesh surface = with_surfaces ? read_mesh(cache.surface_file(number)) : Mesh{};
+        stills.set_appearances(run.appearances(number));
         auto picture = std::make_shared<const render::Image>(stills.take(particles, surface));
         files.add([&cache, number, picture, claim] {
           render::write_png(cache.image_file(number), *picture);
@@ -108,6 +108,7 @@ std::size_t take_pictures(const Scene& scene, const program::Cache& cache, const
   for_each_frame(frames, "rendering", [&](int number) {
     const program::StageTimer timer(seconds, program::Stage::pictures);
     const FrameReader::Frame frame = reader.next();
+    stills.set_appearances(run.appearances(number));
     auto picture = std::make_shared<const render::Image>(stills.take(frame.particles, frame.surface));
     files.add([&cache, number, picture] { render::write_png(cache.image_file(number), *picture); });
   });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "mallow/scene.h"
@@ -12,9 +13,10 @@ namespace mallow::cli {
 
 /// What pictures ask of the run that they are of.
 struct PictureRun {
-  std::vector<float> spacings;          ///< h of each body [m]
-  std::vector<Appearance> appearances;  ///< of each body, by its slot
-  double frame_time;                    ///< [s]
+  std::vector<float> spacings;  ///< h of each body [m]
+  /// Of each body, by the slot that it has in a frame.
+  std::function<std::vector<Appearance>(int frame)> appearances;
+  double frame_time;  ///< [s]
   int threads;
 };
 

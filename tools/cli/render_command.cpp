@@ -40,7 +40,11 @@ std::string job_of(const program::CachedRun& run, const std::vector<int>& frames
 
 PictureRun picture_run(const program::CachedRun& run) {
   return {.spacings = run.spacings,
-          .appearances = program::body_appearances(run.scene, run.materials),
+          .appearances =
+              [&run, past = program::past_bodies(run.report, run.cache.report_file())](int frame) {
+                return program::body_appearances(run.scene,
+                                                 program::materials_at(frame, run.materials, past));
+              },
           .frame_time = run.report.value("frame_time", 0.0),
           .threads = run.threads};
 }

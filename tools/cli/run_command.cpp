@@ -163,6 +163,7 @@ Run begin(const RunOptions& options, int threads) {
     if (run.plan.surface && !options.out.empty()) run.skins = skins(run.scene, *run.simulation, threads);
     describe(run.scene, threads, *run.simulation, run.report);
   }
+  program::watch_for_interrupt();  // from here on files are written
   if (!options.out.empty()) {
     run.cache = program::Cache::create(options.out, options.overwrite);
     print_warning(run.cache->lock_warning());
@@ -202,16 +203,15 @@ void take_changes(const Scene& now, bool own, const std::string& file, Scene& sc
   scene.run.frames = now.run.frames;
 }
 
-/// The series of a run that goes on, behind the rows that its checkpoint knows of.
+/// The series of a run that goes on, behind the rows that its checkpoint knows of, or from here on.
 void resume_series(const RunOptions& options, const program::CheckpointedRun& saved, Run& run) try {
   if (!saved.series.empty()) {
     run.series.emplace(saved.series, options.series, *run.simulation);
   } else if (!options.series.empty()) {
-    throw IoError(
-        {options.series, 0, 0, "--series",
-         "cannot be begun in the middle: this run was started without --series, so that the rows up "
-         "to frame " +
-             std::to_string(saved.report.frames) + " are not known"});
+    run.series.emplace(options.series, *run.simulation);
+    print_warning(
+        "--series " + options.series + ": begins behind frame " + std::to_string(saved.report.frames) +
+        ", as the run was started without it; of bodies that were torn by then it counts parts from 1 on");
   }
 } catch (const nlohmann::json::exception& error) {
   throw IoError({saved.file.string(), 0, 0, "", error.what()});
@@ -238,6 +238,7 @@ Run resume(const RunOptions& options, int threads) {
 
   Run run;
   run.simulation = std::move(saved.simulation);
+  program::watch_for_interrupt();  // from here on files are written
   resume_series(options, saved, run);
   run.scene = std::move(saved.scene);
   run.plan = saved.plan;
@@ -289,11 +290,13 @@ void simulate(Run& run, const program::Cache* cache) {
   const program::RunEnd end = program::run_frames(run.scene, *run.simulation, run.skins, run.plan, cache,
                                                   run.report, callbacks, run.series ? &*run.series : nullptr);
   if (end == program::RunEnd::complete) return;
-  const std::string said = "interrupted after " + std::to_string(run.report.steps) + " steps";
-  throw program::Interrupted(
-      cache ? said + "; to go on: mallow run --resume " + program::shell_word(cache->folder().string())
-            : said,
-      program::interrupted());
+  const std::string said = "interrupted after " + std::to_string(run.report.steps) + " steps; ";
+  throw program::Interrupted(said + (cache ? std::to_string(run.report.frames + 1) +
+                                                 " frames are whole, and a checkpoint is there; "
+                                                 "to go on: mallow run --resume " +
+                                                 program::shell_word(cache->folder().string())
+                                           : "there is nothing to go on from, as --out was not given"),
+                             program::interrupted());
 }
 
 /// Motion, surfaces, pictures and film; the report says what was done, also when this throws.
@@ -305,15 +308,17 @@ void run_stages(const RunOptions& options, Run& run) {
   if (!run.scene.render.eye) {
     std::vector<float> spacings;
     for (const BodyInfo& body : run.report.info.bodies) spacings.push_back(body.spacing);
-    take_pictures(run.scene, *cache,
-                  {spacings, run.report.appearances, run.report.frame_time, run.plan.threads},
+    const auto looks = [&, now = program::material_names(run.report.info.bodies)](int frame) {
+      return program::body_appearances(run.scene, program::materials_at(frame, now, run.report.past_bodies));
+    };
+    take_pictures(run.scene, *cache, {spacings, looks, run.report.frame_time, run.plan.threads},
                   run.report.stage_seconds);
   }
   const program::StageTimer timer(run.report.stage_seconds, program::Stage::film);
   make_film(options.film, *cache, run.scene.render.frames_per_second);
 }
 
-void print_result(const program::Cache* cache, const program::RunReport& report) {
+void print_result(const Scene& scene, const program::Cache* cache, const program::RunReport& report) {
   std::printf("particles %zu\nframes %d\nsteps %lld\nsimulated_time %.9g\nstate_hash %s\n",
               report.info.particles, report.frames, static_cast<long long>(report.steps),
               report.simulated_time, program::hash_text(report.state_hash).c_str());
@@ -321,10 +326,14 @@ void print_result(const program::Cache* cache, const program::RunReport& report)
   if (events.torn > 0 || events.merged > 0)
     std::printf("torn %lld\nmerged %lld\n", static_cast<long long>(events.torn),
                 static_cast<long long>(events.merged));
+  if (!scene.sinks.empty()) std::printf("drained %lld\n", static_cast<long long>(report.drained));
   if (cache) std::printf("summary %s\n", cache->summary_file().c_str());
 }
 
 void run(const RunOptions& options) {
+  program::end_at_interrupt(options.resume.empty()
+                                ? "interrupted before the run began; nothing was written"
+                                : "interrupted before the run went on; its folder is as it was");
   check_outputs(options);
   const int threads = program::resolve_threads(options.threads);
   Run run = options.resume.empty() ? begin(options, threads) : resume(options, threads);
@@ -334,7 +343,6 @@ void run(const RunOptions& options) {
 
   // From here on something is computed, so what goes wrong is a failure of the run, and is reported as far as
   // it came.
-  program::watch_for_interrupt();
   const auto close_report = [&](const std::string& why_ended) {
     run.report.error = why_ended;
     run.report.complete = why_ended.empty();
@@ -347,8 +355,10 @@ void run(const RunOptions& options) {
     if (out) out->write_scene(run.scene);
     close_report("the run has not ended yet");
     run_stages(options, run);
-    for (const std::string& warning :
-         program::end_warnings(run.scene, run.report.info, snapshot(*run.simulation))) {
+    std::vector<std::string> warnings =
+        program::end_warnings(run.scene, run.report.info, snapshot(*run.simulation));
+    if (const auto warning = program::pressed_warning(run.report.compression)) warnings.push_back(*warning);
+    for (const std::string& warning : warnings) {
       print_warning(warning);
       run.report.info.warnings.push_back(warning);
     }
@@ -364,7 +374,7 @@ void run(const RunOptions& options) {
     if (dynamic_cast<const program::Interrupted*>(&failure)) throw;
     throw program::RunFailure(failure.what());
   }
-  print_result(out, run.report);
+  print_result(run.scene, out, run.report);
   require_film(options.film);
 }
 
@@ -431,8 +441,14 @@ void add_run_command(CLI::App& app) {
   command->add_option(
       "--series", options->series,
       "Write a row for each frame to this CSV file: heights, volume, energies, forces and more, "
-      "see below. --resume continues it; with --series where it was moved to");
-  command->footer(program::series_help());
+      "see below. --resume continues it; with --series where it was moved to, or, where there was none, from "
+      "there on");
+  command->footer(
+      std::string(program::series_help()) +
+      "\nExit codes: 0 done; 1 the run failed, frames so far are whole; 2 the input is wrong, "
+      "nothing was written;\n130 Ctrl-C or 143 SIGTERM ended it: after the step that it is at, "
+      "with all files whole and a checkpoint from\nwhich --resume goes on, or before it began, with "
+      "nothing written. A second signal ends it at once.\n");
   command->add_flag("--no-surface", options->no_surface, "Make no surfaces; pictures show the particles");
   CLI::Option* no_images =
       command->add_flag("--no-images", options->no_images, "Make no pictures and no film");

@@ -53,4 +53,19 @@ std::vector<std::string> material_names(std::span<const BodyInfo> bodies) {
   return names;
 }
 
+std::vector<PastBody> past_bodies(std::span<const std::string> before, std::span<const std::string> after,
+                                  int frame) {
+  std::vector<PastBody> past;
+  for (std::size_t slot = 0; slot < std::min(before.size(), after.size()); ++slot)
+    if (before[slot] != after[slot]) past.push_back({slot, frame, before[slot]});
+  return past;
+}
+
+std::vector<std::string> materials_at(int frame, std::vector<std::string> now,
+                                      std::span<const PastBody> past) {
+  for (auto body = past.rbegin(); body != past.rend(); ++body)
+    if (frame < body->until && body->slot < now.size()) now[body->slot] = body->material;
+  return now;
+}
+
 }  // namespace mallow::program

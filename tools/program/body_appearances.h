@@ -6,6 +6,7 @@
 
 #include "mallow/scene.h"
 #include "mallow/simulation.h"
+#include "program/run_report.h"
 
 namespace mallow::program {
 
@@ -18,5 +19,12 @@ std::vector<Appearance> body_appearances(const Scene& scene, std::span<const std
 /// gone, what was known stays. Returns whether any has come.
 bool follow_bodies(const Simulation& simulation, std::vector<BodyInfo>& by_slot);
 std::vector<std::string> material_names(std::span<const BodyInfo> bodies);
+
+/// The same before and after bodies have come: those that had a slot until this frame, and another material.
+std::vector<PastBody> past_bodies(std::span<const std::string> before, std::span<const std::string> after,
+                                  int frame);
+/// Names of materials by slot as they were in a frame.
+std::vector<std::string> materials_at(int frame, std::vector<std::string> now,
+                                      std::span<const PastBody> past);
 
 }  // namespace mallow::program

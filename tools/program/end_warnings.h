@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "mallow/files.h"
 #include "mallow/scene.h"
+#include "program/run_report.h"
 
 namespace mallow::program {
 
@@ -18,5 +20,7 @@ double crushed_share(std::span<const Vec3> positions, float spacing);
 /// run's simulation. last: its particles at the end.
 std::vector<std::string> end_warnings(const Scene& scene, const SimulationInfo& info,
                                       const ParticleFrame& last);
+/// Likewise, where something closed on matter and left it less room than it fills; else nothing.
+std::optional<std::string> pressed_warning(const RunReport::Compression& compression);
 
 }  // namespace mallow::program

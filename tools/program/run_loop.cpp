@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <span>
 #include <string>
@@ -77,8 +78,11 @@ class FrameWriter {
         whole_frames_ = number;
       });
     }
+    const std::vector<std::string> before = material_names(report_.info.bodies);
     if (follow_bodies(simulation, report_.info.bodies)) {
-      report_.appearances = body_appearances(scene_, material_names(report_.info.bodies));
+      const std::vector<std::string> now = material_names(report_.info.bodies);
+      std::ranges::copy(past_bodies(before, now, number), std::back_inserter(report_.past_bodies));
+      report_.appearances = body_appearances(scene_, now);
       if (stills_) stills_->set_appearances(report_.appearances);
     }
     if (stills_) {

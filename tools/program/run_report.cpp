@@ -64,6 +64,22 @@ nlohmann::ordered_json events_json(const RunReport& report) {
   return {{"yielded", report.events.yielded}, {"torn", report.events.torn}, {"merged", report.events.merged}};
 }
 
+nlohmann::ordered_json past_bodies_json(const RunReport& report) {
+  nlohmann::ordered_json past = nlohmann::ordered_json::array();
+  for (const PastBody& body : report.past_bodies)
+    past.push_back({{"slot", body.slot}, {"until", body.until}, {"material", body.material}});
+  return past;
+}
+
+std::vector<PastBody> past_bodies_from(const nlohmann::ordered_json& all) {
+  std::vector<PastBody> past;
+  for (const auto& body : all)
+    past.push_back({.slot = body.at("slot").get<std::size_t>(),
+                    .until = body.at("until").get<int>(),
+                    .material = body.at("material").get<std::string>()});
+  return past;
+}
+
 nlohmann::ordered_json compression_json(const RunReport& report) {
   return {{"mean", report.compression.mean}, {"largest", report.compression.largest}};
 }
@@ -149,6 +165,7 @@ void RunReport::add(const StepReport& step, const Simulation& simulation) {
   smallest_step = steps == 1 ? step.time_step : std::min(smallest_step, step.time_step);
   largest_step = std::max(largest_step, step.time_step);
   if (step.limited) ++limited_steps;
+  drained += static_cast<std::int64_t>(step.drained);
   if (step.updated_references > 0) reference_updates.push_back({steps, step.updated_references});
   for (std::size_t i = 0; i < k_phase_count; ++i) phase_seconds[i] += step.seconds[i];
   add_loads(step.time_step, simulation);
@@ -172,6 +189,8 @@ nlohmann::ordered_json RunReport::progress() const {
           {"limited_steps", limited_steps},
           {"reference_updates", updates_json(*this)},
           {"events", events_json(*this)},
+          {"drained", drained},
+          {"past_bodies", past_bodies_json(*this)},
           {"compression", compression_json(*this)},
           {"loads", kept_loads(loads)},
           {"resumed_after", resumed_after},
@@ -197,6 +216,9 @@ void RunReport::set_progress(const nlohmann::ordered_json& progress) {
     counts->at("torn").get_to(events.torn);
     counts->at("merged").get_to(events.merged);
   }
+  if (const auto found = progress.find("drained"); found != progress.end()) found->get_to(drained);
+  if (const auto found = progress.find("past_bodies"); found != progress.end())
+    past_bodies = past_bodies_from(*found);
   if (const auto found = progress.find("compression"); found != progress.end()) {
     found->at("mean").get_to(compression.mean);
     found->at("largest").get_to(compression.largest);
@@ -242,6 +264,8 @@ nlohmann::ordered_json to_json(const RunReport& report) {
             {"limited_steps", report.limited_steps}}},
           {"reference_updates", updates_json(report)},
           {"events", events_json(report)},
+          {"drained", report.drained},
+          {"past_bodies", past_bodies_json(report)},
           {"compression", compression_json(report)},
           {"loads", loads_json(report)},
           {"resumed_after", report.resumed_after},
@@ -322,6 +346,16 @@ std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std
 std::vector<std::string> material_names(const nlohmann::ordered_json& report,
                                         const std::filesystem::path& file) {
   return of_bodies<std::string>(report, "material", file);
+}
+
+std::vector<PastBody> past_bodies(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
+  const auto found = report.find("past_bodies");
+  if (found == report.end()) return {};
+  try {
+    return past_bodies_from(*found);
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw IoError({file.string(), 0, 0, "past_bodies", error.what()});
+  }
 }
 
 }  // namespace mallow::program

@@ -36,6 +36,13 @@ class StageTimer {
   Clock::time_point started_ = Clock::now();
 };
 
+/// A body whose slot another one has by now: frames name bodies by slots.
+struct PastBody {
+  std::size_t slot = 0;
+  int until = 0;  ///< the first frame in which it is the other one's
+  std::string material = {};
+};
+
 /// What a run did: report.json.
 struct RunReport {
   std::string scene;
@@ -63,6 +70,8 @@ struct RunReport {
   struct Events {
     std::int64_t yielded = 0, torn = 0, merged = 0;
   } events;
+  std::int64_t drained = 0;           ///< particles that sinks took
+  std::vector<PastBody> past_bodies;  ///< in the order of frames
   /// Of volume iterations, where there are any: StepReport::mean_compression and largest_compression.
   struct Compression {
     double mean = 0;     ///< over all particles, in the step where it was largest
@@ -110,5 +119,7 @@ std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std
 /// Names of the materials of the same. Throws IoError likewise.
 std::vector<std::string> material_names(const nlohmann::ordered_json& report,
                                         const std::filesystem::path& file);
+/// RunReport::past_bodies; none in a report of an earlier version. Throws IoError likewise.
+std::vector<PastBody> past_bodies(const nlohmann::ordered_json& report, const std::filesystem::path& file);
 
 }  // namespace mallow::program

@@ -22,10 +22,10 @@ enum class PinId : std::uint64_t {};
 enum class EmitterId : std::uint64_t {};
 /// Of Simulation::add_sink().
 enum class SinkId : std::uint64_t {};
-/// Materials are counted from 0 and stay.
-enum class MaterialId : std::uint32_t {};
+/// Of Simulation::add_material(), and of the material that Simulation::add_body() makes for a body.
+enum class MaterialId : std::uint64_t {};
 
-/// The slot of a particle, body, collider or pin.
+/// The slot of a particle, body, collider, pin or material.
 template <class Id>
 constexpr std::uint32_t slot_of(Id id) {
   return static_cast<std::uint32_t>(id);

@@ -45,6 +45,7 @@ struct StepReport {
   bool neighbors_found = false;  ///< neighbour lists were found anew, not kept (SolverConfig::neighbor_slack)
   int updated_references = 0;    ///< bodies whose reference shape was updated at the start of this step
   std::size_t awake_bodies = 0;  ///< that moved in it
+  std::size_t drained = 0;       ///< particles that sinks took before it
   /// Of the volume constraint, SolverConfig::volume_iterations: those taken, and the compressions that the
   /// last look found, s = max(0, ρ/ρ0 − 1) at the end of the step as far as velocities say it: with a
   /// tolerance those that are left, without one those before the last iteration.
@@ -112,6 +113,7 @@ struct AdvanceReport {
   double max_velocity = 0;              ///< largest V of eq. 12 [m/s]
   std::int64_t limited_steps = 0;       ///< StepReport::limited
   std::int64_t updated_references = 0;  ///< updates of reference shapes, summed over bodies
+  std::int64_t drained = 0;             ///< particles that sinks took
   std::int64_t volume_iterations = 0;   ///< summed over steps
   double largest_compression = 0;       ///< StepReport::largest_compression, the largest
   PhaseTimes seconds{};

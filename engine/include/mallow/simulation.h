@@ -153,13 +153,15 @@ class MALLOW_EXPORT Simulation {
   /// @copydoc Simulation(Simulation&&)
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// A material that bodies share. Throws ConfigError with every value that is out of range.
+  /// A material that bodies share; it stays, whoever is made of it. Throws ConfigError with every value that
+  /// is out of range.
   MaterialId add_material(const Material& material, std::string name = {});
   /// Adds a body; its particles get the next ids. Throws ConfigError, and changes nothing, also where a point
   /// is nearer than a tenth of the spacing to another one of the body or to a particle that is there, or
   /// where floats cannot tell points apart so far from 0.
   BodyId add_body(const Body& body, MaterialId material, std::string name = {});
-  /// Adds a body of a material of its own.
+  /// Adds a body of a material of its own, which material(BodyId) names: others may be made of it too. It
+  /// goes with the last of them, and its id names nobody again.
   BodyId add_body(const Body& body, const Material& material, std::string name = {});
   /// Adds particles to a body, with its spacing: all of it is one piece, with one reference shape. In one
   /// that already moved the others keep where they rest, and a new particle rests beside the one that it is
@@ -177,9 +179,11 @@ class MALLOW_EXPORT Simulation {
   std::size_t remove_particles(const Aabb& region);
   /// Parts of a body that shape matching no longer holds together become bodies of their own, of the same
   /// material, that rest and move as they did: they touch each other as bodies do. The largest keeps the id,
-  /// or the one that an emitter holds; the others are named after it, and `split` events name them. Parts of
-  /// fewer than four particles stay with it. Returns all of them, the one that keeps the id first: that alone
-  /// where the body is in one part. Throws ConfigError where there is none of this id. See Body::splits.
+  /// or the one that an emitter puts new layers behind; the others are named after it, and `split` events
+  /// name them. Parts of fewer than four particles stay with it. Returns all of them, the one that keeps the
+  /// id first: that alone where the body is in one part now. What it lost before, by an earlier call or as
+  /// Body::splits says, is a body of its own and no part of it any more: the events of then named it. Throws
+  /// ConfigError where there is none of this id.
   std::vector<BodyId> split(BodyId body);
   /// An obstacle from the next step on. Throws ConfigError with every value that is out of range.
   ColliderId add_collider(const Collider& collider);
@@ -189,8 +193,9 @@ class MALLOW_EXPORT Simulation {
   void set_collider(ColliderId id, const Collider& collider);
   /// It is gone from the next step on. Throws ConfigError where there is none of this id.
   void remove_collider(ColliderId collider);
-  /// A nozzle, and a body that is its strand: what it holds behind it is there at once. Throws what
-  /// add_body() throws.
+  /// A nozzle, and a body that is its strand: what it holds behind it is there at once, and is part of the
+  /// body in all that is asked of it (volume(), heat(), bounds(), motion()); held() names it, for who wants
+  /// only what has left. Throws what add_body() throws.
   EmitterId add_emitter(const Emitter& emitter, MaterialId material, std::string name = {});
   /// Its strand.
   BodyId body(EmitterId emitter) const;
@@ -289,8 +294,8 @@ class MALLOW_EXPORT Simulation {
   /// A body that is not enabled stands where it is, is met by nothing, taken by no sink, and costs nothing.
   /// The nozzle of a strand stands still with it; one with keyframes is where they say in the step after it
   /// is enabled again. It is still seen in every view, goes on as fast as it was when it is enabled again,
-  /// and nothing may be added where it overlaps it. Throws ConfigError where there is none of this id, or no
-  /// longer.
+  /// and nothing may be added where it overlaps it: enabled again, the two would stand in one place. Throws
+  /// ConfigError where there is none of this id, or no longer.
   void enable(BodyId body, bool enabled);
   /// As set last; true at first. Throws as enable() does.
   bool is_enabled(BodyId body) const;
@@ -321,8 +326,10 @@ class MALLOW_EXPORT Simulation {
 
   /// Allocates, sorts and builds what the first step needs; step() does it where it was not done. The first
   /// call settles what a config leaves out, from the bodies that are there; later ones do not change it.
-  /// Throws ConfigError where there are no particles, nothing says how long a step is, steps are too long for
-  /// a material's springs, or neighbour lists would take more than memory_limit.
+  /// Where no particle has come yet, they are left to a later call, and steps only pass the time: a level may
+  /// begin empty where SolverConfig::time_step is given. Throws ConfigError where nothing says how long a
+  /// step is, steps are too long for a material's springs, or neighbour lists would take more than
+  /// memory_limit.
   void prepare();
   /// One step of algorithm 3.3 of the paper. Throws StepError and keeps the state where Δt would fall below
   /// Δt0/1000 or a number is not finite: it names the particle and the phase.
@@ -343,8 +350,8 @@ class MALLOW_EXPORT Simulation {
   std::size_t body_count() const;
   /// Those that there are, in the order of their rows.
   std::vector<BodyId> bodies() const;
-  /// The first body of this name, in the order of bodies(); nullopt where none is called so. Compares with
-  /// each name: keep the id.
+  /// The first body of this name, in the order of bodies(); nullopt where none is called so. The first call
+  /// looks at each body, later ones only at those of the name.
   std::optional<BodyId> find_body(std::string_view name) const;
   /// As it was added; where that was without one, a name was made. Valid until bodies come or go. Throws
   /// ConfigError where there is none of this id, or no longer.
