@@ -35,7 +35,8 @@ constexpr double k_little = 0.1;
 constexpr double k_chaos = 0.5;
 /// Below this order of convergence, halving the step leads nowhere.
 constexpr double k_no_order = 0.5;
-constexpr double k_grown = 1.25;  ///< see parts_again()
+constexpr float k_fine_voxels = 2;  ///< of the surface that others are compared with: so many times as many
+constexpr double k_grown = 1.25;    ///< see parts_again()
 constexpr float k_shortest_factor = 0.01f;
 
 /// Whether the last halving moved particles farther than the one before, by more than chance.
@@ -98,6 +99,9 @@ class Maker {
     building_ = wall_clock() - begin;
     const SimulationInfo info = simulation.info();
     traits_ = traits(info);
+    traits_.surface = options_.surface;
+    study_.fine_surface = at_voxels(scene_.surface, k_fine_voxels);
+    study_.fine_surface.adaptivity = 0;
     study_.scene = scene_.file.string();
     study_.all_frames = std::max(1, scene_.run.frames);
     study_.frame_time = frame_time(scene_, info);
@@ -114,9 +118,12 @@ class Maker {
   void run_plain() {
     say("the scene as it is");
     look();
+    SurfaceCheck surface;
     const auto run = [&](double share) {
       const double begin = wall_clock();
-      Motion motion = runner_->run(scene_, {.running = share * budget(), .drawn = options_.surface});
+      surface = {study_.fine_surface};
+      Motion motion =
+          runner_->run(scene_, {.running = share * budget(), .drawn = options_.surface, .surface = &surface});
       plain_cost_ = wall_clock() - begin;
       if (!motion.failure.empty()) throw program::RunFailure(motion.failure);
       study_.frames = static_cast<int>(motion.frame_seconds.size());
@@ -137,7 +144,7 @@ class Maker {
       motion = run(1);  // with moments at its end
       if (study_.frames < reached) throw too_small(motion, fewest);
     }
-    add_row({.name = "as it is", .scene = scene_}, std::move(motion));
+    add_row({.name = "as it is", .scene = scene_}, std::move(motion), surface.error);
   }
 
   /// What to say where not even `fewest` frames were reached.
@@ -155,8 +162,8 @@ class Maker {
         " frames this scene needs about --budget " + number(digit * std::ceil(needed / digit), 6) + "s");
   }
 
-  void add_row(const Setting& setting, Motion motion) {
-    Row row{.setting = setting, .motion = std::move(motion)};
+  void add_row(const Setting& setting, Motion motion, std::optional<double> surface) {
+    Row row{.setting = setting, .motion = std::move(motion), .surface = surface};
     row.seconds.push_back(row.motion.seconds_per_frame());
     row.drawing.push_back(row.motion.draw_seconds_per_frame());
     study_.rows.push_back(std::move(row));
@@ -225,9 +232,11 @@ class Maker {
 
   void run_setting(const Setting& setting) {
     say(setting.name);
-    Motion motion = runner_->run(setting.scene, {.deadline = end(), .drawn = options_.surface});
+    SurfaceCheck surface{study_.fine_surface};
+    Motion motion =
+        runner_->run(setting.scene, {.deadline = end(), .drawn = options_.surface, .surface = &surface});
     if (motion.failure.empty() && static_cast<int>(motion.frame_seconds.size()) == study_.frames)
-      add_row(setting, std::move(motion));
+      add_row(setting, std::move(motion), surface.error);
     else if (motion.failure.empty())
       study_.left_out.push_back(setting.name);
     else
