@@ -26,7 +26,9 @@ Viewer::Viewer(const ViewerOptions& options)
     : options_(options),
       window_(options.window, events()),
       drawer_(window_.draws_in_software() && options.samples <= 1),
-      stepping_(std::make_unique<SteppingThread>(SessionOptions{.threads = options.threads}, Window::wake)) {
+      stepping_(std::make_unique<SteppingThread>(
+          SessionOptions{.threads = options.threads, .lowers_threads = options.lowers_threads},
+          Window::wake)) {
   if (options_.samples == 0) options_.samples = window_.draws_in_software() ? 1 : 4;
   if (!options.scene.empty()) open(options.scene);
 }

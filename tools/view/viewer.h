@@ -26,7 +26,8 @@ struct ViewerOptions {
   std::filesystem::path scenes;  ///< folder of the gallery
   std::vector<std::string> overrides;
   int threads = 1;
-  int samples = 0;  ///< a pixel; 0: 4, or 1 where the driver draws in software
+  bool lowers_threads = false;  ///< beside other programs
+  int samples = 0;              ///< a pixel; 0: 4, or 1 where the driver draws in software
   Window::Options window;
   bool paused = false;
 };
