@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include "program/failure.h"
 #include "program/film_bounds.h"
 #include "program/machine.h"
 #include "render/viewport.h"
+#include "tradeoff/reference.h"
 #include "tradeoff/runner.h"
 #include "tradeoff/tables.h"
 
@@ -28,22 +28,11 @@ constexpr std::size_t k_few = 5;          ///< rows that are worth more than tim
 constexpr double k_few_share = 0.95;      ///< by which first runs of so few have begun
 constexpr double k_search_share = 0.8;    ///< by which those that lead on from the best have begun
 constexpr int k_most_rounds = 8;          ///< of turning knobs on
-/// The reference is converged where its last halving moved particles by less than this share of what the
-/// scene as it is is off.
-constexpr double k_little = 0.1;
 /// Part of the settings' errors from which on the last bit's is told.
 constexpr double k_chaos = 0.5;
 /// Below this order of convergence, halving the step leads nowhere.
 constexpr double k_no_order = 0.5;
 constexpr float k_fine_voxels = 2;  ///< of the surface that others are compared with: so many times as many
-constexpr double k_grown = 1.25;    ///< see parts_again()
-constexpr float k_shortest_factor = 0.01f;
-
-/// Whether the last halving moved particles farther than the one before, by more than chance.
-bool parts_again(const std::vector<double>& differences) {
-  const std::size_t n = differences.size();
-  return n > 1 && differences[n - 1] > k_grown * differences[n - 2];
-}
 
 /// The pixels of the scene's camera.
 PixelOf camera_of(const Scene& scene, const Motion& motion) {
@@ -67,7 +56,13 @@ class Maker {
 
   Study make() {
     run_plain();
-    find_reference();
+    study_.reference = find_reference({.scene = scene_,
+                                       .plain = study_.rows.front().motion,
+                                       .plain_cost = plain_cost_,
+                                       .until = start_ + k_reference_share * budget(),
+                                       .end = end(),
+                                       .say = [this](const std::string& what) { say(what); }},
+                                      *runner_);
     run_settings();
     run_last_bit();
     search();
@@ -167,53 +162,6 @@ class Maker {
     row.seconds.push_back(row.motion.seconds_per_frame());
     row.drawing.push_back(row.motion.draw_seconds_per_frame());
     study_.rows.push_back(std::move(row));
-  }
-
-  /// Halves the step until that changes little. Steps alone cost more, not drawing.
-  void find_reference() {
-    Reference& reference = study_.reference;
-    const bool is_finest = print_scene(finest(scene_, 1)) == print_scene(scene_);
-    const double begin = wall_clock();
-    const std::vector<double>& drawing = study_.rows.front().motion.draw_seconds;
-    double factor = 1, cost = plain_cost_ - std::accumulate(drawing.begin(), drawing.end(), 0.0);
-    Motion before = is_finest ? study_.rows.front().motion : run_finest(1);
-    if (!is_finest) cost = wall_clock() - begin;
-    const double building = std::min(cost, before.other_seconds);  // of which shorter steps need no more
-    reference.factors.push_back(1);
-    reference.motion = before;
-    while (static_cast<float>(factor) * scene_.solver.time_step_factor > 2 * k_shortest_factor &&
-           2 * cost - building < left(k_reference_share)) {
-      factor /= 2;
-      const double started = wall_clock();
-      say("reference, steps of 1/" + std::to_string(static_cast<int>(1 / factor)));
-      Motion motion = run_finest(factor);
-      cost = wall_clock() - started;
-      if (!motion.failure.empty() || motion.moments.size() != before.moments.size()) break;
-      reference.factors.push_back(factor);
-      reference.differences.push_back(motion_error(before, motion).rms);
-      reference.late_shape = motion_error(before, motion, k_late).shape();
-      // The one before stays the reference: in still shorter steps rounding counts more than the step.
-      reference.parts_again = parts_again(reference.differences);
-      if (reference.parts_again) break;
-      reference.factor = factor;
-      reference.motion = motion;
-      before = std::move(motion);
-      const double off = motion_error(study_.rows.front().motion, reference.motion).rms;
-      reference.converged = reference.differences.back() < k_little * off;
-      if (reference.converged) break;
-    }
-    reference.order = convergence_order(reference.differences);
-    if (reference.parts_again) {
-      reference.error = reference.differences.back();
-    } else if (!reference.differences.empty()) {
-      // What is left of a geometric series; with no order known, as much as the last difference.
-      const double ratio = reference.order && *reference.order > 0.2 ? std::exp2(*reference.order) : 2;
-      reference.error = reference.differences.back() / (ratio - 1);
-    }
-  }
-
-  Motion run_finest(double factor) {
-    return runner_->run(finest(scene_, static_cast<float>(factor)), {.deadline = end()});
   }
 
   void run_settings() {
