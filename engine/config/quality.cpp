@@ -45,6 +45,18 @@ SolverConfig at_time_step(const SolverConfig& config, float factor) {
   return result;
 }
 
+SurfaceConfig at_voxels(const SurfaceConfig& config, float factor) {
+  check_factor(factor);
+  SurfaceConfig result = config;
+  result.voxels_per_spacing =
+      within(range_of(&SurfaceConfig::voxels_per_spacing), factor * config.voxels_per_spacing);
+  if (config.voxels)
+    result.voxels = static_cast<int>(
+        std::lround(within(range_of(&SurfaceConfig::voxels), factor * static_cast<float>(*config.voxels))));
+  if (config.voxel_size) result.voxel_size = *config.voxel_size / factor;
+  return result;
+}
+
 const char* name(Quality quality) {
   return quality == Quality::realtime ? "realtime" : quality == Quality::balanced ? "balanced" : "accurate";
 }
@@ -80,15 +92,7 @@ Material with_quality(const Material& material, const SolverConfig& config, Qual
 }
 
 SurfaceConfig with_quality(const SurfaceConfig& config, Quality quality) {
-  const Preset& p = preset(quality);
-  SurfaceConfig result = config;
-  result.voxels_per_spacing =
-      within(range_of(&SurfaceConfig::voxels_per_spacing), p.voxels * config.voxels_per_spacing);
-  if (config.voxels)
-    result.voxels = static_cast<int>(
-        std::lround(within(range_of(&SurfaceConfig::voxels), p.voxels * static_cast<float>(*config.voxels))));
-  if (config.voxel_size) result.voxel_size = *config.voxel_size / p.voxels;
-  return result;
+  return at_voxels(config, preset(quality).voxels);
 }
 
 }  // namespace mallow

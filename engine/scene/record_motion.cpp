@@ -97,8 +97,9 @@ bool run_frame(Simulation& simulation, double end, const MotionPlan& plan, Motio
 }
 
 void run_frames(Simulation& simulation, const MotionPlan& plan, Motion& motion) {
+  const double begin = simulation.time();
   for (int frame = 1; frame <= plan.frames; ++frame) {
-    if (!run_frame(simulation, frame * plan.frame_time, plan, motion)) return;
+    if (!run_frame(simulation, begin + frame * plan.frame_time, plan, motion)) return;
     if (!is_recorded(frame, plan)) continue;
     if (plan.draw) {
       const double start = now();
@@ -108,6 +109,36 @@ void run_frames(Simulation& simulation, const MotionPlan& plan, Motion& motion) 
     note_spacings(simulation, motion);
     motion.moments.push_back(moment_of(simulation, plan));
   }
+}
+
+void check(const MotionPlan& plan) {
+  if (plan.frames < 0) throw ConfigError("frames", std::to_string(plan.frames) + " is not allowed: >= 0");
+  if (!(plan.frame_time > 0) || !std::isfinite(plan.frame_time))
+    throw ConfigError("frame_time", std::to_string(plan.frame_time) + " is not allowed: a number > 0");
+  if (plan.moments < 1) throw ConfigError("moments", std::to_string(plan.moments) + " is not allowed: >= 1");
+}
+
+/// act: records into a motion.
+template <class Act>
+Motion timed(const Act& act) {
+  Motion motion;
+  const double start = now();
+  try {
+    act(motion);
+  } catch (const Error& error) {
+    motion.failure = error.what();
+  }
+  motion.other_seconds = now() - start -
+                         std::accumulate(motion.frame_seconds.begin(), motion.frame_seconds.end(), 0.0) -
+                         std::accumulate(motion.draw_seconds.begin(), motion.draw_seconds.end(), 0.0);
+  return motion;
+}
+
+void record(Simulation& simulation, const MotionPlan& plan, Motion& motion) {
+  simulation.prepare();
+  note_spacings(simulation, motion);
+  motion.moments.push_back(moment_of(simulation, plan));
+  run_frames(simulation, plan, motion);
 }
 
 }  // namespace
@@ -121,25 +152,16 @@ double Motion::draw_seconds_per_frame() const {
 }
 
 Motion record_motion(const std::function<Simulation()>& build, const MotionPlan& plan) {
-  if (plan.frames < 0) throw ConfigError("frames", std::to_string(plan.frames) + " is not allowed: >= 0");
-  if (!(plan.frame_time > 0) || !std::isfinite(plan.frame_time))
-    throw ConfigError("frame_time", std::to_string(plan.frame_time) + " is not allowed: a number > 0");
-  if (plan.moments < 1) throw ConfigError("moments", std::to_string(plan.moments) + " is not allowed: >= 1");
-  Motion motion;
-  const double start = now();
-  try {
+  check(plan);
+  return timed([&](Motion& motion) {
     Simulation simulation = build();
-    simulation.prepare();
-    note_spacings(simulation, motion);
-    motion.moments.push_back(moment_of(simulation, plan));
-    run_frames(simulation, plan, motion);
-  } catch (const Error& error) {
-    motion.failure = error.what();
-  }
-  motion.other_seconds = now() - start -
-                         std::accumulate(motion.frame_seconds.begin(), motion.frame_seconds.end(), 0.0) -
-                         std::accumulate(motion.draw_seconds.begin(), motion.draw_seconds.end(), 0.0);
-  return motion;
+    record(simulation, plan, motion);
+  });
+}
+
+Motion record_motion(Simulation& simulation, const MotionPlan& plan) {
+  check(plan);
+  return timed([&](Motion& motion) { record(simulation, plan, motion); });
 }
 
 }  // namespace mallow

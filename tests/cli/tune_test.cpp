@@ -102,8 +102,25 @@ TEST_F(cli_tune, page_shows_the_scene_as_it_is_beside_a_setting_in_one_film) {
 TEST_F(cli_tune, nothing_that_holds_is_a_failure_that_names_the_nearest) {
   const Outcome outcome = tune({"--frame", "0.00001ms", "--write", at("tuned.toml")});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_NE(outcome.err.find("no setting holds --frame 0.00001ms; the nearest is"), std::string::npos)
+  EXPECT_NE(outcome.err.find("no pick: no setting holds --frame 0.00001ms; the nearest is"),
+            std::string::npos)
       << outcome.err;
+  EXPECT_EQ(outcome.out.find("pick"), std::string::npos) << outcome.out;
+  EXPECT_EQ(read_text(at("tuned.toml")), "");
+}
+
+TEST_F(cli_tune, error_below_that_of_the_reference_has_one_verdict_that_says_what_to_do) {
+  const Outcome outcome = tune({"--error", "0.0000001h", "--write", at("tuned.toml"), "--out", at("study")});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.err.find("no pick: --error 0.0000001h cannot be judged, as "), std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.err.find("--budget"), std::string::npos) << outcome.err;
+  for (const char* other : {"pick", "nearest"})
+    EXPECT_EQ(outcome.out.find(other), std::string::npos) << outcome.out;
+  const nlohmann::json pick = read_json(at("study/tradeoff.json")).at("pick");
+  EXPECT_FALSE(pick.at("holds").get<bool>());
+  EXPECT_NE(pick.at("not_judged"), "");
+  EXPECT_EQ(read_text(at("study/index.html")).find("class=\"picked\""), std::string::npos);
   EXPECT_EQ(read_text(at("tuned.toml")), "");
 }
 

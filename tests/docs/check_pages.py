@@ -8,6 +8,8 @@ import subprocess
 import sys
 import tempfile
 
+import messages
+
 SOURCE, PROGRAM = pathlib.Path(sys.argv[1]), sys.argv[2]
 PAGES = [SOURCE / "README.md", *sorted((SOURCE / "tools").rglob("*.md")), *sorted((SOURCE / "engine").glob("*.md")),
          SOURCE / ".github/CONTRIBUTING.md", *sorted((SOURCE / "bench").glob("*.md"))]
@@ -69,8 +71,19 @@ def check_programs(page, text):
             problem(page, text, found.start())("no example has this program")
 
 
+def check_cmake(page, text):
+    """Lines of CMake stand in the project that tests/install builds."""
+    built = (SOURCE / "tests/install/consumer/CMakeLists.txt").read_text().splitlines()
+    for found in re.finditer(r"^```cmake\n(.*?)^```", text, re.M | re.S):
+        for line in found[1].splitlines():
+            if line not in built:
+                problem(page, text, found.start())(f"tests/install/consumer does not build with '{line}'")
+
+
 def check_scenes(page, text):
     for found in re.finditer(r"^```toml\n(.*?)^```", text, re.M | re.S):
+        if found[1].startswith("scene ="):
+            continue  # a sweep, which run_snippets.py runs
         with tempfile.TemporaryDirectory() as folder:
             scene = pathlib.Path(folder) / "scene.toml"
             scene.write_text(found[1])
@@ -82,18 +95,24 @@ def check_scenes(page, text):
             problem(page, text, found.start())(f"no {found[0]}")
 
 
-def messages():
+def strings():
     """All strings of the sources, those in several parts joined."""
-    sources = [*(SOURCE / "engine").rglob("*.cpp"), *(SOURCE / "engine").rglob("*.h"), *(SOURCE / "tools").rglob("*.cpp")]
+    sources = [*(SOURCE / "engine").rglob("*.cpp"), *(SOURCE / "engine").rglob("*.h"), *(SOURCE / "tools").rglob("*.cpp"),
+               *(SOURCE / "tools").rglob("*.h")]
     return re.sub(r'"\s*\n?\s*"', "", "\n".join(file.read_text() for file in sources))
 
 
 def check_messages(page, text):
-    """A row that begins with code quotes a message."""
-    strings = messages()
-    for found in re.finditer(r"^\| `([^`]+)` \|", text, re.M):
-        if found[1] not in strings:
-            problem(page, text, found.start())(f"nothing says '{found[1]}'")
+    """What rows quote is said somewhere, and what the sources say is quoted."""
+    everything, quoted = strings(), set()
+    for row in re.finditer(r"^\| (`[^|]*`) \|", text, re.M):
+        for found in re.finditer(r"`([^`]+)`", row[1]):
+            quoted.add(found[1])
+            if found[1] not in everything:
+                problem(page, text, row.start())(f"nothing says '{found[1]}'")
+    for file, line, said in messages.messages(SOURCE):
+        if not any(part in said for part in quoted):
+            problems.append(f"{file}:{line}: {page.name} has no line for '{said}'")
 
 
 def check_sources(name, text):
@@ -130,6 +149,7 @@ for page in PAGES:
     check_options(page, text)
     if page.name not in ("STEP.md", "ADDING.md"):
         check_programs(page, text)
+    check_cmake(page, text)
     check_scenes(page, text)
     if page.name == "errors.md":
         check_messages(page, text)

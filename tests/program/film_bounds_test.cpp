@@ -53,6 +53,28 @@ TEST(film_bounds, hold_a_tool_at_all_of_its_keyframes) {
   EXPECT_FALSE(holds(room, {9, 0, 0})) << "a room is not a tool";
 }
 
+TEST(film_bounds, hold_all_particles_as_they_begin_and_later_not_what_flew_off_alone) {
+  ParticleFrame frame;
+  for (int i = 0; i < 1000; ++i)
+    frame.positions.push_back(0.01f * Vec3(static_cast<float>(i % 10), static_cast<float>(i / 10 % 10),
+                                           static_cast<float>(i / 100)));
+  frame.positions.push_back({4, 0, 0});
+  frame.bodies.assign(1001, 0);
+  const Scene scene = scene_of(k_cube);
+  EXPECT_TRUE(holds(FilmBounds(k_spacings, frame).box(scene), {4, 0, 0}));
+  frame.time = 1;
+  EXPECT_FALSE(holds(FilmBounds(k_spacings, frame).box(scene), {4, 0, 0}));
+}
+
+TEST(film_bounds, hold_a_plate_whole_that_is_a_few_times_as_wide_as_what_moves) {
+  const auto plate = [](const std::string& half) {
+    return bounds_of(k_cube + "[[collider]]\nbox = { min = [-" + half + ", -" + half + ", -0.01], max = [" +
+                     half + ", " + half + ", 0] }\n");
+  };
+  EXPECT_TRUE(holds(plate("0.24"), {0.24f, -0.24f, 0}));
+  EXPECT_FALSE(holds(plate("9"), {0.24f, -0.24f, 0})) << "a table as large as a room";
+}
+
 /// A puddle that spreads from a drop to so many times its width.
 std::vector<ParticleFrame> puddle(float spread) {
   std::vector<ParticleFrame> frames(5);
@@ -147,6 +169,7 @@ TEST(film_bounds, of_what_drips_hold_the_drops_that_all_of_it_became) {
   for (int drop = 0; drop < 40; ++drop) {
     frame.positions.push_back({0.05f * static_cast<float>(drop), 0, 0});
     frame.bodies.push_back(0);
+    frame.time += 0.1;
     bounds.add(frame);
   }
   const Scene scene = scene_of(k_cube);

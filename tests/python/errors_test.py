@@ -23,6 +23,15 @@ class Exceptions(unittest.TestCase):
         self.assertIn("-1", error.problems[0].message)
         self.assertIsInstance(error, ValueError)
 
+    def test_arguments_that_do_not_fit_are_shown_in_short(self):
+        points, simulation = numpy.arange(3000000.0).reshape(-1, 3), cube()
+        for wrong in (lambda: simulation.set_gravity(points, points), lambda: mallow.read_mesh(points),
+                      lambda: mallow.Trade(points), lambda: mallow.Surfacer(points, points, points)):
+            with self.assertRaises(TypeError) as caught:
+                wrong()
+            self.assertLess(len(str(caught.exception)), 400)
+            self.assertNotIn("_mallow", str(caught.exception))
+
     def test_scene_errors_have_lines(self):
         with self.assertRaises(mallow.ConfigError) as caught:
             mallow.parse_scene(SCENE.replace("0.3", "3"), "my.toml")

@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <ctime>
+
+#include "program/machine.h"
 #include "view/frame_governor.h"
 #include "view/pace.h"
+#include "view/thread_governor.h"
 
 namespace mallow {
 namespace view_governor_test {
@@ -32,6 +36,38 @@ TEST(view_governor, takes_back_what_it_gave_up_where_there_is_room) {
   governor.set_target(30);
   EXPECT_GT(settled(governor, 1.0 / 15, 0.8), k_as_written);
   EXPECT_EQ(settled(governor, 1.0 / 100, 0.8), k_as_written);
+}
+
+TEST(view_threads, are_as_many_as_processors_that_others_leave_and_one_at_the_least) {
+  ThreadGovernor governor(7);
+  const auto after = [&](double free) {
+    for (int look = 0; look < 10; ++look) governor.add_look(free);
+    return governor.threads();
+  };
+  EXPECT_EQ(governor.threads(), 7);
+  EXPECT_EQ(after(7.9), 7);
+  EXPECT_EQ(after(4.7), 5);
+  EXPECT_EQ(after(0.1), 1);
+  EXPECT_EQ(after(-2), 1);
+  EXPECT_EQ(after(16), 7) << "what it was given at the most";
+}
+
+TEST(view_threads, stay_where_others_are_busy_for_a_moment) {
+  ThreadGovernor governor(2);
+  for (int look = 0; look < 20; ++look) EXPECT_FALSE(governor.add_look(look % 2 == 0 ? 0 : 2));
+  EXPECT_FALSE(governor.add_look(0));
+  EXPECT_TRUE(governor.add_look(0));
+  for (int look = 0; look < 3; ++look) EXPECT_FALSE(governor.add_look(2)) << "no rise at once";
+  EXPECT_TRUE(governor.add_look(2));
+}
+
+TEST(view_threads, processors_that_others_leave_are_no_more_than_there_are) {
+  ProcessorLoad load;
+  const double end = static_cast<double>(std::clock()) / CLOCKS_PER_SEC + 0.05;
+  while (static_cast<double>(std::clock()) / CLOCKS_PER_SEC < end) {
+  }
+  const double free = load.look();
+  EXPECT_LE(free, program::own_processors());
 }
 
 TEST(view_governor, does_nothing_without_a_target) {

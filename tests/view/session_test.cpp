@@ -53,6 +53,30 @@ TEST(view_session, what_follows_after_going_back_is_the_same_to_the_last_bit) {
   EXPECT_EQ(session.simulation().state_hash(), end);
 }
 
+TEST(view_session, goes_on_with_fewer_threads_and_with_more_to_the_same_bits) {
+  Session session({.threads = 3}), alone = session_of(cube());
+  session.open(cube());
+  session.set_speed(std::numeric_limits<double>::infinity());
+  const Vec3 above(0, 0, 30);
+  for (Session* one : {&session, &alone}) {
+    go(*one, 20);
+    one->grab(one->simulation().positions()[0], 1);
+    one->pull_to(above);
+    go(*one, 20);
+  }
+  const auto look = [&](double free, int times) {
+    for (int k = 0; k < times; ++k) session.look_at_processors(free);
+    Frame frame;
+    session.fill(0, frame);
+    return frame.stats.threads;
+  };
+  EXPECT_EQ(look(0.5, 2), 1);
+  for (Session* one : {&session, &alone}) go(*one, 20);
+  EXPECT_EQ(look(8, 4), 3);
+  for (Session* one : {&session, &alone}) go(*one, 20);
+  EXPECT_EQ(session.simulation().state_hash(), alone.simulation().state_hash());
+}
+
 TEST(view_session, a_setting_that_is_refused_changes_nothing_and_is_said) {
   Session session = session_of(cube());
   go(session, 5);

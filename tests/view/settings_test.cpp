@@ -40,6 +40,24 @@ const scene_file::BoundField& field_of(const SettingsModel& settings, const std:
   throw std::runtime_error(key);
 }
 
+TEST(view_settings, hold_the_shapes_of_colliders_and_the_command_line_says_what_became_of_them) {
+  SettingsModel settings(read_scene(std::filesystem::path(MALLOW_DATA_DIR) / "scenes/spoon.toml"));
+  const SettingsSection* section = nullptr;
+  const auto set = [&](const std::string& key, double share) {
+    const auto& field = field_of(settings, key, section);
+    EXPECT_TRUE(SettingsModel::set_share(field, share));
+    EXPECT_FALSE(static_cast<bool>(settings.command(*section, field))) << "it waits for a new scene";
+  };
+  set("collider[0].union[4].capsule.radius", 0.75);
+  EXPECT_TRUE(settings.waits_for_rebuild());
+  const float radius =
+      std::get<Capsule>(std::get<Union>(settings.scene().colliders[0].shape).parts[4]).radius;
+  EXPECT_NE(radius, 0.005f);
+  EXPECT_NE(settings.command_line().find("collider[0].union"), std::string::npos) << settings.command_line();
+  set("collider[1].box.max", 0.9);
+  EXPECT_NO_THROW(build(settings.scene(), 1));
+}
+
 TEST(view_settings, a_change_acts_at_once_or_waits_for_a_new_scene) {
   SettingsModel settings(cube());
   const SettingsSection* section = nullptr;

@@ -49,7 +49,7 @@ class FrameReader {
 
 /// The camera has what the run shows in view, by up to so many of its frames, whichever pictures are taken.
 program::Stills stills_of(const Scene& scene, const program::Cache& cache, const PictureRun& run) {
-  constexpr std::size_t k_looks = 32;
+  constexpr std::size_t k_looks = 128;
   const std::vector<int> frames = cache.particle_frames();
   const std::size_t looks = scene.render.eye ? 1 : std::min(k_looks, frames.size());
   program::FilmBounds bounds(run.spacings);

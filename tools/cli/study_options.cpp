@@ -120,7 +120,7 @@ void write_study(const std::filesystem::path& folder, const tradeoff::Study& stu
                  const std::optional<tradeoff::Picked>& picked) {
   write_whole(folder / "tradeoff.csv", tradeoff::to_csv(study));
   write_whole(folder / "tradeoff.json", tradeoff::to_json(study, picked));
-  const std::optional<std::size_t> row = picked ? std::optional(picked->row) : std::nullopt;
+  const std::optional<std::size_t> row = picked && picked->holds ? std::optional(picked->row) : std::nullopt;
   const auto shown = tradeoff::row_to_show(study, row);
   std::optional<tradeoff::SideBySide> film;
   if (!arguments.no_film && shown) {

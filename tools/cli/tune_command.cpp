@@ -40,35 +40,24 @@ std::string described(const tradeoff::Study& study, const tradeoff::Picked& pick
                           : "; not run again, as the budget ended");
 }
 
-/// What `tune` says of its pick.
+/// What was measured, and the verdict where there is a pick; else require_pick() has it.
 void print(const tradeoff::Study& study, const tradeoff::Picked& picked, const std::string& lines) {
   std::fputs(tradeoff::to_text(study).c_str(), stdout);
   for (const std::string& text : picked.dropped) std::printf("dropped: %s\n", text.c_str());
-  std::printf("%s: %s: %s\n", picked.holds ? "pick" : "nearest", study.rows[picked.row].setting.name.c_str(),
-              described(study, picked).c_str());
-  std::printf("%s", lines.empty() ? "# the scene as it is\n" : lines.c_str());
+  if (picked.holds)
+    std::printf("pick: %s: %s\n%s", study.rows[picked.row].setting.name.c_str(),
+                described(study, picked).c_str(), lines.empty() ? "# the scene as it is\n" : lines.c_str());
   std::fflush(stdout);  // before what is told on the other stream
 }
 
-/// Throws RunFailure where the pick is not to be written.
-void require_pick(const TuneOptions& options, const tradeoff::Limit& limit, const tradeoff::Study& study,
-                  const tradeoff::Picked& picked) {
-  if (!limit.is_time && study.reference.differences.empty())
-    throw program::RunFailure(
-        "--error " + options.error +
-        " cannot be judged, as no halving of the steps fitted into the budget: give more "
-        "by --budget; nothing is written");
-  if (!limit.is_time && study.reference_error() > limit.most)
-    throw program::RunFailure(
-        "--error " + options.error + " cannot be judged, as the reference itself is off by about " +
-        tradeoff::number(study.reference_error()) + " h: ask for no less than that, or give " +
-        // More budget would be spent on more frames first.
-        (tradeoff::stretch(study).empty() ? "more by --budget" : "less run.frames, or far more by --budget") +
-        "; nothing is written");
+/// Throws RunFailure where nothing is to be written.
+void require_pick(const TuneOptions& options, const tradeoff::Study& study, const tradeoff::Picked& picked) {
+  const std::string limit = options.frame.empty() ? "--error " + options.error : "--frame " + options.frame;
+  if (!picked.not_judged.empty())
+    throw program::RunFailure("no pick: " + limit + " cannot be judged, as " + picked.not_judged);
   if (!picked.holds)
-    throw program::RunFailure(
-        "no setting holds " + (limit.is_time ? "--frame " + options.frame : "--error " + options.error) +
-        "; the nearest is " + study.rows[picked.row].setting.name + ", " + described(study, picked));
+    throw program::RunFailure("no pick: no setting holds " + limit + "; the nearest is " +
+                              study.rows[picked.row].setting.name + ", " + described(study, picked));
 }
 
 /// What the user has to know of a pick that holds.
@@ -103,7 +92,7 @@ void tune(const TuneOptions& options, const Scene& scene, const tradeoff::StudyO
   const tradeoff::Row& row = study.rows[picked->row];
   print(study, *picked, tradeoff::lines_to_paste(scene, row.setting.scene));
   if (!options.out.empty()) write_study(options.out, study, options.study, study_with, deadline, picked);
-  require_pick(options, limit, study, *picked);
+  require_pick(options, study, *picked);
   warn(limit, study);
   if (!options.write.empty()) write(options.write, study, row);
 }
@@ -151,10 +140,7 @@ void add_tune_command(CLI::App& app) {
       "picks,\n"
       "and runs the pick again: times are medians of all runs. A scene that is longer than the budget is "
       "judged by\n"
-      "its first frames, and that is said. How well a surface follows its particles is not measured: a "
-      "quality with "
-      "a coarser\n"
-      "one is the cheaper for it, but with --no-surface.\n"
+      "its first frames, and that is said.\n"
       "'mallow tradeoff --help' explains the columns.\n"
       "Exit codes: 0 the pick holds, 1 none does, 2 the input is wrong.");
   command->callback([options] { run(*options); });

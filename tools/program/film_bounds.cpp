@@ -13,12 +13,22 @@ namespace {
 
 /// Moments at which a path is looked at from one end to the other.
 constexpr int k_looks = 24;
-/// A collider that goes through keyframes is seen whole up to this size, in sizes of what moves.
+/// A collider is seen whole where it is within so many sizes of what moves beside that.
+constexpr float k_beside = 2;
+/// A collider that goes through keyframes is a tool up to this size, in sizes of what moves.
 constexpr float k_tool = 1.5f;
 
 void extend(Aabb& box, const Aabb& other) {
   box.min = box.min.cwiseMin(other.min);
   box.max = box.max.cwiseMax(other.max);
+}
+
+Aabb grown(const Aabb& box, float margin) {
+  return {box.min - Vec3::Constant(margin), box.max + Vec3::Constant(margin)};
+}
+
+bool holds(const Aabb& box, const Aabb& other) {
+  return (other.min.array() >= box.min.array()).all() && (other.max.array() <= box.max.array()).all();
 }
 
 float longest_side(const Aabb& box) {
@@ -67,18 +77,16 @@ Aabb swept(const Shape& shape, const Collider& collider, double last) {
 
 /// Adds what is seen of the colliders with what is in the box.
 void add_colliders(const Room& room, double last, const Aabb& box, std::vector<Aabb>& boxes) {
-  // A collider far larger than what moves is a part of the room and does not have to be seen whole, one that
-  // is moved through keyframes and is no larger is a tool, and is.
+  // What reaches farther than that is a part of the room, and its near part is seen; of the way of a tool
+  // the far part too.
   const float size = longest_side(box);
-  const Vec3 reach = Vec3::Constant(size);
-  const Aabb near{box.min - reach, box.max + reach};
-  const Aabb far{box.min - Vec3::Constant(2 * size), box.max + Vec3::Constant(2 * size)};
+  const Aabb near = grown(box, size), far = grown(box, k_beside * size);
   for (const Collider& collider : room.colliders)
     visit_parts(collider, [&]<class Shape>(const Shape& shape) {
       if constexpr (std::is_same_v<Shape, Plane>) return;  // endless
       const bool is_tool = !collider.keyframes.empty() && longest_side(bounds(shape)) <= k_tool * size;
       const Aabb whole = swept(shape, collider, last);
-      const Aabb& seen = is_tool ? far : near;
+      const Aabb& seen = is_tool || holds(far, whole) ? far : near;
       const auto clamped = [&](const Vec3& x) -> Vec3 { return x.cwiseMax(seen.min).cwiseMin(seen.max); };
       boxes.push_back({clamped(whole.min), clamped(whole.max)});
     });
@@ -115,17 +123,16 @@ Aabb most_of(const std::vector<Vec3>& positions) {
     std::nth_element(values.begin(), high, values.end());
     most.max[axis] = *high;
   }
-  const Vec3 reach = Vec3::Constant(longest_side(most));
-  return {box.min.cwiseMax(most.min - reach), box.max.cwiseMin(most.max + reach)};
+  const Aabb near = grown(most, longest_side(most));
+  return {box.min.cwiseMax(near.min), box.max.cwiseMin(near.max)};
 }
 
 /// What drops and crumbs reach that are not far from the large pieces.
 void add_near(const std::vector<Vec3>& drops, Aabb& box) {
   constexpr float k_near = 0.25f;  // of the longest side
-  const Vec3 reach = Vec3::Constant(k_near * longest_side(box));
-  const Aabb near{box.min - reach, box.max + reach};
+  const Aabb near = grown(box, k_near * longest_side(box));
   for (const Vec3& x : drops)
-    if ((x.array() >= near.min.array()).all() && (x.array() <= near.max.array()).all()) extend(box, {x, x});
+    if (holds(near, {x, x})) extend(box, {x, x});
 }
 
 }  // namespace
@@ -146,6 +153,12 @@ void FilmBounds::add(const ParticleFrame& frame) {
   const std::size_t count = frame.positions.size();
   if (count == 0) return;
   last_time_ = std::max(last_time_, frame.time);
+  if (frame.time <= 0) {  // nothing has flown off or come apart yet, however far from each other things begin
+    const Aabb box = bounds_of(frame.positions);
+    all_.add(box, count);
+    whole_.add(box, count);
+    return;
+  }
   all_.add(most_of(frame.positions), count);
   const std::vector<bool> large = in_large_pieces(frame, spacings_);
   std::vector<Vec3> pieces, drops;
@@ -165,8 +178,8 @@ std::vector<Aabb> FilmBounds::boxes(const Scene& scene) const {
   std::vector<Aabb> boxes = reached();
   if (boxes.empty()) return {{{-1, -1, -1}, {1, 1, 1}}};
   // The surface is half a spacing and a little outside of the particles.
-  const Vec3 skin = Vec3::Constant(spacings_.empty() ? 0 : 0.75f * *std::ranges::min_element(spacings_));
-  for (Aabb& box : boxes) box = {box.min - skin, box.max + skin};
+  const float skin = spacings_.empty() ? 0 : 0.75f * *std::ranges::max_element(spacings_);
+  for (Aabb& box : boxes) box = grown(box, skin);
   Aabb all = around(boxes);
   const Room room(scene);
   float lowest = -std::numeric_limits<float>::infinity();

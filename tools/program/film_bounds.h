@@ -9,10 +9,11 @@
 
 namespace mallow::program {
 
-/// What the camera has to have in view through a film: what particles reach in its frames, but for drops that
-/// fly off, the ground near below, and the visible colliders near by, where their keyframes take them too. A
-/// splash is seen as far as most of it holds together: pieces of less than a twentieth of their body leave
-/// the picture, as all do once they are what most of the frame is.
+/// What the camera has to have in view through a film: all particles as they begin, what particles reach
+/// later but for drops that fly off, the ground near below, and the visible colliders near by, where their
+/// keyframes take them too: whole, but for those that are many times as large as what moves. A splash is seen
+/// as far as most of it holds together: pieces of less than a twentieth of their body leave the picture, as
+/// all do once they are what most of the frame is.
 class FilmBounds {
  public:
   /// spacings: of the particles of each body [m]; a body without one does not come apart.

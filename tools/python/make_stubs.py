@@ -24,7 +24,7 @@ SIGNATURE = re.compile(r"^(?:\d+\. )?(\w+)\((.*)\) -> (.+)$")
 
 def type_text(text, is_argument):
     """A type as pybind11 writes it, as Python has it."""
-    text = re.sub(r"mallow\.(_mallow\.)?", "", text)
+    text = re.sub(r"mallow\.(_mallow\.)?|\[\d+\]", "", text)
     text = re.sub(r"\bUnion\[(?=[A-Z].*[,\]])", "_Union[", text)
     text = text.replace("Tuple[", "typing.Tuple[").replace("List[", "Sequence[" if is_argument else "list[")
     text = text.replace("os.PathLike", "_Union[str, os.PathLike]").replace("capsule", "Any")
@@ -92,16 +92,44 @@ def function(name, value, depth, is_static=False):
     return text or f"{pad}def {name}(*args: Any, **kwargs: Any) -> Any: ...\n"
 
 
-def attribute(name, value, depth):
-    """A property: its type is that of its getter."""
+CHOICES = set()  # enumerations, which may be words
+
+
+def getter_type(value):
+    """What a property gives, as pybind11 writes it; None where that is not known."""
     match = SIGNATURE.match((value.fget.__doc__ or "").strip().split("\n")[0]) or re.match(
         r"()(\(.*\)) -> (.+)", (value.fget.__doc__ or "").strip().split("\n")[0])
-    kind = type_text(match.group(3), False) if match else "Any"
+    return match.group(3) if match else None
+
+
+def given_type(value):
+    """What may be given to a property, or to the constructor for it."""
+    kind = getter_type(value)
+    if not kind:
+        return "Any"
+    text = re.sub(r"\blist\[|typing\.Tuple\[(.*), \.\.\.\]$", lambda found: f"Sequence[{found[1]}]" if found[1] else "Sequence[",
+                  type_text(kind, True))
+    text = re.sub(r"\b(\w+)\b", lambda found: f"_Union[{found[0]}, str]" if found[0] in CHOICES else found[0], text)
+    return text.replace("Schedule", "_Union[Schedule, float, Sequence[Any]]")
+
+
+def attribute(name, value, depth):
+    """A property: its type is that of its getter."""
+    known = getter_type(value)
+    kind = type_text(known, False) if known else "Any"
     pad = "    " * depth
     text = f"{pad}@property\n{pad}def {name}(self) -> {kind}:\n" + indented(value.__doc__ or "...", depth + 1)
     if value.fset:
-        text += f"{pad}@{name}.setter\n{pad}def {name}(self, value: Any) -> None: ...\n"
+        text += f"{pad}@{name}.setter\n{pad}def {name}(self, value: {given_type(value)}) -> None: ...\n"
     return text
+
+
+def constructor(value, depth):
+    """Of a struct: all of its fields, each left out as it is by default. Those of a scene go by name alone."""
+    fields = [f"{name}: {given_type(getattr(value, name))} = ..." for name in value._fields]
+    if value.__name__ == "Scene":
+        fields.insert(0, "*")
+    return "    " * depth + f"def __init__({', '.join(['self', *fields])}) -> None: ...\n"
 
 
 def klass(name, value, depth):
@@ -116,6 +144,10 @@ def klass(name, value, depth):
             text += attribute(key, member, depth + 1)
         elif isinstance(member, staticmethod):
             text += function(key, member.__func__, depth + 1, True)
+        elif key == "__init__" and hasattr(value, "_fields"):
+            text += constructor(value, depth + 1)
+        elif key == "__init__" and not any(SIGNATURE.match(line) for line in (member.__doc__ or "").splitlines()):
+            continue  # none, or one of Python
         elif key in ("__init__", "__len__", "__iter__", "__int__", "__float__") or (
                 not key.startswith("_") and callable(member) and not isinstance(member, value)):
             text += function(key, member, depth + 1)
@@ -129,6 +161,7 @@ def klass(name, value, depth):
 def main(folder):
     sys.path.insert(0, folder)
     import mallow
+    CHOICES.update(name for name, value in vars(mallow).items() if hasattr(value, "__members__"))
     text = HEAD + "\n__version__: str\n\n"
     for name, value in vars(mallow).items():
         if name.startswith("_"):

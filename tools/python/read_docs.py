@@ -145,9 +145,10 @@ class Reader:
             if name.startswith(("k_", "operator")) or name.endswith("_"):
                 return
             # several in one declaration
-            others = re.search(r"(\w+), (\w+);$", plain)
-            if others:
-                self.put(scopes, others.group(1), trailing or comment, kind)
+            declared = re.sub(r"\{[^{}]*\}|\([^()]*\)", "", plain)
+            for other in re.findall(r"(\w+)(?: = [^,;]*)?[,;]", declared):
+                if other != name:
+                    self.put(scopes, other, trailing or comment, kind)
         self.put(scopes, name, trailing or comment, kind)
         self.last = ".".join([s for s in scopes if s] + [name])
 

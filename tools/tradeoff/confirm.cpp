@@ -52,11 +52,29 @@ std::vector<std::string> passed_over(const Study& study, const Limit& limit, con
   return texts;
 }
 
+/// Why an error cannot be judged by this study.
+std::string not_judged(const Study& study, const Limit& limit) {
+  if (limit.is_time) return "";
+  if (study.reference.differences.empty())
+    return "no halving of the steps fitted into the budget: give more by --budget";
+  if (study.reference_error() <= limit.most) return "";
+  return "the reference itself is off by about " + number(study.reference_error()) +
+         " h: ask for no less than that, or give " +
+         // More budget would be spent on more frames first.
+         (stretch(study).empty() ? "more by --budget" : "less run.frames, or far more by --budget");
+}
+
 }  // namespace
 
 std::optional<Picked> confirm(Study& study, const Limit& limit, const StudyOptions& options,
                               double deadline) {
   std::vector<Trade> trades = study.trades();
+  if (std::string why = not_judged(study, limit); !why.empty()) {
+    const std::optional<Pick> pick = limit.pick(trades);
+    if (!pick) return std::nullopt;
+    return Picked{
+        .row = pick->index, .not_judged = std::move(why), .error = study.error(study.rows[pick->index])};
+  }
   std::vector<bool> is_dropped(trades.size(), false);
   std::optional<Picked> nearest;
   std::vector<std::string> dropped;

@@ -19,6 +19,11 @@ Scene at_stride(Scene scene, int factor) {
   return scene;
 }
 
+Scene with_voxels(Scene scene, float factor) {
+  scene.surface = at_voxels(scene.surface, factor);
+  return scene;
+}
+
 Scene native(Scene scene) {
   scene.solver.arithmetic = Arithmetic::native;
   return scene;
@@ -105,6 +110,7 @@ std::vector<Setting> settings_around(const Scene& scene, const SceneTraits& trai
   if (traits.regions) add("region_stride x 2", at_stride(scene, 2), 0.7);
   add("time_step_factor x 1.5", steps(1.5f), 0.67);
   add_quality(Quality::balanced, 0.8);
+  if (traits.surface) add("voxels x 0.75", with_voxels(scene, 0.75f), 0.9);
   if (traits.sums) add("arithmetic native", native(scene), 0.9);
   if (traits.regions) {
     add("time_step_factor x 2, region_stride x 2", at_stride(steps(2), 2), 0.4);
@@ -121,6 +127,7 @@ std::vector<Setting> settings_around(const Scene& scene, const SceneTraits& trai
   } else {
     add("volume_iterations 1", at_iterations(scene, 1), 1.3);
   }
+  if (traits.surface) add("voxels x 1.5", with_voxels(scene, 1.5f), 1.2);
   if (const auto coarse = coarser(scene, 1.25f)) add("spacing x 1.25", *coarse, 0.45);
   std::erase_if(settings,
                 [&](const Setting& setting) { return print_scene(setting.scene) == print_scene(scene); });
@@ -138,6 +145,7 @@ std::vector<Setting> settings_from(const Setting& from, const SceneTraits& trait
   if (traits.regions) add("region_stride x 2", at_stride(scene, 2), 0.7);
   if (const int n = iterations(scene); n > 0)
     add("volume_iterations " + std::to_string(n - 1), at_iterations(scene, n - 1), 0.9);
+  if (traits.surface) add("voxels x 0.75", with_voxels(scene, 0.75f), 0.9);
   if (traits.sums && scene.solver.arithmetic != Arithmetic::native)
     add("arithmetic native", native(scene), 0.9);
   add("time_step_factor x 0.8", at_time_step(scene, 0.8f), 1.25);

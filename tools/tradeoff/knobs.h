@@ -28,6 +28,7 @@ Knob parse_knob(const std::string& text);
 struct SceneTraits {
   bool regions = false;  ///< of shape matching
   bool sums = false;     ///< of SPH or of the volume iterations
+  bool surface = false;  ///< that is drawn
 };
 SceneTraits traits(const SimulationInfo& info);
 

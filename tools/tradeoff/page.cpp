@@ -76,7 +76,8 @@ std::string plot(const Study& study) {
   }
   svg += text_at(k_width / 2, k_height - 12, "middle", "time of a frame [ms]");
   svg += text_at(6, 14, "start",
-                 study.chaotic ? "error of shape, last quarter [h]" : "RMS error of positions [h]");
+                 study.chaotic ? "error [h]: of shape in the last quarter, or of the surface"
+                               : "error [h]: RMS of positions, or of the surface");
   std::string front;
   for (const std::size_t i : by_cost(study))
     if (study.rows[i].on_front)
@@ -100,7 +101,8 @@ std::string cell(const std::string& text) {
 
 std::string table(const Study& study, std::optional<std::size_t> picked) {
   std::string html =
-      "<table><tr><th>setting</th><th>steps [ms]</th><th>surface [ms]</th><th>error [h]</th><th>median "
+      "<table><tr><th>setting</th><th>steps [ms]</th><th>surface [ms]</th><th>error [h]</th><th>surface "
+      "[h]</th><th>median "
       "[h]</th><th>worst [h]</th><th>worst [px]</th><th>height [h]</th><th>volume</th><th>energy</th>";
   for (const std::string& measure : study.measures) html += "<th>" + html_text(measure) + "</th>";
   html += "<th>to paste</th></tr>\n";
@@ -115,7 +117,8 @@ std::string table(const Study& study, std::optional<std::size_t> picked) {
             cell(number(1e3 * row.median_seconds()) + " (" + number(1e3 * least) + " to " +
                  number(1e3 * most) + ", " + std::to_string(row.seconds.size()) + " runs)") +
             cell(number(1e3 * row.median_drawing())) + cell(number(study.error(row))) +
-            cell(number(row.error.median)) + cell(number(row.error.worst)) +
+            cell(row.surface ? number(*row.surface) : "") + cell(number(row.error.median)) +
+            cell(number(row.error.worst)) +
             cell(row.error.worst_pixels ? number(*row.error.worst_pixels) : "") +
             cell(number(row.error.height)) + cell(number(row.error.volume)) + cell(number(row.error.energy));
     for (const double measure : row.error.measures) html += cell(number(measure));

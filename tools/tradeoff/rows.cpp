@@ -40,8 +40,11 @@ void mark_front(Study& study) {
 std::optional<Row> run_again(const Study& study, const Setting& setting, const StudyOptions& options,
                              double deadline) {
   Runner runner(options, study.frames, study.frame_time);
+  SurfaceCheck check{study.fine_surface};
   Row row{.setting = setting,
-          .motion = runner.run(setting.scene, {.deadline = deadline, .drawn = options.surface})};
+          .motion =
+              runner.run(setting.scene, {.deadline = deadline, .drawn = options.surface, .surface = &check})};
+  row.surface = check.error;
   if (static_cast<int>(row.motion.frame_seconds.size()) != study.frames) return std::nullopt;
   row.seconds.push_back(row.motion.seconds_per_frame());
   row.drawing.push_back(row.motion.draw_seconds_per_frame());

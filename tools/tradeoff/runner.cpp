@@ -8,8 +8,10 @@
 #include <set>
 #include <vector>
 
+#include "mallow/errors.h"
 #include "program/frame_surface.h"
 #include "program/machine.h"
+#include "tradeoff/surface_error.h"
 
 namespace mallow::tradeoff {
 namespace {
@@ -32,6 +34,43 @@ std::optional<std::size_t> free_row(const Simulation& simulation, BodyId body) {
   }
   return std::nullopt;
 }
+
+/// What is drawn of a run.
+struct Drawn {
+  std::vector<Skin> skins = {};
+  std::optional<program::FrameSurface> surface = {}, fine = {};
+};
+
+/// Compares surfaces in the middle of a run and at its end; outside of what is timed.
+class SurfaceChecker {
+ public:
+  SurfaceChecker(const MotionPlan& plan, int threads, Drawn& drawn, SurfaceCheck& check)
+      : moments_(std::min(plan.moments, plan.frames)), threads_(threads), drawn_(drawn), check_(check) {}
+
+  void look(Simulation& simulation) {
+    const int moment = moment_++;
+    if (moment == 0 || failed_ || (moment != moments_ && moment != (moments_ + 1) / 2)) return;
+    float spacing = std::numeric_limits<float>::max();
+    for (const BodyId body : simulation.bodies()) spacing = std::min(spacing, simulation.spacing(body));
+    try {
+      const double error =
+          surface_error(drawn_.surface->draw(simulation), drawn_.fine->draw(simulation), spacing, threads_);
+      squares_ += error * error;
+      check_.error = std::sqrt(squares_ / ++looks_);
+    } catch (const Error&) {  // as where it takes more memory than it may
+      failed_ = true;
+      check_.error.reset();
+    }
+  }
+
+ private:
+  int moments_, threads_;
+  Drawn& drawn_;
+  SurfaceCheck& check_;
+  int moment_ = 0, looks_ = 0;
+  bool failed_ = false;
+  double squares_ = 0;
+};
 
 }  // namespace
 
@@ -78,8 +117,15 @@ Motion Runner::run(const Scene& scene, const RunHow& how) {
       how.last_bit->move(simulation);
       return 0.0;
     });
-  std::vector<Skin> skins;
-  std::optional<program::FrameSurface> surface;
+  Drawn drawn;
+  std::optional<SurfaceChecker> checker;
+  if (how.drawn && how.surface) {
+    checker.emplace(plan, threads_, drawn, *how.surface);
+    plan.measures.emplace_back([&](Simulation& simulation) {
+      checker->look(simulation);
+      return 0.0;
+    });
+  }
   const int every = how.show ? 1 : std::max(1, std::min(plan.moments, plan.frames) / k_timed_surfaces);
   int moment = 0;
   std::vector<bool> timed;
@@ -87,15 +133,16 @@ Motion Runner::run(const Scene& scene, const RunHow& how) {
     plan.draw = [&](const Simulation& simulation) {
       timed.push_back(moment++ % every == every / 2);
       if (!timed.back()) return;
-      const Mesh mesh = surface->draw(simulation);
+      const Mesh mesh = drawn.surface->draw(simulation);
       if (how.show) how.show(simulation, mesh);
     };
   Motion motion = record_motion(
       [&] {
         Simulation simulation = build(scene, threads_);
         if (how.drawn) {
-          skins = mallow::skins(scene, simulation, threads_);
-          surface.emplace(scene.surface, skins, threads_);
+          drawn.skins = skins(scene, simulation, threads_);
+          drawn.surface.emplace(scene.surface, drawn.skins, threads_);
+          if (how.surface) drawn.fine.emplace(how.surface->fine, drawn.skins, threads_);
         }
         return simulation;
       },

@@ -19,12 +19,20 @@ class LastBit {
   std::optional<double> begin_;
 };
 
+/// How far the surfaces of a run are from finer ones of the same particles.
+struct SurfaceCheck {
+  SurfaceConfig fine;                ///< how those are drawn
+  std::optional<double> error = {};  ///< root mean square over what is looked at [h]; nothing where the fine
+                                     ///< ones cannot be drawn
+};
+
 /// How a setting is run.
 struct RunHow {
   double deadline = std::numeric_limits<double>::infinity();  ///< wall_clock() at which it ends as it is
   double running = std::numeric_limits<double>::infinity();   ///< wall time of the same once it is built [s]
-  bool drawn = false;           ///< its surface is drawn, and timed, at some moments
-  LastBit* last_bit = nullptr;  ///< where it is to be moved
+  bool drawn = false;               ///< its surface is drawn, and timed, at some moments
+  LastBit* last_bit = nullptr;      ///< where it is to be moved
+  SurfaceCheck* surface = nullptr;  ///< where it is to be looked at
   /// Called with the surface of each moment; empty: fewer are drawn.
   std::function<void(const Simulation& simulation, const Mesh& surface)> show = {};
 };

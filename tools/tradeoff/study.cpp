@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include "program/failure.h"
 #include "program/film_bounds.h"
 #include "program/machine.h"
 #include "render/viewport.h"
+#include "tradeoff/reference.h"
 #include "tradeoff/runner.h"
 #include "tradeoff/tables.h"
 
@@ -28,21 +28,11 @@ constexpr std::size_t k_few = 5;          ///< rows that are worth more than tim
 constexpr double k_few_share = 0.95;      ///< by which first runs of so few have begun
 constexpr double k_search_share = 0.8;    ///< by which those that lead on from the best have begun
 constexpr int k_most_rounds = 8;          ///< of turning knobs on
-/// The reference is converged where its last halving moved particles by less than this share of what the
-/// scene as it is is off.
-constexpr double k_little = 0.1;
 /// Part of the settings' errors from which on the last bit's is told.
 constexpr double k_chaos = 0.5;
 /// Below this order of convergence, halving the step leads nowhere.
 constexpr double k_no_order = 0.5;
-constexpr double k_grown = 1.25;  ///< see parts_again()
-constexpr float k_shortest_factor = 0.01f;
-
-/// Whether the last halving moved particles farther than the one before, by more than chance.
-bool parts_again(const std::vector<double>& differences) {
-  const std::size_t n = differences.size();
-  return n > 1 && differences[n - 1] > k_grown * differences[n - 2];
-}
+constexpr float k_fine_voxels = 2;  ///< of the surface that others are compared with: so many times as many
 
 /// The pixels of the scene's camera.
 PixelOf camera_of(const Scene& scene, const Motion& motion) {
@@ -66,7 +56,13 @@ class Maker {
 
   Study make() {
     run_plain();
-    find_reference();
+    study_.reference = find_reference({.scene = scene_,
+                                       .plain = study_.rows.front().motion,
+                                       .plain_cost = plain_cost_,
+                                       .until = start_ + k_reference_share * budget(),
+                                       .end = end(),
+                                       .say = [this](const std::string& what) { say(what); }},
+                                      *runner_);
     run_settings();
     run_last_bit();
     search();
@@ -98,6 +94,9 @@ class Maker {
     building_ = wall_clock() - begin;
     const SimulationInfo info = simulation.info();
     traits_ = traits(info);
+    traits_.surface = options_.surface;
+    study_.fine_surface = at_voxels(scene_.surface, k_fine_voxels);
+    study_.fine_surface.adaptivity = 0;
     study_.scene = scene_.file.string();
     study_.all_frames = std::max(1, scene_.run.frames);
     study_.frame_time = frame_time(scene_, info);
@@ -114,9 +113,12 @@ class Maker {
   void run_plain() {
     say("the scene as it is");
     look();
+    SurfaceCheck surface;
     const auto run = [&](double share) {
       const double begin = wall_clock();
-      Motion motion = runner_->run(scene_, {.running = share * budget(), .drawn = options_.surface});
+      surface = {study_.fine_surface};
+      Motion motion =
+          runner_->run(scene_, {.running = share * budget(), .drawn = options_.surface, .surface = &surface});
       plain_cost_ = wall_clock() - begin;
       if (!motion.failure.empty()) throw program::RunFailure(motion.failure);
       study_.frames = static_cast<int>(motion.frame_seconds.size());
@@ -137,7 +139,7 @@ class Maker {
       motion = run(1);  // with moments at its end
       if (study_.frames < reached) throw too_small(motion, fewest);
     }
-    add_row({.name = "as it is", .scene = scene_}, std::move(motion));
+    add_row({.name = "as it is", .scene = scene_}, std::move(motion), surface.error);
   }
 
   /// What to say where not even `fewest` frames were reached.
@@ -155,58 +157,11 @@ class Maker {
         " frames this scene needs about --budget " + number(digit * std::ceil(needed / digit), 6) + "s");
   }
 
-  void add_row(const Setting& setting, Motion motion) {
-    Row row{.setting = setting, .motion = std::move(motion)};
+  void add_row(const Setting& setting, Motion motion, std::optional<double> surface) {
+    Row row{.setting = setting, .motion = std::move(motion), .surface = surface};
     row.seconds.push_back(row.motion.seconds_per_frame());
     row.drawing.push_back(row.motion.draw_seconds_per_frame());
     study_.rows.push_back(std::move(row));
-  }
-
-  /// Halves the step until that changes little. Steps alone cost more, not drawing.
-  void find_reference() {
-    Reference& reference = study_.reference;
-    const bool is_finest = print_scene(finest(scene_, 1)) == print_scene(scene_);
-    const double begin = wall_clock();
-    const std::vector<double>& drawing = study_.rows.front().motion.draw_seconds;
-    double factor = 1, cost = plain_cost_ - std::accumulate(drawing.begin(), drawing.end(), 0.0);
-    Motion before = is_finest ? study_.rows.front().motion : run_finest(1);
-    if (!is_finest) cost = wall_clock() - begin;
-    const double building = std::min(cost, before.other_seconds);  // of which shorter steps need no more
-    reference.factors.push_back(1);
-    reference.motion = before;
-    while (static_cast<float>(factor) * scene_.solver.time_step_factor > 2 * k_shortest_factor &&
-           2 * cost - building < left(k_reference_share)) {
-      factor /= 2;
-      const double started = wall_clock();
-      say("reference, steps of 1/" + std::to_string(static_cast<int>(1 / factor)));
-      Motion motion = run_finest(factor);
-      cost = wall_clock() - started;
-      if (!motion.failure.empty() || motion.moments.size() != before.moments.size()) break;
-      reference.factors.push_back(factor);
-      reference.differences.push_back(motion_error(before, motion).rms);
-      reference.late_shape = motion_error(before, motion, k_late).shape();
-      // The one before stays the reference: in still shorter steps rounding counts more than the step.
-      reference.parts_again = parts_again(reference.differences);
-      if (reference.parts_again) break;
-      reference.factor = factor;
-      reference.motion = motion;
-      before = std::move(motion);
-      const double off = motion_error(study_.rows.front().motion, reference.motion).rms;
-      reference.converged = reference.differences.back() < k_little * off;
-      if (reference.converged) break;
-    }
-    reference.order = convergence_order(reference.differences);
-    if (reference.parts_again) {
-      reference.error = reference.differences.back();
-    } else if (!reference.differences.empty()) {
-      // What is left of a geometric series; with no order known, as much as the last difference.
-      const double ratio = reference.order && *reference.order > 0.2 ? std::exp2(*reference.order) : 2;
-      reference.error = reference.differences.back() / (ratio - 1);
-    }
-  }
-
-  Motion run_finest(double factor) {
-    return runner_->run(finest(scene_, static_cast<float>(factor)), {.deadline = end()});
   }
 
   void run_settings() {
@@ -225,9 +180,11 @@ class Maker {
 
   void run_setting(const Setting& setting) {
     say(setting.name);
-    Motion motion = runner_->run(setting.scene, {.deadline = end(), .drawn = options_.surface});
+    SurfaceCheck surface{study_.fine_surface};
+    Motion motion =
+        runner_->run(setting.scene, {.deadline = end(), .drawn = options_.surface, .surface = &surface});
     if (motion.failure.empty() && static_cast<int>(motion.frame_seconds.size()) == study_.frames)
-      add_row(setting, std::move(motion));
+      add_row(setting, std::move(motion), surface.error);
     else if (motion.failure.empty())
       study_.left_out.push_back(setting.name);
     else

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -44,11 +45,12 @@ struct Stopped {};
 /// A setting that was run.
 struct Row {
   Setting setting;
-  Motion motion;                     ///< the first run
-  std::vector<double> seconds = {};  ///< of a frame's steps in the mean, for each run [s]
-  std::vector<double> drawing = {};  ///< of its surface [s]
-  MotionError error = {};            ///< of all moments
-  MotionError late = {};             ///< of the last quarter
+  Motion motion;                       ///< the first run
+  std::vector<double> seconds = {};    ///< of a frame's steps in the mean, for each run [s]
+  std::vector<double> drawing = {};    ///< of its surface [s]
+  MotionError error = {};              ///< of all moments
+  MotionError late = {};               ///< of the last quarter
+  std::optional<double> surface = {};  ///< how far its surface is from a fine one of the same particles [h]
   bool on_front = false;
 
   double median_seconds() const;  ///< steps [s]
@@ -73,6 +75,7 @@ struct Reference {
 
 struct Study {
   std::string scene;
+  SurfaceConfig fine_surface;  ///< what surfaces are compared with
   /// Those that settings are judged by, and those that the scene has: the budget may carry no more than the
   /// first of them.
   int frames = 0, all_frames = 0;
@@ -93,9 +96,10 @@ struct Study {
   std::vector<std::string> measures;         ///< names
 
   /// What settings are judged by [h]: the RMS of positions or, where the motion is chaotic, that of shape in
-  /// the last quarter.
-  double error(const Row& row) const { return chaotic ? row.late.shape() : row.error.rms; }
-  /// What the reference is off itself, by the same measure [h].
+  /// the last quarter; or that of the surface, where that is larger.
+  double error(const Row& row) const { return std::max(error_of_motion(row), row.surface.value_or(0)); }
+  double error_of_motion(const Row& row) const { return chaotic ? row.late.shape() : row.error.rms; }
+  /// What the reference's motion is off itself, by the same measure [h].
   double reference_error() const { return chaotic ? reference.late_shape : reference.error; }
   /// Cost: of a frame, the median of its runs [s].
   std::vector<Trade> trades() const;

@@ -109,9 +109,10 @@ std::vector<std::string> remarks(const Study& study) {
 std::string to_text(const Study& study) {
   std::size_t width = 8;
   for (const Row& row : study.rows) width = std::max(width, row.setting.name.size());
-  std::string text = "  " + padded("setting", width) +
-                     "  steps [ms]          range  surface [ms]  error [h]  median   worst  worst [px]  "
-                     "height [h]   volume   energy";
+  std::string text =
+      "  " + padded("setting", width) +
+      "  steps [ms]          range  surface [ms]  error [h]  surface  median   worst  worst [px]  "
+      "height [h]   volume   energy";
   for (const std::string& measure : study.measures) text += "  " + measure;
   text += '\n';
   for (const std::size_t i : by_cost(study)) {
@@ -119,10 +120,11 @@ std::string to_text(const Study& study) {
     const Range times = range(row);
     char line[320];
     std::snprintf(line, sizeof line,
-                  "  %10.3f  %6.3f..%6.3f  %12.3f  %9.3g %7.2g %7.2g  %10.3g  %10.2g %8.2g %8.2g",
+                  "  %10.3f  %6.3f..%6.3f  %12.3f  %9.3g %8s %7.2g %7.2g  %10.3g  %10.2g %8.2g %8.2g",
                   1e3 * row.median_seconds(), 1e3 * times.least, 1e3 * times.most, 1e3 * row.median_drawing(),
-                  study.error(row), row.error.median, row.error.worst, row.error.worst_pixels.value_or(0),
-                  row.error.height, row.error.volume, row.error.energy);
+                  study.error(row), row.surface ? number(*row.surface, 2).c_str() : "-", row.error.median,
+                  row.error.worst, row.error.worst_pixels.value_or(0), row.error.height, row.error.volume,
+                  row.error.energy);
     text += (row.on_front ? "* " : "  ") + padded(row.setting.name, width) + line;
     for (const double measure : row.error.measures) text += "  " + number(measure);
     text += '\n';
@@ -138,7 +140,12 @@ std::vector<std::string> column_help() {
       "range of the "
       "timed runs (runs)",
       "surface [ms] (surface_ms): of drawing a frame's surface; frame_ms: steps and surface",
-      "error [h] (error_h): what settings are judged by, rms_h, or late_shape_h where the motion is chaotic",
+      "error [h] (error_h): what settings are judged by, rms_h, or late_shape_h where the motion is chaotic; "
+      "or "
+      "surface_error_h where that is larger",
+      "surface [h] (surface_error_h): how far the drawn surface is from one with twice as many voxels around "
+      "the "
+      "same particles, root mean square; empty, or -, where none is drawn",
       "median, rms, worst [h] (median_h, rms_h, worst_h): distance of a particle from where the reference "
       "has "
       "it, over all particles and moments; h is the spacing of its body",
@@ -161,7 +168,7 @@ std::vector<std::string> column_help() {
 std::string to_csv(const Study& study) {
   std::string text =
       "setting,frames,all_frames,on_front,runs,steps_ms,steps_ms_least,steps_ms_most,surface_ms,frame_ms,"
-      "error_h,median_h,rms_"
+      "error_h,surface_error_h,median_h,rms_"
       "h,"
       "worst_h,median_px,worst_px,height_h,spread_h,center_h,late_shape_h,volume,energy";
   for (const std::string& measure : study.measures) text += ',' + program::csv_quoted(measure);
@@ -173,9 +180,11 @@ std::string to_csv(const Study& study) {
     for (const int count : {study.frames, study.all_frames, row.on_front ? 1 : 0})
       text += ',' + std::to_string(count);
     text += ',' + std::to_string(row.seconds.size());
-    for (const double value :
-         {1e3 * row.median_seconds(), 1e3 * times.least, 1e3 * times.most, 1e3 * row.median_drawing(),
-          1e3 * row.frame_seconds(), study.error(row), row.error.median, row.error.rms, row.error.worst})
+    for (const double value : {1e3 * row.median_seconds(), 1e3 * times.least, 1e3 * times.most,
+                               1e3 * row.median_drawing(), 1e3 * row.frame_seconds(), study.error(row)})
+      text += ',' + number(value, 6);
+    text += ',' + (row.surface ? number(*row.surface, 6) : std::string());
+    for (const double value : {row.error.median, row.error.rms, row.error.worst})
       text += ',' + number(value, 6);
     for (const auto& pixels : {row.error.median_pixels, row.error.worst_pixels})
       text += ',' + (pixels ? number(*pixels, 6) : std::string());
@@ -198,6 +207,7 @@ std::string to_json(const Study& study, const std::optional<Picked>& picked) {
                     {"surface_seconds", row.drawing},
                     {"steps", row.motion.steps},
                     {"error_h", study.error(row)},
+                    {"surface_error_h", row.surface ? Json(*row.surface) : Json()},
                     {"errors", to_json(row.error, study)},
                     {"last_quarter", to_json(row.late, study)},
                     {"paste", lines_to_paste(study.rows.front().setting.scene, row.setting.scene)}});
@@ -227,6 +237,7 @@ std::string to_json(const Study& study, const std::optional<Picked>& picked) {
   if (picked)
     json["pick"] = {{"setting", study.rows[picked->row].setting.name},
                     {"holds", picked->holds},
+                    {"not_judged", picked->not_judged},
                     {"frame_seconds", study.rows[picked->row].frame_seconds()},
                     {"error_h", picked->error},
                     {"run_again", picked->more},

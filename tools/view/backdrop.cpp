@@ -6,7 +6,7 @@ namespace mallow::view {
 namespace {
 
 // Cells along an edge where the backdrop is drawn as a grid: what lies between is told apart by no eye.
-constexpr int k_studio_cells = 24, k_floor_cells = 24;
+constexpr int k_studio_cells = 12, k_floor_cells = 16;
 
 std::string on_grid(const char* light, const char* vertex) {
   return with_light(true, std::string(light) + shaders::k_plain_grid + vertex);

@@ -50,7 +50,7 @@ struct FrameStats {
   double surface_seconds = 0;  ///< to draw the surface, the same [s]
   double save_seconds = 0;     ///< to save a state to go back to [s]
   std::size_t particles = 0, bodies = 0, awake = 0;
-  int threads = 0;
+  int threads = 0, most_threads = 0;  ///< that the simulation has, and may have
   std::size_t moments = 0, moment_bytes = 0;  ///< to go back to
   double oldest = 0, newest = 0;              ///< of them [s]
   int rung = 0;                               ///< see frame_governor.h

@@ -53,7 +53,9 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
       ->type_name("KEY=VALUE");
   const CLI::Option* const chosen_scenes =
       app.add_option("--scenes", scenes, "Folder of scenes that the gallery shows")->type_name("DIR");
-  program::add_threads_option(app, options.threads, "Threads of the simulation; left out: all but one", 1);
+  program::add_threads_option(
+      app, options.threads,
+      "Threads of the simulation; left out: all but one, and fewer beside other programs", 1);
   app.add_option("--samples", options.samples, "Samples a pixel; 0: 4, or 1 where no graphics card draws")
       ->check(CLI::Range(0, 16));
   app.add_option("--width", options.window.width, "Of the window, pixels")->check(CLI::Range(64, 16384));
@@ -66,6 +68,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): CLI11 t
     } catch (const CLI::ParseError& error) {
       return app.exit(error) == 0 ? program::k_exit_done : program::k_exit_bad_input;
     }
+    options.lowers_threads = app.count("--threads") == 0;
     options.scene = scene;
     options.scenes = scenes;
     options.window.wait_for_screen = script.empty();

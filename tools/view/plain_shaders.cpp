@@ -27,6 +27,25 @@ void main() {
 }
 )";
 
+const char* const k_plain_obstacle_vertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal_in;
+uniform mat4 projection_view, pose;
+uniform float side;             // -1: it is looked into
+uniform vec3 albedo;
+out vec3 bright, dark;
+out vec3 on_map;
+void main() {
+  vec4 at = pose * vec4(position, 1.0);
+  vec3 n = side * normalize(mat3(pose) * normal_in);
+  vec3 around = ambient(n) * openness(at.xyz, n);
+  bright = develop(albedo * (key_color * max(dot(n, to_key), 0.0) + around));
+  dark = develop(albedo * around);
+  on_map = on_shadow_map(at.xyz, n);
+  gl_Position = projection_view * at;
+}
+)";
+
 const char* const k_plain_lit_fragment = R"(#version 330 core
 in vec3 bright, dark;
 in vec3 on_map;

@@ -15,7 +15,7 @@ void Session::save_run(const std::string& folder) {
   std::filesystem::create_directories(cache.particles_file(0).parent_path());
   program::RunReport report;
   report.scene = scene_.file.string();
-  report.threads = options_.threads;
+  report.threads = threads_.threads();
   report.info = simulation_->info();
   report.appearances = palette();
   report.info.bodies = bodies_;
@@ -25,7 +25,7 @@ void Session::save_run(const std::string& folder) {
   report.simulated_time = simulation_->time();
   program::RunPlan plan;
   plan.frames = scene_.run.frames;
-  plan.threads = options_.threads;
+  plan.threads = threads_.threads();
   cache.write_scene(cache.moved_here(scene_));
   // A run that goes on frames its pictures by its frame 0.
   write_particles(cache.particles_file(0), snapshot(*simulation_));
@@ -41,7 +41,7 @@ void Session::save_run(const std::string& folder) {
 
 void Session::open_run(const std::string& folder) {
   const program::Cache cache = program::Cache::open_to_resume(folder);
-  program::CheckpointedRun saved = program::load_newest_checkpoint(cache, options_.threads);
+  program::CheckpointedRun saved = program::load_newest_checkpoint(cache, threads_.threads());
   take_over(std::move(saved.simulation), std::move(saved.skins), saved.report.frames);
   begin(std::move(saved.scene));
 }

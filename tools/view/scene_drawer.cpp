@@ -34,7 +34,8 @@ SceneDrawer::SceneDrawer(bool plain)
     : plain_(plain),
       shadow_size_(plain ? 512 : 1024),
       particles_(shaders::k_particle_vertex, with_light(plain_, shaders::k_particle_fragment)),
-      obstacles_(shaders::k_obstacle_vertex, with_light(plain_, shaders::k_obstacle_fragment)),
+      obstacles_(plain_ ? with_light(true, shaders::k_plain_obstacle_vertex) : shaders::k_obstacle_vertex,
+                 plain_ ? shaders::k_plain_lit_fragment : with_light(false, shaders::k_obstacle_fragment)),
       backdrop_(plain_),
       mesh_shadow_(shaders::k_mesh_vertex, shaders::k_nothing_fragment),
       particle_shadow_(shaders::k_particle_vertex, shaders::k_nothing_fragment),
@@ -232,8 +233,11 @@ void SceneDrawer::draw_shadows() {
   if (index_count_ > 0) {
     mesh_shadow_.use();
     mesh_shadow_.set("projection_view", to_light_);
+    if (closed_) glEnable(GL_CULL_FACE);  // what looks away from the light lies behind what looks at it
+    glCullFace(GL_BACK);
     glBindVertexArray(mesh_array_);
     glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+    glDisable(GL_CULL_FACE);
   }
   if (point_count_ > 0) {
     particle_shadow_.use();
@@ -250,7 +254,7 @@ void SceneDrawer::draw_shadows() {
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void SceneDrawer::draw(const OrbitCamera& camera, int width, int height) {
+void SceneDrawer::draw(const OrbitCamera& camera, int width, int height, int left, int bottom) {
   GLint target = 0;
   glGetIntegerv(GL_FRAMEBUFFER_BINDING, &target);
   glEnable(GL_DEPTH_TEST);
@@ -264,7 +268,7 @@ void SceneDrawer::draw(const OrbitCamera& camera, int width, int height) {
   glActiveTexture(GL_TEXTURE1);
   glBindTexture(GL_TEXTURE_2D, shadow_map_);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
-  glViewport(0, 0, width, height);
+  glViewport(left, bottom, width, height);
   glClear(GL_DEPTH_BUFFER_BIT);
   if (index_count_ > 0) {
     GlProgram& program = mesh_program();

@@ -29,8 +29,8 @@ class SceneDrawer {
   void begin_scene(const OrbitCamera& camera, const Aabb& bounds);
   /// What is drawn from now on: copies it to the graphics memory, once.
   void take(const Frame& frame);
-  /// Into the framebuffer that is bound.
-  void draw(const OrbitCamera& camera, int width, int height);
+  /// Into the framebuffer that is bound, at a place in it; its depth is cleared.
+  void draw(const OrbitCamera& camera, int width, int height, int left = 0, int bottom = 0);
   std::size_t triangles() const { return static_cast<std::size_t>(index_count_ / 3); }
 
  private:

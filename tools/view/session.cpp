@@ -37,8 +37,8 @@ std::string advice(const Error& error) {
 
 void Session::open(const Scene& scene) {
   // All that may refuse the scene comes first: until then what was there stands as it stood.
-  Simulation built = build(scene, options_.threads);
-  std::vector<Skin> followers = skins(scene, built, options_.threads);
+  Simulation built = build(scene, threads_.threads());
+  std::vector<Skin> followers = skins(scene, built, threads_.threads());
   std::vector<ParticleId> pinned = pinned_by(scene, built);
   built.prepare();
   take_over(std::move(built), std::move(followers), 0);
@@ -166,6 +166,11 @@ void Session::take_step(double wall) {
   frames_rate_.add(wall);
   keep_moment(wall);
   if (governor_.add_frame(frame_seconds_)) apply_rung();
+  constexpr double k_looks = 1;  // [s]
+  if (options_.lowers_threads && wall - last_look_ >= k_looks) {
+    last_look_ = wall;
+    look_at_processors(processors_.look());
+  }
   frame_seconds_ = 0;
 }
 
@@ -207,12 +212,12 @@ void Session::take_settings(const Settings& settings) {
 }
 
 void Session::restore(const Moment& moment) {
-  simulation_.emplace(Simulation::restore(moment.state, options_.threads));
+  simulation_.emplace(Simulation::restore(moment.state, threads_.threads()));
   bodies_.clear();
   surface_.reset();
   skins_.clear();
   while (const std::string* bytes = moment.state.find(skin_chunk(skins_.size())))
-    skins_.push_back(Skin::restore(*bytes, options_.threads));
+    skins_.push_back(Skin::restore(*bytes, threads_.threads()));
   frame_ = moment.frame_time == frame_time_ ? moment.frame : frames_until(moment.time);
   take_settings(moment.settings);
   make_surface();
@@ -230,6 +235,15 @@ void Session::restore(const Moment& moment) {
   pace_.restart(simulation_->time());
   message_.clear();
   changed_ = true;
+}
+
+void Session::look_at_processors(double free) {
+  if (!threads_.add_look(free) || !simulation_) return;
+  simulation_.emplace(Simulation::restore(simulation_->save(), threads_.threads()));
+  for (Skin& skin : skins_) skin = Skin::restore(skin.save(), threads_.threads());
+  make_surface();
+  report_contacts();
+  if (grab_) grab_->act_on(*simulation_);
 }
 
 void Session::go_to(double time) {

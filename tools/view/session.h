@@ -19,12 +19,14 @@
 #include "view/particle_values.h"
 #include "view/rates.h"
 #include "view/rewind_ring.h"
+#include "view/thread_governor.h"
 #include "view/verbs.h"
 
 namespace mallow::view {
 
 struct SessionOptions {
-  int threads = 1;
+  int threads = 1;              ///< >= 1
+  bool lowers_threads = false;  ///< beside other programs, see ThreadGovernor
   std::size_t rewind_bytes = std::size_t{384} << 20;
 };
 
@@ -33,7 +35,8 @@ struct SessionOptions {
 /// end of a frame of the scene.
 class Session {
  public:
-  explicit Session(const SessionOptions& options) : options_(options), ring_(options.rewind_bytes) {}
+  explicit Session(const SessionOptions& options)
+      : options_(options), threads_(options.threads), ring_(options.rewind_bytes) {}
 
   /// Builds a scene and begins at its start. Throws ConfigError or IoError; then all stands as it stood.
   void open(const Scene& scene);
@@ -98,6 +101,8 @@ class Session {
   void set_run(const RunConfig& run);
   void set_rung(int rung);
   void set_target(std::optional<double> frames_per_second) { governor_.set_target(frames_per_second); }
+  /// Goes on with as many threads as others leave processors, where that is another number: the same bits.
+  void look_at_processors(double free);
 
   // The mouse.
   void grab(const Vec3& at, float strength);
@@ -145,6 +150,9 @@ class Session {
   double frame_end() const { return (frame_ + 1) * frame_time_; }
 
   SessionOptions options_;
+  ThreadGovernor threads_;
+  ProcessorLoad processors_;
+  double last_look_ = 0;                  ///< at them [s] of wall time
   Scene scene_;                           ///< as it is set now, without the rung
   std::optional<Simulation> simulation_;  ///< at one place while there is one: the grab's force refers to it
   std::vector<BodyInfo> bodies_;          ///< by their slots, as palette() knows them

@@ -118,7 +118,8 @@ void Session::fill_stats(double wall, FrameStats& stats) {
   stats.bodies = bodies.size();
   stats.awake = static_cast<std::size_t>(
       std::ranges::count_if(bodies, [&](BodyId body) { return simulation_->is_awake(body); }));
-  stats.threads = options_.threads;
+  stats.threads = threads_.threads();
+  stats.most_threads = threads_.most();
   stats.moments = ring_.size();
   stats.moment_bytes = ring_.bytes();
   stats.oldest = ring_.empty() ? 0 : ring_[0].time;
@@ -150,7 +151,8 @@ void Session::fill(double wall, Frame& frame) {
     frame.grab.reset();
     frame.samples.clear();
     frame.stats = {};
-    frame.stats.threads = options_.threads;
+    frame.stats.threads = threads_.threads();
+    frame.stats.most_threads = threads_.most();
     frame.stats.rung = governor_.rung();
     return;
   }

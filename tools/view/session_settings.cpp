@@ -101,7 +101,7 @@ SurfaceConfig Session::surface_to_play() const {
 
 void Session::make_surface() {
   const Rung& rung = rungs()[static_cast<std::size_t>(governor_.rung())];
-  surface_.emplace(with_voxels(surface_to_play(), rung.voxels), skins_, options_.threads);
+  surface_.emplace(with_voxels(surface_to_play(), rung.voxels), skins_, threads_.threads());
   changed_ = true;
 }
 

@@ -28,6 +28,25 @@ std::string element(const char* list, std::size_t index) {
   return list + ('[' + std::to_string(index) + ']');
 }
 
+/// Calls visit(key, fields) with each shape of a collider that scenes hold as numbers: others are made of
+/// points or a mesh.
+template <class Visit>
+void for_shapes(Collider& collider, const Visit& visit) {
+  const auto visit_one = [&]<class Shape>(const std::string& before, Shape& shape) {
+    if constexpr (std::is_same_v<typename scene_file::InScenes<Shape>::Type, Shape>)
+      visit(before + ShapeTraits<Shape>::k_key, scene_file::fields(shape));
+  };
+  std::visit(
+      [&]<class Shape>(Shape& shape) {
+        if constexpr (std::is_same_v<Shape, Union>)
+          for (std::size_t part = 0; part < shape.parts.size(); ++part)
+            std::visit([&](auto& one) { visit_one(element("union", part) + '.', one); }, shape.parts[part]);
+        else
+          visit_one("", shape);
+      },
+      collider.shape);
+}
+
 }  // namespace
 
 SettingsModel::SettingsModel(const Scene& scene, std::vector<std::string> overrides)
@@ -51,6 +70,11 @@ SettingsModel::SettingsModel(const Scene& scene, std::vector<std::string> overri
            [](SceneBody& body) { return joined(scene_file::fields(body), scene_file::fields(body.source)); });
   add_list(Kind::collider, "collider", scene_.colliders,
            [](SceneCollider& collider) { return scene_file::fields(collider); });
+  for (std::size_t k = 0; k < scene_.colliders.size(); ++k)
+    for_shapes(scene_.colliders[k], [&](const std::string& key, BoundFields fields) {
+      const std::string path = element("collider", k) + '.' + key;
+      add(Kind::collider, k, path, path, std::move(fields));
+    });
   add_list(Kind::emitter, "emitter", scene_.emitters,
            [](SceneEmitter& emitter) { return scene_file::fields(emitter); });
   add_list(Kind::pin, "pin", scene_.pins,

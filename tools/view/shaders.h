@@ -21,6 +21,7 @@ extern const char* const k_nothing_fragment;  ///< of shadow maps
 
 // Where no graphics card draws: see plain_shaders.cpp.
 extern const char* const k_plain_mesh_vertex;
+extern const char* const k_plain_obstacle_vertex;
 extern const char* const k_plain_grid;  ///< before the text of grids
 extern const char* const k_plain_studio_vertex;
 extern const char* const k_plain_floor_vertex;

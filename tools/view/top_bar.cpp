@@ -107,7 +107,14 @@ void draw_top_bar(const Frame& frame, ViewState& state, double drawn_per_second)
   ImGui::SameLine();
   ImGui::BeginGroup();
   ImGui::Text("%.3f s, frame %d", stats.time, stats.frame);
-  ImGui::Text("%d thread%s", stats.threads, stats.threads == 1 ? "" : "s");
+  if (stats.threads < stats.most_threads)
+    ImGui::Text("%d of %d threads", stats.threads, stats.most_threads);
+  else
+    ImGui::Text("%d thread%s", stats.threads, stats.threads == 1 ? "" : "s");
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(
+        "of the simulation; where other programs are at work and --threads is not given, no more "
+        "than the processors that they leave");
   ImGui::EndGroup();
   state.plots = draw_plots(frame, size.x - ImGui::GetItemRectMax().x);
   ImGui::End();

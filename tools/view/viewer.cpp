@@ -26,7 +26,9 @@ Viewer::Viewer(const ViewerOptions& options)
     : options_(options),
       window_(options.window, events()),
       drawer_(window_.draws_in_software() && options.samples <= 1),
-      stepping_(std::make_unique<SteppingThread>(SessionOptions{.threads = options.threads}, Window::wake)) {
+      stepping_(std::make_unique<SteppingThread>(
+          SessionOptions{.threads = options.threads, .lowers_threads = options.lowers_threads},
+          Window::wake)) {
   if (options_.samples == 0) options_.samples = window_.draws_in_software() ? 1 : 4;
   if (!options.scene.empty()) open(options.scene);
 }
@@ -142,6 +144,7 @@ void Viewer::draw_scene(int width, int height) {
   camera_.set_aspect(static_cast<float>(width) / static_cast<float>(height));
   picture_.bind();
   drawer_.draw(camera_, width, height);
+  picture_is_old_ = false;
 }
 
 void Viewer::draw_scene() {
@@ -200,20 +203,33 @@ void Viewer::draw_next(bool may_wait) {
   drawn_.add(last_picture_);
   if (shows_gallery()) {
     gallery().make_thumbnails(last_picture_);
-  } else if (stale_) {
-    draw_scene();
   }
   show_picture();
   ++pictures_;
   do_what_was_asked();
 }
 
+/// With one sample a pixel a scene that moves is drawn where it is seen, as a copy takes a tenth of the time;
+/// one that stands lies ready for what moves above it.
 void Viewer::show_picture() {
+  const Area seen = area();
+  const int bottom = window_.height() - seen.top - seen.height;
+  const bool into_window = !shows_gallery() && stale_ && options_.samples <= 1;
+  if (!shows_gallery() && !into_window && (stale_ || picture_is_old_)) draw_scene();
   // What lies behind panels is cleared, as that costs less than their own background.
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glClearColor(0.09f, 0.10f, 0.12f, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  if (!shows_gallery()) picture_.show(area().left, window_.height() - area().top - area().height);
+  if (into_window) {
+    picture_.resize(seen.width, seen.height, options_.samples);
+    camera_.set_aspect(static_cast<float>(seen.width) / static_cast<float>(seen.height));
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    drawer_.draw(camera_, seen.width, seen.height, seen.left, bottom);
+    stale_ = false;
+    picture_is_old_ = true;
+  } else if (!shows_gallery()) {
+    picture_.show(seen.left, bottom);
+  }
   draw_gui();
   window_.swap();
 }
@@ -277,7 +293,7 @@ std::array<double, 2> Viewer::measure_drawing(int pictures) {
     camera_.turn(4, 0);
     // As while a scene moves.
     drawer_.take(frame());
-    draw_scene();
+    stale_ = true;
     show_picture();
     glFinish();
   }

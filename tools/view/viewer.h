@@ -26,7 +26,8 @@ struct ViewerOptions {
   std::filesystem::path scenes;  ///< folder of the gallery
   std::vector<std::string> overrides;
   int threads = 1;
-  int samples = 0;  ///< a pixel; 0: 4, or 1 where the driver draws in software
+  bool lowers_threads = false;  ///< beside other programs
+  int samples = 0;              ///< a pixel; 0: 4, or 1 where the driver draws in software
   Window::Options window;
   bool paused = false;
 };
@@ -64,7 +65,10 @@ class Viewer {
   const FilmRecorder* film() const { return film_.get(); }
   bool joins_films() const { return !joining_.empty(); }
   /// Of the scene alone, without panels.
-  render::Image scene_picture() { return picture_.read(); }
+  render::Image scene_picture() {
+    if (picture_is_old_) draw_scene();
+    return picture_.read();
+  }
   /// Draws the scene again and again, and gives wall and processor time of one picture [s].
   std::array<double, 2> measure_drawing(int pictures);
   std::size_t triangles() const { return drawer_.triangles(); }
@@ -102,11 +106,12 @@ class Viewer {
   std::vector<std::future<std::string>> joining_;  ///< films that are not written yet
   std::uint64_t filmed_ = 0;                       ///< number of the last frame in a film, see Frame
   Rate drawn_;
-  int scene_ = -1;           ///< that is drawn, see Frame
-  bool is_rebuilt_ = false;  ///< the next scene is the same one, from its start
-  std::string run_folder_;   ///< that the scene was opened from; empty: from its file
-  bool stale_ = true;        ///< the picture of the scene is
-  int busy_pictures_ = 0;    ///< that are drawn after the last event, so that panels settle
+  int scene_ = -1;              ///< that is drawn, see Frame
+  bool is_rebuilt_ = false;     ///< the next scene is the same one, from its start
+  std::string run_folder_;      ///< that the scene was opened from; empty: from its file
+  bool stale_ = true;           ///< the picture of the scene is
+  bool picture_is_old_ = true;  ///< what is seen was drawn into the window itself
+  int busy_pictures_ = 0;       ///< that are drawn after the last event, so that panels settle
   double last_picture_ = 0;
   double quiet_at_ = std::numeric_limits<double>::infinity();  ///< a message goes then [s]
   int message_ = 0, camera_number_ = 0;                        ///< see Frame

@@ -30,6 +30,13 @@ void set_style() {
   style.Colors[ImGuiCol_CheckMark] = ImVec4(0.98f, 0.62f, 0.22f, 1);
 }
 
+/// Round corners and soft edges take a third of the time of panels where no graphics card draws.
+void set_plain_style() {
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.FrameRounding = style.GrabRounding = 0;
+  style.AntiAliasedLines = style.AntiAliasedFill = false;
+}
+
 void set_font() {
   // Units have letters beyond Latin: m/s², α, κ, τ.
   static const ImWchar k_letters[] = {0x20,   0xFF,   0x370,  0x3FF,  0x2010, 0x2027,
@@ -52,7 +59,8 @@ Window::Window(const Options& options, WindowEvents events) : events_(std::move(
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
   glfwWindowHint(GLFW_VISIBLE, options.visible ? GLFW_TRUE : GLFW_FALSE);
-  glfwWindowHint(GLFW_DEPTH_BITS, 0);  // pictures have their own
+  glfwWindowHint(GLFW_DEPTH_BITS, 24);
+  glfwWindowHint(GLFW_STENCIL_BITS, 0);
   window_ = glfwCreateWindow(options.width, options.height, "mallow", nullptr, nullptr);
   if (window_ == nullptr) {
     const std::string why = last_error();
@@ -67,6 +75,7 @@ Window::Window(const Options& options, WindowEvents events) : events_(std::move(
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
   set_style();
+  if (draws_in_software()) set_plain_style();
   set_font();
   set_callbacks();
   ImGui_ImplGlfw_InitForOpenGL(window_, false);

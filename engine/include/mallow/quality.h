@@ -12,6 +12,9 @@ namespace mallow {
 /// The same scene in steps of `factor` (> 0) times its own: time_step_factor times that, which leaves the
 /// material as it is. Throws ConfigError where the factor is not a finite number above 0.
 MALLOW_EXPORT SolverConfig at_time_step(const SolverConfig& config, float factor);
+/// The same surface with `factor` (> 0) times as many voxels along a length, as far as the settings' ranges
+/// go. Throws ConfigError where the factor is not a finite number above 0.
+MALLOW_EXPORT SurfaceConfig at_voxels(const SurfaceConfig& config, float factor);
 
 /// How a scene's settings are turned between speed and accuracy. Each lies on or beside the fronts that
 /// bench/RESULTS.md shows, with what it costs and how far off it is there.

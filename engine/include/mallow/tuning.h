@@ -59,6 +59,8 @@ struct MotionPlan {
 /// Builds a simulation and runs it. What building or a step throws (Error) is in `failure`, with the moments
 /// up to it. Throws ConfigError where the plan is out of range.
 MALLOW_EXPORT Motion record_motion(const std::function<Simulation()>& build, const MotionPlan& plan);
+/// Runs a simulation that is there, from where it stands; frames are counted from there. Else the same.
+MALLOW_EXPORT Motion record_motion(Simulation& simulation, const MotionPlan& plan);
 
 /// How far a motion is from a reference. Distances are between particles of the same id at the same moment,
 /// in spacings h of their body.

@@ -51,6 +51,7 @@ PYBIND11_MODULE(_mallow, module) {
   bind_surfaces(module);
   bind_scenes(module);
   bind_files(module);
+  bind_tuning(module);
 #ifdef MALLOW_PYTHON_RENDER
   bind_pictures(module);
 #endif

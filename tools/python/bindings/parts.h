@@ -15,6 +15,7 @@ void bind_meshes(pybind11::module_& module);
 void bind_surfaces(pybind11::module_& module);
 void bind_scenes(pybind11::module_& module);
 void bind_files(pybind11::module_& module);
+void bind_tuning(pybind11::module_& module);
 void bind_pictures(pybind11::module_& module);
 
 }  // namespace mallow::python

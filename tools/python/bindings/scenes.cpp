@@ -220,6 +220,8 @@ void bind_scene(py::module_& module) {
   part("surface", &Scene::surface);
   part("run", &Scene::run);
   part("render", &Scene::render);
+  scene.attr("_fields") = py::make_tuple("file", "solver", "materials", "bodies", "colliders", "pins", "emitters",
+                                         "sinks", "surface", "run", "render");
 }
 
 void bind_reading(py::module_& module) {

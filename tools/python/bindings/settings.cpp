@@ -109,6 +109,7 @@ void bind_configs(py::module_& module) {
 
   module.def("at_time_step", py::overload_cast<const SolverConfig&, float>(&at_time_step), py::arg("config"),
              py::arg("factor"), doc("at_time_step"));
+  module.def("at_voxels", &at_voxels, py::arg("config"), py::arg("factor"), doc("at_voxels"));
   module.def("with_quality", py::overload_cast<const SolverConfig&, Quality>(&with_quality),
              py::arg("config"), py::arg("quality"), doc("with_quality"));
   module.def("with_quality", py::overload_cast<const Material&, const SolverConfig&, Quality>(&with_quality),

@@ -31,12 +31,19 @@ inline constexpr bool k_tuple<std::vector<std::array<std::uint32_t, 3>>> = false
 /// `of`: whose value it is, for the message.
 template <class M>
 M convert(py::handle value, const std::string& of, const std::string& wanted) {
+  const auto refuse = [&] {
+    const std::string given = std::string(py::str(py::repr(value)));
+    throw py::type_error(of + " must be " + wanted + ", not " + given.substr(0, 60));
+  };
   try {
     return value.cast<M>();
   } catch (const py::cast_error&) {
-    const std::string given = std::string(py::str(py::repr(value)));
-    throw py::type_error(of + " must be " + wanted + ", not " + given.substr(0, 60));
+    refuse();
+  } catch (const py::error_already_set& error) {  // as what is to become a list and is none
+    if (!error.matches(PyExc_TypeError)) throw;
+    refuse();
   }
+  throw py::cast_error();  // not reached
 }
 
 template <class T>
@@ -199,10 +206,11 @@ py::enum_<E> choice(py::handle scope, const char* name,
   }
   const std::vector<std::pair<const char*, E>> known(values);
   bound.def(py::init([known, path, names](const std::string& word) {
-    for (const auto& [name_of, value] : known)
-      if (word == name_of) return value;
-    throw py::value_error(path + " is one of " + names + ", not \"" + word + "\"");
-  }));
+              for (const auto& [name_of, value] : known)
+                if (word == name_of) return value;
+              throw py::value_error(path + " is one of " + names + ", not \"" + word + "\"");
+            }),
+            py::arg("name"));
   py::implicitly_convertible<py::str, E>();
   return bound;
 }
