@@ -287,8 +287,11 @@ void Oracle::rest_anew(std::size_t group, double mean) {
     }
     if (found.empty()) throw std::runtime_error("some particle is near none that holds");
     for (const auto& [p, beside] : found) {
-      p->reference = beside->reference + beside->rotation.transpose() * (p->x - beside->x);
+      const Matrix deformed = beside->rotation * beside->stretch;
+      p->reference = beside->reference + deformed.inverse() * (p->x - beside->x);
       p->rotation = beside->rotation;
+      p->stretch = beside->stretch;
+      p->flow = 0;
       placed.push_back(p);
       std::erase(left, p);
     }
