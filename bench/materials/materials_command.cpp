@@ -19,7 +19,11 @@ namespace {
 
 constexpr const char* k_bars = "bars";  // among the names of materials
 constexpr std::pair<const char*, void (*)(int, const AddNumber&)> k_numbers[] = {
-    {"volume", measure_volume}, {"yield", measure_yield}, {"cost", measure_cost}, {"heat", measure_heat}};
+    {"volume", measure_volume},
+    {"yield", measure_yield},
+    {"cost", measure_cost},
+    {"heat", measure_heat},
+    {"realtime", measure_realtime}};
 const std::vector<std::string> k_scenes{"drop", "squeeze", "slope"};
 constexpr double k_refined[] = {1, 1.5, 2};
 constexpr double k_steps[] = {0.25, 0.5, 1, 2};
@@ -131,7 +135,7 @@ void add_materials_command(CLI::App& app) {
                                   *options, [options] { run_materials(*options); });
   command
       ->add_option("--materials", options->materials,
-                   "Some of them, or bars, volume, yield, cost, heat, in place of all")
+                   "Some of them, or bars, volume, yield, cost, heat, realtime, in place of all")
       ->delimiter(',');
   command->add_option("--scenes", options->scenes, "Of drop, squeeze, slope, in place of all")
       ->delimiter(',');

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -117,6 +118,40 @@ void pool(float alpha, const Iterations& iterations, int threads, const AddNumbe
   add("pool", setting(alpha, iterations), {"depth [h]", depth, 12.0});
 }
 
+/// A cube that turns and is pressed together while nothing acts from outside.
+void keep_momentum(float alpha, int threads, const AddNumber& add) {
+  constexpr int k_steps = 1000;
+  SolverConfig config = solver({2}, threads);
+  config.gravity = {0, 0, 0};
+  Simulation s(config);
+  Body body = sample(Lattice{.count = {8, 8, 8}, .corner = {-4, -4, -4}, .jitter = 0.1f});
+  for (const Vec3& x : body.positions)
+    body.velocities.push_back(Vec3(0.01f, 0.02f, 0) + Vec3(0.02f, 0, 0.05f).cross(x) - 0.1f * x);
+  s.add_body(body, {.alpha = alpha, .update_threshold = 1e6f, .deformation_damping = 0.0f});
+  s.prepare();
+  using Vec = Eigen::Vector3d;
+  double pace = 0, turns = 0;
+  const auto sums = [&](Vec& momentum, Vec& spin) {
+    momentum = spin = Vec::Zero();
+    pace = turns = 0;
+    for (std::size_t row = 0; row < s.particle_count(); ++row) {
+      const Vec x = s.positions()[row].cast<double>(), v = s.velocities()[row].cast<double>();
+      momentum += v, spin += x.cross(v);
+      pace += v.norm(), turns += x.norm() * v.norm();
+    }
+  };
+  Vec momentum, spin, later_momentum, later_spin;
+  sums(momentum, spin);
+  const double at_start = pace, turns_at_start = turns;
+  for (int k = 0; k < k_steps; ++k) s.step();
+  sums(later_momentum, later_spin);
+  const std::string name = setting(alpha, {2});
+  add("momentum in 1,000 steps", name,
+      {"momentum lost, of the sum of all", (later_momentum - momentum).norm() / at_start});
+  add("momentum in 1,000 steps", name,
+      {"spin lost, of the sum of all", (later_spin - spin).norm() / turns_at_start});
+}
+
 }  // namespace
 
 void measure_volume(int threads, const AddNumber& add) {
@@ -126,6 +161,7 @@ void measure_volume(int threads, const AddNumber& add) {
       if (alpha < 1) squeeze(alpha, iterations, threads, add);
       if (alpha > 0.5f && alpha != k_squeezed_only) pool(alpha, iterations, threads, add);
     }
+  for (const float alpha : {0.0f, 0.3f, 0.7f, 1.0f}) keep_momentum(alpha, threads, add);
 }
 
 }  // namespace mallow::bench

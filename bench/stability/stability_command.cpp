@@ -13,6 +13,7 @@
 #include "program/failure.h"
 #include "stability/extremes.h"
 #include "stability/grid.h"
+#include "stability/hypercube.h"
 #include "stability/panels.h"
 #include "stability/stability_map.h"
 
@@ -24,11 +25,13 @@ struct StabilityOptions : CommonOptions {
   int long_steps = 1'000'000;
   bool thin = false;
   bool panels = false;
-  std::string extremes;  ///< a part of the names of those to run, without the grid; empty: all
+  std::size_t hypercube = 0;  ///< mixtures of it; alone if there are any
+  std::string extremes;       ///< a part of the names of those to run, without the grid; empty: all
 };
 
 /// Trials that run before the command looks whether it was asked to stop.
 constexpr std::size_t k_at_once = 64;
+constexpr std::uint32_t k_seed = 1;
 
 /// Trials side by side, each on one thread, in the order of their numbers.
 template <class TrialOf>
@@ -136,17 +139,35 @@ void run_panels(const StabilityOptions& options, Results& results) {
                run_extremes("panel", trials, options.threads, results));
 }
 
+/// Runs the mixtures, draws their map and adds a row for each.
+void run_hypercube(const StabilityOptions& options, Results& results) {
+  const std::vector<Mixture> mixtures = hypercube(options.hypercube, k_seed);
+  const std::vector<Outcome> ends = run_all("hypercube", mixtures.size(), options.threads, results,
+                                            [&](std::size_t i) { return mixtures[i].trial; });
+  for (std::size_t i = 0; i < mixtures.size(); ++i) {
+    Json row{{"kind", "hypercube"}, {"number", i}};
+    row.update(to_json(ends[i]));
+    for (const TurnedKnob& knob : mixtures[i].knobs)
+      row["knobs"][knob.name.substr(0, knob.name.find(':'))] = knob.value;
+    results.add(row);
+  }
+  write_hypercube(results.file("_hypercube.svg"), mixtures, ends);
+}
+
 void run_stability(const StabilityOptions& options) {
   StabilityGrid grid = options.thin ? thin_grid() : full_grid();
-  if (!options.extremes.empty() || options.panels) grid.alphas.clear();
+  if (!options.extremes.empty() || options.panels || options.hypercube > 0) grid.alphas.clear();
   Results results("stability", options.output, options.threads,
-                  {{"steps", options.steps}, {"long_steps", options.long_steps}, {"trials", grid.size()}});
+                  {{"steps", options.steps},
+                   {"long_steps", options.long_steps},
+                   {"trials", options.hypercube > 0 ? options.hypercube : grid.size()}});
   std::vector<Extreme> list = extremes(options.long_steps);
   std::erase_if(list,
                 [&](const Extreme& one) { return one.name.find(options.extremes) == std::string::npos; });
-  if (options.panels) list.clear();
+  if (options.panels || options.hypercube > 0) list.clear();
   run_extremes("extreme", list, options.threads, results);
-  if (options.extremes.empty()) run_panels(options, results);
+  if (options.extremes.empty() && options.hypercube == 0) run_panels(options, results);
+  if (options.hypercube > 0) run_hypercube(options, results);
   const std::vector<Outcome> outcomes =
       run_all("grid", grid.size(), options.threads, results,
               [&](std::size_t i) { return falling_cube(grid_point(grid, i), options.steps); });
@@ -192,6 +213,8 @@ void add_stability_command(CLI::App& app) {
                       "Only extremes whose names have this in them, and no grid");
   command->add_flag("--panels", options->panels,
                     "Only the panels of bodies that touch, rest, come and are pushed");
+  command->add_option("--hypercube", options->hypercube,
+                      "Only so many bodies whose knobs are all turned together, at random");
   command->add_flag("--thin", options->thin, "A grid of few values, for a look");
 }
 

@@ -1,9 +1,12 @@
 #include "stability/stability_map.h"
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
+#include <vector>
 
 #include "mallow/files.h"
+#include "stability/hypercube.h"
 #include "stability/panels.h"
 
 namespace mallow::bench {
@@ -24,6 +27,16 @@ class Drawing {
   void field(int x, int y, int width, const char* color) {
     body_ << "<rect x='" << x << "' y='" << y << "' width='" << width << "' height='" << k_field << "' fill='"
           << color << "'/>\n";
+  }
+  /// The points of one verdict on a line of them.
+  void strip(int x, int y, Verdict verdict, const std::vector<std::optional<Verdict>>& points) {
+    body_ << "<path stroke-width='" << k_field << "' stroke='" << color(verdict) << "' d='";
+    for (std::size_t at = 0, end = 0; at < points.size(); at = end + 1) {
+      end = at;
+      while (end < points.size() && points[end] == verdict) ++end;
+      if (end > at) body_ << 'M' << x + static_cast<int>(at) << ' ' << y << 'h' << end - at;
+    }
+    body_ << "'/>\n";
   }
   std::string svg(int width, int height) const {
     std::ostringstream all;
@@ -124,6 +137,32 @@ void write_panels(const std::filesystem::path& svg, const std::vector<Panel>& pa
     y += panel_y;
   }
   write_whole(svg, drawing.svg(k_width, y + k_gap));
+}
+
+void write_hypercube(const std::filesystem::path& svg, const std::vector<Mixture>& mixtures,
+                     const std::vector<Outcome>& outcomes) {
+  constexpr int k_strip = 600, k_margin = 20, k_strip_y = 34;
+  const int n = static_cast<int>(mixtures.size()), k_width = k_strip + 2 * k_margin;
+  Drawing drawing;
+  drawing.text(k_width / 2, 20, "All knobs turned together, " + std::to_string(n) + " times at random");
+  draw_legend(drawing, k_width / 2 - 200);
+  int y = k_top;
+  for (std::size_t k = 0; k < mixtures.front().knobs.size(); ++k) {
+    drawing.text(k_margin, y, mixtures.front().knobs[k].name, "start");
+    // The worst of those that fall on a point, and points of one colour that lie side by side as one.
+    std::vector<std::optional<Verdict>> worst(k_strip);
+    for (std::size_t i = 0; i < mixtures.size(); ++i) {
+      const int wide = std::max(1, k_strip / n), x = static_cast<int>(k_strip * mixtures[i].knobs[k].turn);
+      for (int at = x; at < std::min(x + wide, k_strip); ++at) {
+        std::optional<Verdict>& here = worst[static_cast<std::size_t>(at)];
+        here = std::max(here.value_or(Verdict::stable), outcomes[i].verdict);
+      }
+    }
+    for (const Verdict verdict : {Verdict::stable, Verdict::limited, Verdict::refused, Verdict::unstable})
+      drawing.strip(k_margin, y + 9, verdict, worst);
+    y += k_strip_y;
+  }
+  write_whole(svg, drawing.svg(k_width, y));
 }
 
 }  // namespace mallow::bench

@@ -61,6 +61,11 @@ void flow(const Group& group, double time_step, std::vector<Particle>& particles
     const double y = std::min((1 - yield / size) * share, 0.5 / size);
     Matrix g = Matrix::Identity() + y * strain;
     g /= std::cbrt(g.determinant());
+    // None that adds to elastic energy of what is crushed or comes apart.
+    const bool is_whole = e.determinant() > 0.34 && e.determinant() < 2;
+    const Matrix stretched = region.stretch * region.rest_moment * region.stretch.transpose();
+    const auto energy = [&](const Matrix& goal) { return ((e - goal) * stretched * (e - goal)).trace(); };
+    if (!is_whole && energy(g) > energy(Matrix::Identity())) continue;
     region.stretch = g * region.stretch;
     region.flow += (g - Matrix::Identity()).norm();
   }

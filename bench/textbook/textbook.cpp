@@ -138,8 +138,8 @@ void Textbook::follow_alpha() {
       group.pressure_coefficient = *group.material.pressure_coefficient;
     } else {
       group.contact_share = std::max(group.most_alpha, 0.2);
-      const double pull = group.most_elasticity * stiffness(group) * step * step;
-      const double share = std::min(1.0, (2.6 - pull) / 2);
+      const double asked = group.most_elasticity * stiffness(group) * step * step;
+      const double share = std::min(1.0, (2.6 - std::min(asked, 2.5)) / 2) * std::max(1.0, asked / 2.5);
       group.pressure_coefficient = share * speed * speed / group.contact_share;
       group.cohesion *= std::min(1.0, 0.08 * speed * speed / group.pressure_coefficient);
     }
@@ -313,8 +313,9 @@ void Textbook::choose_time_step(Step& step) const {
     const Particle& p = particles_[id];
     if (p.pinned) continue;
     const Group& group = groups_[p.group];
-    // All of it, unless k follows alpha, or particles differ in alpha.
-    const bool whole = group.material.pressure_coefficient && !is_painted();
+    // All of it, unless k follows alpha, or particles differ in alpha; nothing where it acts on nobody.
+    const bool acts = groups_.size() > 1 || group.most_alpha > 0;
+    const bool whole = acts && group.material.pressure_coefficient && !is_painted();
     const Vec& sph = whole ? p.sph_acceleration : p.blended_acceleration;
     const double velocity = (p.velocity + longest_step_ * (sph + p.external_acceleration)).norm();
     // Not `>`: a velocity that is not a number must win, so that it is seen.

@@ -38,7 +38,7 @@ struct PlasticLanes {
                 std::uint8_t* undecided) noexcept;
   /// Of what solve() left unfinished, rotations known: replaces rows by R S − R_g (row by row) and u of the
   /// centre − (R S − R_g) c̄, then lets S and κ flow, for the next step. What is thin (k_thin), mirrored or
-  /// not finite does not flow.
+  /// not finite does not flow, nor what is crushed or torn where that would add to tr((E − G)² P), its energy.
   void (*finish)(const ShapeInput&, const FlowInput&, std::size_t begin, std::size_t end,
                  const std::uint8_t* undecided, const float* const* rotation, float* sums,
                  float* const* stretch, float* flow) noexcept;

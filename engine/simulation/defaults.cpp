@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "config/validation.h"
 #include "simulation/settings.h"
 
 namespace mallow {
@@ -69,8 +70,10 @@ double default_update_period(float time_step) {
 }
 
 float default_pressure_coefficient(float support_radius, float alpha, float pull, float time_step) {
-  const double share = std::min(1.0, 0.5 * (k_together - static_cast<double>(pull)));
-  const double speed = static_cast<double>(support_radius) / static_cast<double>(time_step);
+  const double asked = static_cast<double>(pull), carried = std::min(asked, static_cast<double>(k_stiffest));
+  const double share = std::min(1.0, 0.5 * (k_together - carried));
+  const double shorter = asked > carried ? std::sqrt(carried / asked) : 1;
+  const double speed = static_cast<double>(support_radius) / (shorter * static_cast<double>(time_step));
   return static_cast<float>(share * speed * speed / static_cast<double>(contact_share(alpha)));
 }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <string>
 
 #include "bench_fixture.h"
 
@@ -43,6 +44,22 @@ TEST_F(bench_stability, nothing_is_unstable_and_what_is_refused_says_why) {
   EXPECT_EQ(trials, document.at("settings").at("trials"));
   EXPECT_GT(extremes, 90);
   EXPECT_TRUE(std::filesystem::exists(at("out/stability.svg")));
+}
+
+TEST_F(bench_stability, of_all_knobs_together_gains_no_energy_or_is_refused_with_what_is_allowed) {
+  const nlohmann::json document = run_command("stability", {"--hypercube", "100"});
+  expect_valid("stability");
+  EXPECT_EQ(document.at("rows").size(), 100u);
+  int refused = 0;
+  for (const nlohmann::json& row : document.at("rows")) {
+    EXPECT_NE(row.at("verdict"), "unstable") << row;
+    if (row.at("verdict") != "refused") continue;
+    ++refused;
+    EXPECT_NE(row.at("message").get<std::string>().find("at most"), std::string::npos) << row;
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_LT(refused, 20);
+  EXPECT_TRUE(std::filesystem::exists(at("out/stability_hypercube.svg")));
 }
 
 }  // namespace stability_test

@@ -38,7 +38,7 @@ void Oracle::add_layers(Strand& strand, std::size_t count, const Vec& velocity) 
     const Eigen::AngleAxisd turn(strand.turn * static_cast<double>(strand.layers), Vec::UnitZ());
     for (const Vec& point : strand.section) {
       const Vec x = emitter.pose.translation + rotation * (turn * point + Vec(0, 0, height));
-      Particle p{.group = strand.group, .x = x, .v = velocity, .pinned = true, .reference = x};
+      Particle p{.group = strand.group, .id = born_++, .x = x, .v = velocity, .pinned = true, .reference = x};
       p.temperature = groups_[strand.group].material.temperature.value_or(0.0f);
       if (!strand.held.empty()) {
         const Particle& beside = particles_[strand.held.back().front()];

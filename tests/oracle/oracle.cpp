@@ -130,7 +130,7 @@ void Oracle::add_body(const std::vector<Vec>& positions, const std::vector<Vec>&
   groups_[group].spacing = spacing;
   set_mass_and_rest_density(groups_[group], *config_.support_radius);
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    particles_.push_back({.group = group, .x = positions[i], .v = velocities[i]});
+    particles_.push_back({.group = group, .id = born_++, .x = positions[i], .v = velocities[i]});
     particles_.back().temperature = groups_[group].material.temperature.value_or(0.0f);
   }
   rebuild_regions(group);
@@ -205,7 +205,9 @@ void Oracle::follow_alpha() {
     const std::optional<float>& given = group.material.pressure_coefficient;
     group.contact_share = given ? 1 : std::max(group.most_alpha, 0.2);
     const double dt = std::max(dt0_, longest_), speed = *config_.support_radius / dt;
-    const double x = std::min(1.0, (2.6 - group.most_elasticity * stiffness(group) * dt * dt) / 2);
+    // Where a step of that length does not carry the springs, k is that of one that does.
+    const double asked = group.most_elasticity * stiffness(group) * dt * dt, pull = std::min(asked, 2.5);
+    const double x = std::min(1.0, (2.6 - pull) / 2) * (asked > 2.5 ? asked / 2.5 : 1);
     group.pressure_coefficient = given ? double{*given} : x * speed * speed / group.contact_share;
     const double soft = given ? 1 : std::min(1.0, 0.08 * speed * speed / group.pressure_coefficient);
     group.cohesion = soft * group.material.cohesion;
@@ -214,13 +216,15 @@ void Oracle::follow_alpha() {
 
 Step Oracle::step() {
   if (steps_ == 0) settle();
+  split_torn();
   flow_out();
+  drain();
   follow_alpha();
   Step step;
   step.updated_groups = update_references();
   sum_densities();
   sum_accelerations();
-  step.max_velocity = sph_acts() ? max_velocity() : 0;
+  step.max_velocity = has_limits() ? max_velocity() : 0;
   step.time_step = time_step(step.max_velocity);
   match_shapes(true);
   conduct(step.time_step);
@@ -283,8 +287,11 @@ void Oracle::rest_anew(std::size_t group, double mean) {
     }
     if (found.empty()) throw std::runtime_error("some particle is near none that holds");
     for (const auto& [p, beside] : found) {
-      p->reference = beside->reference + beside->rotation.transpose() * (p->x - beside->x);
+      const Matrix deformed = beside->rotation * beside->stretch;
+      p->reference = beside->reference + deformed.inverse() * (p->x - beside->x);
       p->rotation = beside->rotation;
+      p->stretch = beside->stretch;
+      p->flow = 0;
       placed.push_back(p);
       std::erase(left, p);
     }
@@ -405,6 +412,7 @@ std::vector<std::size_t> Oracle::update_references() {
     updated.push_back(g);
   }
   if (check) last_check_ = time_;
+  for (const std::size_t g : updated) groups_[g].may_be_torn = true;
   return updated;
 }
 
@@ -485,6 +493,7 @@ void Oracle::sum_densities() {
     double sum = i.wall_share;
     for (const Particle& j : particles_) {
       const Group& other = groups_[j.group];
+      if (!act_on_each_other(i, j)) continue;
       const double r = (i.x - j.x).norm(), sigma = *config_.support_radius;
       sum += volume_iterations() > 0 ? other.wendland_volume * wendland(r, sigma)
                                      : other.mass / other.rest_density * poly6(r, sigma);
@@ -523,31 +532,36 @@ Vec Oracle::pair_acceleration(const Particle& i, const Particle& j) const {
 }
 
 void Oracle::sum_accelerations() {
-  for (std::size_t id = 0; id < particles_.size(); ++id) {
-    Particle& i = particles_[id];
+  for (Particle& i : particles_) {
     i.sph = i.blended = Vec::Zero();
     i.crossing = Vec::Zero();
     for (const Particle& j : particles_) {
-      if ((i.x - j.x).norm() > *config_.support_radius) continue;
+      if ((i.x - j.x).norm() > *config_.support_radius || !act_on_each_other(i, j)) continue;
       const Vec a = pair_acceleration(i, j);
       (j.group == i.group ? i.sph : i.crossing) += a;
       if (j.group == i.group) i.blended += (alpha_of(i) + alpha_of(j)) / 2 * a;
     }
     i.external = config_.gravity.cast<double>() + i.crossing + wall_acceleration(i);
-    if (force_) i.external += force_(time_, id, i.x, i.v);
+    if (force_) i.external += force_(time_, i.id, i.x, i.v);
   }
 }
 
 // Section 3.
-bool Oracle::sph_acts() const {
-  return groups_.size() > 1 || groups_.front().most_alpha > 0 || volume_iterations() > 0 || carries_heat();
+bool Oracle::needs_sph() const {
+  const bool presses = groups_.size() > 1 && !bodies_touch();
+  return presses || carries_heat() ||
+         std::any_of(groups_.begin(), groups_.end(), [](const Group& g) { return g.most_alpha > 0; });
+}
+
+bool Oracle::has_limits() const {
+  return needs_sph() || volume_iterations() > 0 || bodies_touch();
 }
 
 double Oracle::max_velocity() const {
   double max = 0;
   for (const Particle& p : particles_) {
     const Group& group = groups_[p.group];
-    const bool whole = group.material.pressure_coefficient && !is_painted();
+    const bool whole = needs_sph() && group.material.pressure_coefficient && !is_painted();
     if (!p.pinned) max = std::max(max, (p.v + longest_ * ((whole ? p.sph : p.blended) + p.external)).norm());
   }
   return max;
@@ -567,13 +581,16 @@ double Oracle::damped_limit(const Group& group, double a, double drag, double pu
 
 double Oracle::time_step(double max_velocity) const {
   const double longest = longest_;
-  if (!sph_acts()) return longest;
+  if (!has_limits()) return longest;
   const double sigma = *config_.support_radius;
-  double dt = std::min(longest, 0.999 * sigma / max_velocity);
+  double widest = 0;
+  for (const Group& group : groups_) widest = std::max(widest, group.spacing);
+  const double farthest = bodies_touch() ? sigma - widest / 2 : sigma;
+  double dt = std::min(longest, 0.999 * farthest / max_velocity);
   if (config_.acoustic_limit) {
     for (const Group& group : groups_) {
       dt = std::min(dt, sigma * sigma * group.rest_density / (25 * group.viscosity));
-      const bool alone = groups_.size() == 1;
+      const bool alone = groups_.size() == 1 || bodies_touch();
       const double push = alone ? group.most_alpha : group.contact_share, drag = alone ? group.most_alpha : 1;
       const double a = push * group.pressure_coefficient / (sigma * sigma);
       const double b = 800 * drag * group.viscosity / group.rest_density / (sigma * sigma);
@@ -624,6 +641,8 @@ void Oracle::match_shapes(bool leads) {
     }
     centers[id] = c;
     reference_centers[id] = c_ref;
+    j.outward =
+        groups_[j.group].least_alpha == 1 ? Vec(Vec::Zero()) : Vec(j.rotation * (j.reference - c_ref));
   }
   for (Particle& i : particles_) {
     const auto count = static_cast<double>(i.region.size());
@@ -673,6 +692,11 @@ void Oracle::flow(double dt) {
     const double y = std::min((1 - yield / strain.norm()) * share, 0.5 / strain.norm());
     Matrix g = Matrix::Identity() + y * strain;
     g /= std::cbrt(g.determinant());
+    // None that adds to elastic energy of what is crushed or comes apart.
+    const bool is_whole = e.determinant() > 0.34 && e.determinant() < 2;
+    const Matrix stretched = j.stretch * j.rest_moment * j.stretch.transpose();
+    const auto energy = [&](const Matrix& goal) { return ((e - goal) * stretched * (e - goal)).trace(); };
+    if (!is_whole && energy(g) > energy(Matrix::Identity())) continue;
     j.stretch = g * j.stretch;
     j.flow += (g - Matrix::Identity()).norm();
   }
@@ -808,13 +832,16 @@ int Oracle::move(double dt) {
     if (!is_always_fluid(group)) p.v += pull_time * stiffness(group) * p.pull;
   }
   const int iterations = keep_volume(dt, before);
-  for (std::size_t id = 0; id < particles_.size(); ++id) {
-    Particle& p = particles_[id];
-    const Vec free = p.v;
-    if (!p.pinned) rub(before[id], p);
+  const std::vector<Vec> free = velocities();
+  std::vector<Vec> touched = free;
+  touch_bodies(dt, touched);
+  for (std::size_t k = 0; k < particles_.size(); ++k) {
+    Particle& p = particles_[k];
+    p.v = touched[k];
+    if (!p.pinned) rub(before[k], p);
     for (const Obstacle& obstacle : obstacles_)
-      if (!p.pinned) touch(obstacle, p, before[id], dt, p.v);
-    p.contact = (p.v - free) / dt;
+      if (!p.pinned) touch(obstacle, p, before[k], dt, p.v);
+    p.contact = (p.v - free[k]) / dt;
     p.x += dt * p.v;
   }
   return iterations;

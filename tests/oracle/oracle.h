@@ -22,6 +22,7 @@ using Matrix = Eigen::Matrix3d;
 
 struct Particle {
   std::size_t group = 0;
+  std::size_t id = 0;  ///< in the order in which particles came
   Vec x{0, 0, 0};
   Vec v{0, 0, 0};
   bool pinned = false;
@@ -60,6 +61,7 @@ struct Particle {
   Vec goal{0, 0, 0};                    ///< g
   Matrix moment = Matrix::Zero();       ///< A of its region
   Matrix rest_moment = Matrix::Zero();  ///< Ā
+  Vec outward{0, 0, 0};                 ///< N: R (x̄ − c̄) of its region; 0 in a fluid
   Vec pull{0, 0, 0};  ///< mean of goal_ij − x_i over its regions, each times (1 − alpha) stiffness of its own
 };
 
@@ -77,6 +79,8 @@ struct Group {
   double pressure_coefficient = 0;         ///< k of the last step
   double contact_share = 1;                ///< of its pressure that acts between groups
   double cohesion = 0;                     ///< share of its negative pressure
+  bool splits = false;                     ///< where it was torn
+  bool may_be_torn = false;                ///< regions have changed since it was looked at
   /// Mean |a_ext| over the unpinned, from the start to the end of every step.
   struct External {
     double start, end, mean;
@@ -113,6 +117,10 @@ class Oracle {
   /// against the one before [rad]. Without jitter, keyframes and an end: such are not known.
   void add_emitter(const Emitter& emitter, const std::vector<Vec>& section, double turn,
                    const Material& material);
+  /// Takes what is not pinned in a box, or outside of it, before each step.
+  void add_sink(const Aabb& box, bool outside) { sinks_.push_back({box, outside}); }
+  /// Parts of a group that was torn become groups of their own.
+  void let_split(std::size_t group) { groups_[group].splits = true; }
   void set_force(Force force) { force_ = std::move(force); }
   /// A particle has these of its own; alpha below 0: its group's.
   void paint(std::size_t id, double alpha, double stiffness) {
@@ -150,6 +158,11 @@ class Oracle {
     double flow = 0;         ///< at 0 K [W]
   };
 
+  struct Sink {
+    Aabb box;
+    bool outside;
+  };
+
   struct Strand {
     Emitter emitter;
     std::vector<Vec> section;
@@ -158,13 +171,16 @@ class Oracle {
     std::size_t least_held = 0;                       ///< layers
     std::size_t layers = 0;                           ///< that there were
     double offset = 0;                                ///< how far the first has come [m]
-    std::vector<std::vector<std::size_t>> held = {};  ///< ids of each layer
+    std::vector<std::vector<std::size_t>> held = {};  ///< places of the particles of each layer
   };
 
   void add_layers(Strand& strand, std::size_t count, const Vec& velocity);
   void flow_out();
   Vec velocity_of(const Strand& strand, double speed) const;
   void drive(double dt);
+  std::vector<std::vector<std::size_t>> parts_of_group(std::size_t group) const;
+  void split_torn();
+  void drain();
   void rebuild_regions(std::size_t group);
   void flow(double dt);
   bool reframe_is_due(std::size_t group) const;
@@ -199,7 +215,11 @@ class Oracle {
   void sum_densities();
   Vec pair_acceleration(const Particle& i, const Particle& j) const;
   void sum_accelerations();
-  bool sph_acts() const;
+  bool bodies_touch() const;
+  bool act_on_each_other(const Particle& i, const Particle& j) const;
+  void touch_bodies(double dt, std::vector<Vec>& v) const;
+  bool needs_sph() const;
+  bool has_limits() const;
   int volume_iterations() const;
   double max_velocity() const;
   double damped_limit(const Group& group, double a, double drag, double pull) const;
@@ -217,6 +237,7 @@ class Oracle {
   std::vector<Particle> particles_;
   std::vector<Obstacle> obstacles_;
   std::vector<Strand> strands_;
+  std::vector<Sink> sinks_;
   std::vector<HeatLattice> lattices_;
   Force force_;
   double dt0_ = 0;         ///< Δt0 [s]
@@ -226,6 +247,7 @@ class Oracle {
   double time_ = 0;
   double last_check_ = 0;  ///< start of the last step that began with one [s]
   int steps_ = 0;
+  std::size_t born_ = 0;  ///< particles that there have been
 };
 
 /// α at a time: linear between keys, constant outside.

@@ -41,7 +41,8 @@ void add(Oracle& oracle, const Material& material, const std::vector<Vec>& posit
 }
 
 SolverConfig weightless(float support_radius = 2.2f) {
-  return with_paper_settings(SolverConfig{.support_radius = support_radius, .gravity = {0, 0, 0}});
+  return with_paper_settings(
+      SolverConfig{.support_radius = support_radius, .gravity = {0, 0, 0}, .contact = BodyContact::pressure});
 }
 
 /// One particle, alone, on its way to an obstacle.

@@ -51,12 +51,13 @@ int Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
   const auto wall_gradient = [&](const Particle::Wall& wall) {
     return Vec(-wall.left * half_space_slope(wall.distance, sigma) * wall.normal);
   };
-  std::vector<Vec> w(n);
+  std::vector<Vec> w;
   std::vector<double> lambda(n);
   for (int iteration = 0; iteration < volume_iterations(); ++iteration) {
     double compression = 0;
+    w = velocities();
+    touch_bodies(dt, w);
     for (std::size_t i = 0; i < n; ++i) {
-      w[i] = particles_[i].v;
       for (const Obstacle& obstacle : obstacles_)
         if (!particles_[i].pinned) touch(obstacle, particles_[i], before[i], dt, w[i]);
     }
@@ -67,6 +68,7 @@ int Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       Vec gradient = Vec::Zero();
       for (std::size_t l = 0; l < n; ++l) {
         const Particle& j = particles_[l];
+        if (!act_on_each_other(i, j)) continue;
         const Vec g = volume(j) * wendland_gradient(i.x - j.x, sigma);
         rate += (w[k] - w[l]).dot(g);
         gradient += g;
@@ -98,6 +100,7 @@ int Oracle::keep_volume(double dt, const std::vector<Vec>& before) {
       Vec pushed = Vec::Zero();
       for (std::size_t l = 0; l < n; ++l) {
         const Particle& j = particles_[l];
+        if (!act_on_each_other(i, j)) continue;
         pushed -=
             (lambda[k] * volume(j) + lambda[l] * volume(i)) * wendland_gradient(i.x - j.x, sigma) / mass(i);
       }

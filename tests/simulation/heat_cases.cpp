@@ -43,6 +43,9 @@ std::vector<Case> cases_of_heat() {
   setting.temperature = 370.0f;
   setting.heat_transfer = 2.0f;
   Material softening = warm({.plastic_yield_by_temperature = Schedule{{300, 0.4f}, {330, 0.01f}}}, 300);
+  Material melting_dough = melting();
+  melting_dough.update_threshold.reset();
+  melting_dough.plastic_yield = 0.02f;
   Material hot = melting(), cold = melting();
   hot.temperature = 358.0f;
   hot.conductivity = 3.0f;
@@ -77,6 +80,12 @@ std::vector<Case> cases_of_heat() {
        .blobs = {{softening, {0, 0, 3.4f}, {0, 0, -2.5f}}},
        .colliders = {heated(k_ball, 700)},
        .solver = units(),
+       .flows = true},
+      {.name = "dough_melts_on_hot_slope",
+       .blobs = {{melting_dough, {0, 0, 3.4f}, {1.0f, 0, -2.5f}}},
+       .colliders = {heated(k_slope, 600)},
+       .solver = units(),
+       .updates = 1,
        .flows = true},
       {.name = "hot_pair",
        .blobs = {{hot, {0, 0, 0}, {0, 0, 0.6f}, {5, 5, 4}},

@@ -200,6 +200,8 @@ const std::vector<Case>& oracle_cases() {
     for (Case& one : cases_of_matter()) all.push_back(std::move(one));
     for (Case& one : cases_of_strands()) all.push_back(std::move(one));
     for (Case& one : cases_of_heat()) all.push_back(std::move(one));
+    for (Case& one : all) one.solver.contact = BodyContact::pressure;
+    for (Case& one : cases_of_contact()) all.push_back(std::move(one));
     for (Case& one : all) one.walls = one.name.starts_with("walled") || one.name.starts_with("full_walled");
     return all;
   }();
@@ -296,6 +298,28 @@ std::vector<Case> ablations(const Case& whole) {
         less.nozzles[n].material.update_threshold = 1e6f;
       });
   }
+  const bool two_bodies = std::any_of(whole.blobs.begin() + 1, whole.blobs.end(),
+                                      [](const Blob& b) { return !b.joins_the_one_before; });
+  const bool touches = two_bodies && whole.solver.contact == BodyContact::constraint;
+  const auto any_blob = [&](const auto& is_so) { return std::ranges::any_of(whole.blobs, is_so); };
+  if (touches) {
+    without("contact between bodies", [](Case& less) { less.solver.contact = BodyContact::pressure; });
+    if (any_blob([](const Blob& b) { return b.material.friction > 0; }))
+      without("friction between bodies", [](Case& less) {
+        for (Blob& b : less.blobs) b.material.friction = 0;
+      });
+    if (any_blob([](const Blob& b) { return b.material.adhesion > 0; }))
+      without("adhesion", [](Case& less) {
+        for (Blob& b : less.blobs) b.material.adhesion = 0;
+      });
+  }
+  if (any_blob([](const Blob& b) { return b.splits; }))
+    without("parts of their own", [](Case& less) {
+      for (Blob& b : less.blobs) b.splits = false;
+    });
+  for (std::size_t d = 0; d < whole.drains.size(); ++d)
+    without("sink " + std::to_string(d),
+            [&](Case& less) { less.drains.erase(less.drains.begin() + static_cast<long>(d)); });
   if (whole.wind) without("wind", [](Case& less) { less.wind = false; });
   if (whole.flows)
     without("yield", [](Case& less) {
@@ -314,8 +338,7 @@ std::vector<Case> ablations(const Case& whole) {
       without("painted yield", [&](Case& less) { less.blobs[b].paints_yield = false; });
   const bool sph_acts = whole.blobs.front().painted || whole.blobs.front().material.alpha_by_temperature ||
                         whole.blobs.front().material.alpha.keys().back().value > 0 ||
-                        std::any_of(whole.blobs.begin() + 1, whole.blobs.end(),
-                                    [](const Blob& b) { return !b.joins_the_one_before; });
+                        (two_bodies && !touches);
   const bool full = whole.solver.volume_iterations > 0;
   if (whole.walls) without("walls", [](Case& less) { less.solver.wall_pressure = false; });
   if (whole.solver.volume_tolerance > 0)
@@ -382,6 +405,7 @@ oracle::Oracle oracle_of(const Case& scene) {
     const std::vector<oracle::Vec> velocities(positions.size(), blob.velocity.cast<double>());
     const std::size_t first = oracle.particles().size();
     oracle.add_body(positions, velocities, blob.spacing, group);
+    if (blob.splits) oracle.let_split(group);
     const std::vector<float> alphas = alphas_of(blob), stiffnesses = stiffnesses_of(blob);
     for (std::size_t k = 0; k < alphas.size(); ++k)
       oracle.paint(first + k, double{alphas[k]}, double{stiffnesses[k]});
@@ -395,22 +419,39 @@ oracle::Oracle oracle_of(const Case& scene) {
     for (const Vec3& x : nozzle.section) section.push_back(x.cast<double>());
     oracle.add_emitter(nozzle.emitter, section, nozzle.turn, nozzle.material);
   }
+  for (const Drain& drain : scene.drains) oracle.add_sink(drain.box, drain.outside);
   if (scene.wind) oracle.set_force(wind<double>);
   return oracle;
 }
 
-double largest_deviation(const Case& scene, const std::vector<oracle::Vec>& a,
-                         const std::vector<oracle::Vec>& b) {
+PlacesById places_of(const oracle::Oracle& oracle) {
+  PlacesById places;
+  for (const oracle::Particle& p : oracle.particles()) places[p.id] = p.x;
+  return places;
+}
+
+double largest_deviation(const Case& scene, const PlacesById& a, const PlacesById& b) {
   std::vector<float> spacings;
   for (const Blob& blob : scene.blobs) spacings.insert(spacings.end(), points_of(blob).size(), blob.spacing);
-  if (!scene.nozzles.empty())
-    spacings.resize(std::max(spacings.size(), a.size()), scene.nozzles.front().emitter.spacing);
   double largest = 0;
-  for (std::size_t id = 0; id < std::min({spacings.size(), a.size(), b.size()}); ++id) {
-    const double deviation = (a[id] - b[id]).norm() / spacings[id];
+  for (const auto& [id, x] : a) {
+    const auto twin = b.find(id);
+    if (twin == b.end() || (id >= spacings.size() && scene.nozzles.empty())) continue;
+    const float spacing = id < spacings.size() ? spacings[id] : scene.nozzles.front().emitter.spacing;
+    const double deviation = (x - twin->second).norm() / double{spacing};
     largest = std::isfinite(deviation) ? std::max(largest, deviation) : INFINITY;
   }
   return largest;
+}
+
+double largest_deviation(const Case& scene, const std::vector<oracle::Vec>& a,
+                         const std::vector<oracle::Vec>& b) {
+  const auto numbered = [](const std::vector<oracle::Vec>& of) {
+    PlacesById places;
+    for (std::size_t id = 0; id < of.size(); ++id) places[id] = of[id];
+    return places;
+  };
+  return largest_deviation(scene, numbered(a), numbered(b));
 }
 
 }  // namespace mallow

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -27,6 +28,7 @@ struct Blob {
   bool joins_the_one_before = false;  ///< into one group with it
   bool painted = false;               ///< see alphas_of() and stiffnesses_of()
   bool paints_yield = false;          ///< see yields_of()
+  bool splits = false;                ///< Body::splits
 };
 
 struct Pinned {
@@ -41,6 +43,12 @@ struct Nozzle {
   double turn = 0;            ///< of a layer against the one before [rad]
 };
 
+/// Takes what is in a box, or outside of it.
+struct Drain {
+  Aabb box;
+  bool outside = false;
+};
+
 /// A scene that the oracle and the engine both run. Everything in it must matter: see ablations().
 struct Case {
   std::string name;
@@ -49,6 +57,7 @@ struct Case {
   SolverConfig solver;
   std::vector<Pinned> pins = {};
   std::vector<Nozzle> nozzles = {};
+  std::vector<Drain> drains = {};
   bool wind = false;        ///< a user force that depends on time, place, velocity and id
   bool limited = false;     ///< some step must be shorter than Δt0
   int updates = 0;          ///< updates of reference shapes that must happen, at least
@@ -65,12 +74,14 @@ std::vector<Case> cases_of_damping();
 std::vector<Case> cases_of_matter();
 /// Strands that leave nozzles.
 std::vector<Case> cases_of_strands();
+/// Bodies that touch by constraint, sinks, and bodies that are torn.
+std::vector<Case> cases_of_contact();
 /// Heat, and what follows it.
 std::vector<Case> cases_of_heat();
 
 /// The case without one of the things that it claims to test: a collider, a part of a union, friction,
-/// bounce, motion, the pins, damping, the wind, pressure, viscosity, cohesion, the updates. What is left out
-/// is appended to the name.
+/// bounce, motion, the pins, damping, the wind, pressure, viscosity, cohesion, the updates, contact between
+/// bodies, sinks. What is left out is appended to the name.
 std::vector<Case> ablations(const Case& whole);
 
 /// The points of a blob; the same for all who run the case.
@@ -91,7 +102,11 @@ Eigen::Matrix<Scalar, 3, 1> wind(double time, std::size_t id, const Eigen::Matri
 
 oracle::Oracle oracle_of(const Case& scene);
 
+using PlacesById = std::map<std::size_t, oracle::Vec>;
+PlacesById places_of(const oracle::Oracle& oracle);
 /// The largest distance of a particle from its twin, in spacings of its body; of those that both have.
+double largest_deviation(const Case& scene, const PlacesById& a, const PlacesById& b);
+/// The same where nothing has gone.
 double largest_deviation(const Case& scene, const std::vector<oracle::Vec>& a,
                          const std::vector<oracle::Vec>& b);
 

@@ -49,7 +49,7 @@ MALLOW_EXPORT double default_update_period(float time_step);
 /// k [m²/s²]: x σ²/(max(alpha, 0.2) Δt²), Δt the longest step, and Δt0 where steps are shorter; x is 1 or,
 /// beside an elasticity of `pull` = (1 − alpha) Δt²/(Δt0 Δt_SM), what 2 x + pull = 2.6 leaves. So it is as
 /// stiff as a step carries: runs were stable up to x 1.4, and near 2 x + pull 3 some that bounce without loss
-/// gained energy.
+/// gained energy. Where a step of Δt0 does not carry the elasticity, Δt is the one in which `pull` is 2.5.
 MALLOW_EXPORT float default_pressure_coefficient(float support_radius, float alpha, float pull,
                                                  float time_step);
 
