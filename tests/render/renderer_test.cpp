@@ -217,6 +217,24 @@ TEST(renderer, a_clear_body_looks_the_same_a_little_above_and_a_little_below_its
   }
 }
 
+TEST(renderer, a_ball_within_a_clear_body_is_seen_from_its_lit_side) {
+  const Camera camera{.eye = {0, -12, 6}, .target = {0, 0, 2}};
+  const std::vector<Appearance> palette{{{1, 1, 1}, Finish::syrup}, {{0.06f, 0.25f, 0.6f}, Finish::clay}};
+  Mesh mesh = slab({-3, -3, 0}, {3, 3, 4});
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const Mesh inner = ball({0, 0, 2}, 1.4f, 40, 1);
+  for (const Vec3& x : inner.vertices) {
+    mesh.vertices.push_back(x);
+    mesh.normals.push_back((x - Vec3(0, 0, 2)).normalized());
+    mesh.material_ids.push_back(1);
+  }
+  for (const auto& [a, b, c] : inner.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+  const Image image = Renderer(small(), 1).render(mesh, palette, k_floor, camera);
+  const auto top = pixel(image, 80, 40), bottom = pixel(image, 80, 57);
+  EXPECT_GT(top[2], top[0]) << "blue";
+  EXPECT_GT(top[2], bottom[2] + 15) << top[2] << " over " << bottom[2];
+}
+
 TEST(renderer, a_triangle_between_bodies_has_the_finish_of_the_nearer_corner) {
   const Camera camera{.eye = {0, -0.5f, 12}, .target = {0, 0, 0}};
   const Mesh quad{.vertices = {{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}},

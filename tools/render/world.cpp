@@ -309,12 +309,12 @@ void World::look_beyond(std::span<const Surfel* const> at, std::span<const Ray> 
     const float let_through = std::exp(-way / optics.free_path);
     light[let_place[k]]->scattered() = 1 - let_through;
     if (way > optics.free_path * k_opaque) continue;
-    // What lights the ground has come down through the body too.
-    const float colored = (passages[k].is_grounded ? 2 : 1) * way / optics.color_depth;
+    // What lights the ground, or a body within, has come through this body too.
+    const float colored = (passages[k].ends_inside ? 2 : 1) * way / optics.color_depth;
     const Vec3 tint =
         entered[k]->albedo.unaryExpr([&](float c) { return std::pow(std::max(c, 0.02f), colored); });
     lets[left] = passages[k].ray;
-    shades[left] = passages[k].is_grounded ? let_through : k_clear_shade;
+    shades[left] = passages[k].ends_inside ? let_through : k_clear_shade;
     tints[left] = let_through * tint.cwiseProduct(tints[k]);
     let_place[left++] = let_place[k];
   }
@@ -331,15 +331,25 @@ void World::pass_through(std::span<const Surfel* const> at, std::span<Passage> p
   std::array<Ray, k_batch> rays;
   std::array<std::uint8_t, k_batch> place;
   std::array<Bodies::Exit, k_batch> exits;
+  std::array<Ray, k_batch> onward;
+  std::array<float, k_batch> gaps;
+  std::array<std::optional<Bodies::Hit>, k_batch> wetted;
   std::size_t count = passages.size();
   for (std::size_t i = 0; i < count; ++i) {
     place[i] = static_cast<std::uint8_t>(i);
     passages[i].way = 0;
-    passages[i].is_grounded = false;
+    passages[i].ends_inside = false;
   }
   for (int bounce = 0; bounce <= k_inner_bounces && count > 0; ++bounce) {
     for (std::size_t k = 0; k < count; ++k) rays[k] = passages[place[k]].ray;
     bodies_.exits({rays.data(), count}, exits);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Bodies::Exit& exit = exits[k];
+      const bool leaves = exit.t < k_far && !exit.enters;
+      onward[k] = leaves ? Ray{rays[k].at(exit.t) - epsilon_ * exit.normal, rays[k].direction} : rays[k];
+      gaps[k] = leaves ? k_wetted * view_size_ / -exit.normal.dot(rays[k].direction) : -1;
+    }
+    bodies_.nearest({onward.data(), count}, {gaps.data(), count}, {wetted.data(), count}, Rays::scattered);
     std::size_t left = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const Bodies::Exit& exit = exits[k];
@@ -353,12 +363,18 @@ void World::pass_through(std::span<const Surfel* const> at, std::span<Passage> p
       if (solid.t < k_far && beyond > -k_wetted * view_size_) {
         passage.way += solid.t;
         passage.ray.origin = rays[k].at(solid.t) + epsilon_ * solid.normal;
-        passage.is_grounded = true;
+        passage.ends_inside = true;
         continue;
       }
       passage.way += exit.t;
       const Vec3 leaves = rays[k].at(exit.t);
-      passage.ray.origin = leaves - epsilon_ * exit.normal;
+      if (exit.enters || wetted[k]) {
+        passage.ray.origin = wetted[k] ? Vec3(onward[k].at(wetted[k]->t) + epsilon_ * wetted[k]->face)
+                                       : Vec3(leaves + epsilon_ * exit.normal);
+        passage.ends_inside = true;
+        continue;
+      }
+      passage.ray.origin = onward[k].origin;
       const Optics& optics = optics_of(at[place[k]]->look);
       if (const auto out = refracted(rays[k].direction, exit.normal, optics.index)) {
         passage.ray.direction = *out;

@@ -68,7 +68,7 @@ class World {
   struct Passage {
     Ray ray;
     float way;
-    bool is_grounded;  ///< ends at the floor or an obstacle that the body rests on
+    bool ends_inside;  ///< at the floor or an obstacle that the body rests on, or at a body in it
   };
   /// Follows rays through the clear bodies that were entered at up to k_batch surfels.
   void pass_through(std::span<const Surfel* const> at, std::span<Passage> passages) const;
