@@ -50,6 +50,29 @@ TEST_F(bench_materials, are_dropped_alike_at_half_the_spacing) {
   alike("gelatin", "pressed to [m]", 0.03);
 }
 
+// What bench/PHYSICS.md has of bars that yield, dents, and heat.
+TEST_F(bench_materials, yield_and_heat_are_near_their_theory) {
+  const nlohmann::json document = run_command("materials", {"--materials", "yield,heat"});
+  int with_theory = 0;
+  for (const nlohmann::json& row : document.at("rows")) {
+    const std::string quantity = row.at("quantity"), material = row.at("material");
+    const double value = row.at("value");
+    if (quantity == "set" || quantity == "at [h]" || quantity == "mean [K]") {
+      EXPECT_NEAR(row.at("ratio").get<double>(), 1, 0.025) << row;
+      ++with_theory;
+    } else if (quantity == "largest error [K]") {
+      EXPECT_LT(value, 2.3) << "of 100 K: " << row;
+    } else if (quantity == "far side moved [h]") {
+      EXPECT_LT(value, 0.03) << row;
+    } else if (quantity == "kept [h]" && material == "yield 0.05") {
+      EXPECT_GT(value, 0.7 * 2.5) << row;
+    } else if (quantity == "kept [h]" && material == "elastic") {
+      EXPECT_LT(value, 0.01) << row;
+    }
+  }
+  EXPECT_EQ(with_theory, 6);
+}
+
 TEST_F(bench_materials, of_a_name_that_there_is_not_are_refused) {
   expect_refused("materials", {"--materials", "rubbber"}, {"--materials", "rubbber"});
 }

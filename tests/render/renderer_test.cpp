@@ -176,6 +176,65 @@ TEST(renderer, light_shines_through_jelly_and_not_through_clay) {
   EXPECT_LT(red(k_clay, {}), red(k_palette, {}) - 30);
 }
 
+// A box of six faces, each with corners of its own.
+Mesh slab(const Vec3& low, const Vec3& high) {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool far : {false, true}) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      for (const auto& [along_u, along_v] :
+           {std::array{false, false}, {true, false}, {true, true}, {false, true}}) {
+        Vec3 corner = far ? high : low;
+        corner[u] = along_u ? high[u] : low[u];
+        corner[v] = along_v ? high[v] : low[v];
+        mesh.vertices.push_back(corner);
+        mesh.normals.push_back(Vec3::Unit(axis) * (far ? 1.0f : -1.0f));
+        mesh.material_ids.push_back(0);
+      }
+      for (const auto& [b, c] : {std::array{1u, 2u}, {2u, 3u}})
+        mesh.triangles.push_back({first, first + (far ? b : c), first + (far ? c : b)});
+    }
+  }
+  return mesh;
+}
+
+// Surfaces dip a little into what they rest on, by less than a particle: that must not be seen.
+TEST(renderer, a_clear_body_looks_the_same_a_little_above_and_a_little_below_its_ground) {
+  const Camera camera = frame_camera(k_bounds, small());
+  Renderer renderer(small(), 1);
+  const std::vector<Collider> table{{.shape = Box{{-5, -5, -1}, {5, 5, 0}}}};
+  for (const Finish finish : {Finish::syrup, Finish::jelly}) {
+    const std::vector<Appearance> palette{{{0.9f, 0.5f, 0.1f}, finish}};
+    for (const std::vector<Collider>& ground : {k_floor, table}) {
+      const auto picture = [&](float underside) {
+        return renderer.render(slab({-3, -3, underside}, {3, 3, 1}), palette, ground, camera);
+      };
+      const Image above = picture(0.03f);
+      for (const float underside : {0.001f, 0.0f, -0.001f, -0.03f})
+        EXPECT_LT(mean_difference(picture(underside), above), 1.0) << underside;
+    }
+  }
+}
+
+TEST(renderer, a_ball_within_a_clear_body_is_seen_from_its_lit_side) {
+  const Camera camera{.eye = {0, -12, 6}, .target = {0, 0, 2}};
+  const std::vector<Appearance> palette{{{1, 1, 1}, Finish::syrup}, {{0.06f, 0.25f, 0.6f}, Finish::clay}};
+  Mesh mesh = slab({-3, -3, 0}, {3, 3, 4});
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const Mesh inner = ball({0, 0, 2}, 1.4f, 40, 1);
+  for (const Vec3& x : inner.vertices) {
+    mesh.vertices.push_back(x);
+    mesh.normals.push_back((x - Vec3(0, 0, 2)).normalized());
+    mesh.material_ids.push_back(1);
+  }
+  for (const auto& [a, b, c] : inner.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+  const Image image = Renderer(small(), 1).render(mesh, palette, k_floor, camera);
+  const auto top = pixel(image, 80, 40), bottom = pixel(image, 80, 57);
+  EXPECT_GT(top[2], top[0]) << "blue";
+  EXPECT_GT(top[2], bottom[2] + 15) << top[2] << " over " << bottom[2];
+}
+
 TEST(renderer, a_triangle_between_bodies_has_the_finish_of_the_nearer_corner) {
   const Camera camera{.eye = {0, -0.5f, 12}, .target = {0, 0, 0}};
   const Mesh quad{.vertices = {{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}},

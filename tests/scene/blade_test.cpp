@@ -1,7 +1,8 @@
-// The scene data/scenes/blade.toml: a collider of a mesh that cuts what flows.
+// The scenes blade.toml and filled_shell.toml of data/scenes: colliders that cut what flows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <vector>
@@ -12,15 +13,19 @@
 namespace mallow {
 namespace blade_test {
 
+Scene scene_of(const char* name) {
+  return read_scene(std::filesystem::path(MALLOW_DATA_DIR) / "scenes" / name);
+}
+
 Scene blade_scene() {
-  Scene scene = read_scene(std::filesystem::path(MALLOW_DATA_DIR) / "scenes/blade.toml");
+  Scene scene = scene_of("blade.toml");
   EXPECT_EQ(scene.colliders[0].sources.size(), 1u) << "the blade is a mesh";
   return scene;
 }
 
 /// What events of a run told.
 struct Told {
-  int torn = 0, merged = 0;
+  int torn = 0, merged = 0, split = 0;
   std::size_t parts = 1;
 };
 Told run(Simulation& s, double until) {
@@ -30,6 +35,7 @@ Told run(Simulation& s, double until) {
     for (const BodyEvent& event : s.events()) {
       told.torn += event.kind == BodyEvent::Kind::torn;
       told.merged += event.kind == BodyEvent::Kind::merged;
+      told.split += event.kind == BodyEvent::Kind::split;
       if (event.parts > 0) told.parts = event.parts;
     }
   }
@@ -68,6 +74,46 @@ TEST(mesh_blade, cuts_the_lump_of_its_scene_in_three) {
   EXPECT_EQ(told.torn, 2);
   EXPECT_EQ(told.merged, 0);
   EXPECT_EQ(told.parts, 3u);
+}
+
+/// What of a half of the praline is shell and filling, and where along y.
+struct Half {
+  double shell = 0, filling = 0;
+  float shell_from = 1, shell_to = -1, filling_from = 1, filling_to = -1;
+};
+
+TEST(praline, is_halved_and_its_filling_bulges_out_of_the_halves) {
+  Simulation s = build(scene_of("filled_shell.toml"), 2);
+  s.prepare();
+  const double half_of_all = 0.5 * static_cast<double>(s.particle_count());
+  const Told told = run(s, 1.45);  // cut, and pushed aside
+  EXPECT_EQ(told.torn, 1);
+  EXPECT_EQ(told.merged, 0);
+  EXPECT_EQ(told.split, 1);
+  ASSERT_EQ(s.info().bodies.size(), 2u);
+  std::array<Half, 2> halves;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Simulation::Rows rows = s.rows(s.bodies()[k]);
+    for (std::size_t i = rows.begin; i < rows.end; ++i) {
+      const float y = s.positions()[i].y();
+      const bool is_filling = s.alphas()[i] == 1;
+      Half& half = halves[k];
+      (is_filling ? half.filling : half.shell) += 1 / half_of_all;
+      float& from = is_filling ? half.filling_from : half.shell_from;
+      float& to = is_filling ? half.filling_to : half.shell_to;
+      from = std::min(from, y);
+      to = std::max(to, y);
+    }
+  }
+  for (const Half& half : halves) {
+    EXPECT_NEAR(half.shell + half.filling, 1, 0.05);
+    EXPECT_NEAR(half.filling, 0.7, 0.05) << "0.9 cubed is the filling's share";
+  }
+  const auto& [left, right] =
+      halves[0].shell_to < halves[1].shell_to ? halves : std::array{halves[1], halves[0]};
+  EXPECT_GT(right.shell_from - left.shell_to, 0.015f);
+  EXPECT_GT(left.filling_to, left.shell_to + 0.005f) << "it bulges out";
+  EXPECT_LT(left.filling_to, std::min(right.shell_from, right.filling_from)) << "and not into the other half";
 }
 
 }  // namespace blade_test

@@ -1,4 +1,5 @@
-// The scene data/scenes/toothpaste.toml: an emitter, plastic yield and the volume constraint together.
+// The scene data/scenes/toothpaste.toml: an emitter, plastic yield and the volume constraint together; and
+// materials by their names, poured.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mallow/materials.h"
 #include "mallow/scene.h"
 #include "mallow/simulation.h"
 #include "mallow/surface.h"
@@ -123,6 +125,50 @@ TEST(toothpaste, is_one_strand_that_folds_coils_merges_with_itself_and_keeps_its
   EXPECT_LT(path.lying_speed, 0.05 * static_cast<double>(scene.emitters[0].speed.at(0)))
       << "it stays where it lies";
   EXPECT_GT(s.info().bodies[0].average_neighbors, 1.08 * neighbors) << "it merges with itself";
+}
+
+TEST(poured, toothpaste_by_its_name_is_one_strand_that_coils_piles_up_and_stays) {
+  Scene scene = read_scene(std::filesystem::path(MALLOW_DATA_DIR) / "scenes/toothpaste.toml");
+  scene.materials[0].material = materials::toothpaste();
+  Simulation s = build(scene, 2);
+  const double h = static_cast<double>(scene.emitters[0].spacing);
+  while (s.time() < 2.5) {
+    s.step();
+    for (const BodyEvent& event : s.events()) ASSERT_NE(event.kind, BodyEvent::Kind::torn) << s.time();
+  }
+  const Path path = path_of(s, k_layer, h);
+  const std::vector<Vec3> x = s.positions_by_id(), v = s.velocities_by_id();
+  float pile = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (v[i].norm() < 0.1f * scene.emitters[0].speed.at(0)) pile = std::max(pile, x[i].z());
+  EXPECT_EQ(path.sides, "r") << "it coils to one side";
+  EXPECT_GT(path.coiled, 2);
+  EXPECT_GT(pile, 3 * *scene.emitters[0].radius) << "on itself";
+  EXPECT_LT(path.lying_speed, 0.02 * static_cast<double>(scene.emitters[0].speed.at(0)));
+}
+
+TEST(poured, honey_by_its_name_heaps_up_and_levels) {
+  const Scene scene = parse_scene(
+      "[solver]\ngravity = [0, 0, -9.81]\n[[emitter]]\nmaterial = \"honey\"\nradius = 0.009\nspacing = "
+      "0.003\n"
+      "speed = 0.3\nstop = 0.4\n"
+      "keyframes = [{ time = 0, translate = [0, 0, 0.1], rotate = [180, 0, 0] }]\n"
+      "[[collider]]\nplane = { normal = [0, 0, 1], offset = 0 }\n",
+      "honey.toml");
+  Simulation s = build(scene, 2);
+  const auto top = [&] {
+    float most = 0;
+    for (const Vec3& x : s.positions_by_id()) most = std::max(most, x.z());
+    return most;
+  };
+  s.advance(0.5);
+  const float heap = top();
+  EXPECT_GT(heap, 0.02f) << "which the last of it has just come to";
+  s.advance(0.2);
+  EXPECT_LT(top(), 0.65f * heap);
+  s.advance(0.5);
+  EXPECT_LT(top(), 0.4f * heap);
+  EXPECT_GT(top(), 0.2f * heap) << "the slower the flatter it is";
 }
 
 }  // namespace toothpaste_test

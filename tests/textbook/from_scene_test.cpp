@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
+
+#include "refusal.h"
 
 namespace mallow::textbook {
 namespace from_scene_test {
@@ -71,6 +74,23 @@ TEST(from_scene, puts_bodies_that_name_one_group_together_and_no_others) {
     EXPECT_EQ(p.group, groups[id]) << "particle " << id;
     EXPECT_EQ(p.pinned, p.group == 2) << "particle " << id;
   }
+}
+
+TEST(from_scene, refuses_what_the_textbook_does_not_know) {
+  const auto refused = [](const char* field, auto change) {
+    Scene scene = cube_3375();
+    change(scene);
+    EXPECT_EQ(test::refusal([&] { from_scene(scene); }),
+              std::string(field) + ": is not known to the textbook implementation");
+  };
+  refused("emitter[0]", [](Scene& s) { s.emitters.emplace_back(); });
+  refused("sink[0]", [](Scene& s) { s.sinks.emplace_back(); });
+  refused("material[0].temperature", [](Scene& s) { s.materials[0].material.temperature = 300.0f; });
+  refused("material[0].adhesion", [](Scene& s) { s.materials[0].material.adhesion = 1; });
+  refused("solver.wall_pressure", [](Scene& s) { s.solver.wall_pressure = true; });
+  refused("body[0].paint", [](Scene& s) { s.bodies[0].paint.emplace_back(); });
+  refused("body[0].merges", [](Scene& s) { s.bodies[0].merges = true; });
+  refused("body[0].splits", [](Scene& s) { s.bodies[0].splits = true; });
 }
 
 }  // namespace from_scene_test

@@ -1,5 +1,6 @@
 # Runs Doxygen and fails where it warns. A field whose name says all needs no comment, so that Doxygen's word on those is
 # passed over; types, functions and constants need one each.
+file(REMOVE_RECURSE ${FOLDER}/html/pictures)  # of an earlier run: names of pictures would mean two files
 execute_process(COMMAND ${DOXYGEN} ${FOLDER}/Doxyfile RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "doxygen ended with ${result}")

@@ -273,7 +273,8 @@ void Bodies::exits(std::span<const Ray> rays, std::span<Exit> exits) const {
       [&](std::size_t i, float t, const RTCHit* record) {
         exits[i] = {};
         if (record == nullptr) return;
-        exits[i] = {t, Vec3(record->Ng_x, record->Ng_y, record->Ng_z).normalized()};
+        const Vec3 outwards(record->Ng_x, record->Ng_y, record->Ng_z);
+        exits[i] = {t, outwards.normalized(), outwards.dot(rays[i].direction) < 0};
         if (mesh_ != nullptr) {
           const Vec3 smooth = smooth_normal(*record);
           if (smooth.squaredNorm() > 1e-12f) exits[i].normal = smooth.normalized();

@@ -41,10 +41,11 @@ class Bodies {
   /// The same for many rays, the nearest of ray i before t_max[i]; eight at a time, which is faster.
   void nearest(std::span<const Ray> rays, std::span<const float> t_max, std::span<std::optional<Hit>> hits,
                Rays kind) const;
-  /// The nearest hit of each ray inside a body, where it leaves.
+  /// The nearest hit of each ray inside a body, where it leaves, or enters another body first.
   struct Exit {
     float t = k_far;       ///< k_far where there is none
     Vec3 normal{0, 0, 0};  ///< smooth, against the ray
+    bool enters = false;   ///< another body
   };
   void exits(std::span<const Ray> rays, std::span<Exit> exits) const;
   /// Distance to the nearest hit, k_far where there is none.

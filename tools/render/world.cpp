@@ -17,10 +17,14 @@ const Vec3 k_floor_albedo = Vec3::Constant(Environment::k_floor_albedo);
 constexpr float k_second_sky = 0.75f;
 // Share of the key light on what is seen through a clear body in its own shadow: some goes through.
 constexpr float k_clear_shade = 0.35f;
+// A gap below a clear body is taken as none, in half heights of the view. What rests on a thing wavers by
+// less around it: floors that are seen from below are open, and narrow gaps mirror.
+constexpr float k_wetted = 0.015f;
 // Times that light is thrown back inside a clear body.
 constexpr int k_inner_bounces = 2;
 // Free paths after which nothing is seen through a clear body any more.
 constexpr float k_opaque = 4;
+constexpr std::array<float, World::k_batch> k_all_shade{};
 // Coats that mirror less show the sky alone.
 constexpr float k_mirror_traced = 0.05f;
 
@@ -70,6 +74,14 @@ std::optional<float> World::floor_hit(const Ray& ray) const {
   if (!obstacles_.floor() || ray.direction.z() >= 0) return std::nullopt;
   const float t = (*obstacles_.floor() - ray.origin.z()) / ray.direction.z();
   return t > 0 ? std::optional(t) : std::nullopt;
+}
+
+World::Solid World::solid_on(const Ray& ray) const {
+  const auto floor = floor_hit(ray);
+  const float t = floor.value_or(k_far);
+  if (const auto obstacle = obstacles_.nearest(ray, t))
+    return {obstacle->normal, k_obstacle_albedo, obstacle->t, false};
+  return {Vec3::UnitZ(), k_floor_albedo, t, floor.has_value()};
 }
 
 float World::floor_fade(const Vec3& position) const {
@@ -215,25 +227,19 @@ void World::sample_ambient(std::span<const Surfel* const> at, std::span<const Po
     rays[count] = ray;
     place[count++] = static_cast<std::uint8_t>(i);
   }
-  incoming({rays.data(), count}, 0, {light.data(), count});
+  incoming({rays.data(), count}, k_all_shade, {light.data(), count});
   for (std::size_t k = 0; k < count; ++k) ambient[place[k]] = light[k] - environment_.sky(rays[k].direction);
 }
 
-void World::incoming(std::span<const Ray> rays, float shade, std::span<Vec3> light) const {
-  struct Met {
-    Vec3 normal, albedo;
-    float t = k_far;
-    bool is_floor = false;
-  };
-  std::array<Met, k_batch> met;
+void World::incoming(std::span<const Ray> rays, std::span<const float> shades, std::span<Vec3> light) const {
+  std::array<Solid, k_batch> met;
   std::array<float, k_batch> nearest;
   std::array<std::optional<Bodies::Hit>, k_batch> hits;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const auto floor = floor_hit(rays[i]);
-    met[i] = {Vec3::UnitZ(), k_floor_albedo, floor.value_or(k_far), floor.has_value()};
-    if (const auto obstacle = obstacles_.nearest(rays[i], met[i].t))
-      met[i] = {obstacle->normal, k_obstacle_albedo, obstacle->t, false};
-    nearest[i] = misses_contents(rays[i]) ? -1 : met[i].t;
+    met[i] = solid_on(rays[i]);
+    // From right above it all that is between is the underside of what rests on it.
+    const bool is_down = met[i].t * -met[i].normal.dot(rays[i].direction) < 2 * epsilon_ && met[i].t < k_far;
+    nearest[i] = is_down || misses_contents(rays[i]) ? -1 : met[i].t;
   }
   bodies_.nearest(rays, {nearest.data(), rays.size()}, {hits.data(), rays.size()}, Rays::scattered);
 
@@ -242,7 +248,7 @@ void World::incoming(std::span<const Ray> rays, float shade, std::span<Vec3> lig
   std::array<std::uint8_t, k_batch> seen, place;
   std::size_t count = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    Met& at = met[i];
+    Solid& at = met[i];
     if (hits[i]) at = {hits[i]->normal, hits[i]->albedo, hits[i]->t, false};
     const Vec3 position = rays[i].at(at.t) + epsilon_ * at.normal;
     if (at.t == k_far || (at.is_floor && floor_fade(position) > 0.5f)) {
@@ -259,7 +265,7 @@ void World::incoming(std::span<const Ray> rays, float shade, std::span<Vec3> lig
   }
   unshaded({to_light.data(), count}, {seen.data(), count}, Rays::scattered);
   for (std::size_t k = 0; k < count; ++k) {
-    const float share = cosines[k] * (seen[k] != 0 ? 1 : shade);
+    const float share = cosines[k] * (seen[k] != 0 ? 1 : shades[place[k]]);
     light[place[k]] += share * met[place[k]].albedo.cwiseProduct(environment_.key_color());
   }
 }
@@ -270,6 +276,7 @@ void World::look_beyond(std::span<const Surfel* const> at, std::span<const Ray> 
   std::array<Passage, k_batch> passages;
   std::array<const Surfel*, k_batch> entered;
   std::array<Vec3, k_batch> shares, tints, from;
+  std::array<float, k_batch> shades;
   std::array<std::uint8_t, k_batch> mirror_place, let_place;
   std::size_t mirror_count = 0, let_count = 0;
   for (std::size_t i = 0; i < at.size(); ++i) {
@@ -302,17 +309,20 @@ void World::look_beyond(std::span<const Surfel* const> at, std::span<const Ray> 
     const float let_through = std::exp(-way / optics.free_path);
     light[let_place[k]]->scattered() = 1 - let_through;
     if (way > optics.free_path * k_opaque) continue;
-    const Vec3 tint = entered[k]->albedo.unaryExpr(
-        [&](float c) { return std::pow(std::max(c, 0.02f), way / optics.color_depth); });
+    // What lights the ground, or a body within, has come through this body too.
+    const float colored = (passages[k].ends_inside ? 2 : 1) * way / optics.color_depth;
+    const Vec3 tint =
+        entered[k]->albedo.unaryExpr([&](float c) { return std::pow(std::max(c, 0.02f), colored); });
     lets[left] = passages[k].ray;
+    shades[left] = passages[k].ends_inside ? let_through : k_clear_shade;
     tints[left] = let_through * tint.cwiseProduct(tints[k]);
     let_place[left++] = let_place[k];
   }
   let_count = left;
-  incoming({mirrors.data(), mirror_count}, 0, {from.data(), mirror_count});
+  incoming({mirrors.data(), mirror_count}, k_all_shade, {from.data(), mirror_count});
   for (std::size_t k = 0; k < mirror_count; ++k)
     light[mirror_place[k]]->beyond() += shares[k].cwiseProduct(from[k]).array();
-  incoming({lets.data(), let_count}, k_clear_shade, {from.data(), let_count});
+  incoming({lets.data(), let_count}, shades, {from.data(), let_count});
   for (std::size_t k = 0; k < let_count; ++k)
     light[let_place[k]]->beyond() += tints[k].cwiseProduct(from[k]).array();
 }
@@ -321,14 +331,25 @@ void World::pass_through(std::span<const Surfel* const> at, std::span<Passage> p
   std::array<Ray, k_batch> rays;
   std::array<std::uint8_t, k_batch> place;
   std::array<Bodies::Exit, k_batch> exits;
+  std::array<Ray, k_batch> onward;
+  std::array<float, k_batch> gaps;
+  std::array<std::optional<Bodies::Hit>, k_batch> wetted;
   std::size_t count = passages.size();
   for (std::size_t i = 0; i < count; ++i) {
     place[i] = static_cast<std::uint8_t>(i);
     passages[i].way = 0;
+    passages[i].ends_inside = false;
   }
   for (int bounce = 0; bounce <= k_inner_bounces && count > 0; ++bounce) {
     for (std::size_t k = 0; k < count; ++k) rays[k] = passages[place[k]].ray;
     bodies_.exits({rays.data(), count}, exits);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Bodies::Exit& exit = exits[k];
+      const bool leaves = exit.t < k_far && !exit.enters;
+      onward[k] = leaves ? Ray{rays[k].at(exit.t) - epsilon_ * exit.normal, rays[k].direction} : rays[k];
+      gaps[k] = leaves ? k_wetted * view_size_ / -exit.normal.dot(rays[k].direction) : -1;
+    }
+    bodies_.nearest({onward.data(), count}, {gaps.data(), count}, {wetted.data(), count}, Rays::scattered);
     std::size_t left = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const Bodies::Exit& exit = exits[k];
@@ -337,9 +358,23 @@ void World::pass_through(std::span<const Surfel* const> at, std::span<Passage> p
         if (bounce == 0) passage.way = k_far;  // a leaf without an inside
         continue;
       }
+      const Solid solid = solid_on(rays[k]);
+      const float beyond = (exit.t - solid.t) * -solid.normal.dot(rays[k].direction);
+      if (solid.t < k_far && beyond > -k_wetted * view_size_) {
+        passage.way += solid.t;
+        passage.ray.origin = rays[k].at(solid.t) + epsilon_ * solid.normal;
+        passage.ends_inside = true;
+        continue;
+      }
       passage.way += exit.t;
       const Vec3 leaves = rays[k].at(exit.t);
-      passage.ray.origin = leaves - epsilon_ * exit.normal;
+      if (exit.enters || wetted[k]) {
+        passage.ray.origin = wetted[k] ? Vec3(onward[k].at(wetted[k]->t) + epsilon_ * wetted[k]->face)
+                                       : Vec3(leaves + epsilon_ * exit.normal);
+        passage.ends_inside = true;
+        continue;
+      }
+      passage.ray.origin = onward[k].origin;
       const Optics& optics = optics_of(at[place[k]]->look);
       if (const auto out = refracted(rays[k].direction, exit.normal, optics.index)) {
         passage.ray.direction = *out;

@@ -61,18 +61,27 @@ class World {
   /// Sets seen[i] to whether nothing is on ray i, which goes to the light.
   void unshaded(std::span<const Ray> rays, std::span<std::uint8_t> seen, Rays kind) const;
   bool misses_contents(const Ray& ray) const;
-  /// Light that comes back along up to k_batch rays. shade: share of the key light that is left in shadows.
-  void incoming(std::span<const Ray> rays, float shade, std::span<Vec3> light) const;
+  /// Light that comes back along up to k_batch rays. shades: of each, the share of the key light that is left
+  /// in shadows.
+  void incoming(std::span<const Ray> rays, std::span<const float> shades, std::span<Vec3> light) const;
   /// A ray inside a clear body; later the one that leaves it, and how far it was on the way [m].
   struct Passage {
     Ray ray;
     float way;
+    bool ends_inside;  ///< at the floor or an obstacle that the body rests on, or at a body in it
   };
   /// Follows rays through the clear bodies that were entered at up to k_batch surfels.
   void pass_through(std::span<const Surfel* const> at, std::span<Passage> passages) const;
   void add_hit(const Ray& ray, const std::optional<Bodies::Hit>& hit, Surfel& seen) const;
   Surfel look_at_obstacles(const Ray& ray) const;
   float floor_fade(const Vec3& position) const;
+  /// What a ray meets first of floor and obstacles; t is k_far where that is nothing.
+  struct Solid {
+    Vec3 normal, albedo;
+    float t;
+    bool is_floor;
+  };
+  Solid solid_on(const Ray& ray) const;
   std::optional<float> floor_hit(const Ray& ray) const;
   Vec3 to_key(const Point2& disc) const;
 
