@@ -62,7 +62,7 @@ void flow(const Group& group, double time_step, std::vector<Particle>& particles
     Matrix g = Matrix::Identity() + y * strain;
     g /= std::cbrt(g.determinant());
     // None that adds to elastic energy of what is crushed or comes apart.
-    const bool is_whole = e.determinant() > 0.34 && e.determinant() < 2;
+    const bool is_whole = e.determinant() > 0.42 && e.determinant() < 2;
     const Matrix stretched = region.stretch * region.rest_moment * region.stretch.transpose();
     const auto energy = [&](const Matrix& goal) { return ((e - goal) * stretched * (e - goal)).trace(); };
     if (!is_whole && energy(g) > energy(Matrix::Identity())) continue;
@@ -72,13 +72,16 @@ void flow(const Group& group, double time_step, std::vector<Particle>& particles
 }
 
 bool reframe_is_due(const Group& group, const std::vector<Particle>& particles) {
-  const Material& material = group.material;
-  const double radius = group.region_radius, torn = (1 + double{material.tear_strain}) * radius;
   const auto far = [&](std::size_t id) { return particles[id].region.flow > 0.5; };
   return std::ranges::any_of(group.members, far) ||
-         any_part_ways(group, particles, 0, &Particle::reference, radius, &Particle::position, torn) ||
-         any_part_ways(group, particles, material.merge_flow, &Particle::position, group.spacing,
-                       &Particle::reference, radius);
+         any_part_ways(group, particles, group.material.merge_flow, &Particle::position, group.spacing,
+                       &Particle::reference, group.region_radius);
+}
+
+bool is_torn(const Group& group, const std::vector<Particle>& particles) {
+  const double radius = group.region_radius;
+  return any_part_ways(group, particles, 0, &Particle::reference, radius, &Particle::position,
+                       (1 + double{group.material.tear_strain}) * radius);
 }
 
 bool has_flowed_too_far(const Group& group, const std::vector<Particle>& particles) {

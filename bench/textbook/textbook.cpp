@@ -185,13 +185,17 @@ bool Textbook::needs_sph() const {
 // Section 6 of the model [TK 3.2, eq. 14].
 int Textbook::update_references() {
   const bool check = check_is_due();
+  const double look = 2 * base_step_;  // for what tears, at checks too
+  const bool tears = check || passed(time_, look) > passed(last_start_, look);
   int updated = 0;
   for (Group& group : groups_) {
     const Material& material = group.material;
     const bool flows = material.plastic_yield && group.alpha < 1 && group.keeps_reference();
     const bool far = flows && has_flowed_too_far(group, particles_);
+    const bool due = far || (flows && ((check && reframe_is_due(group, particles_)) ||
+                                       (tears && is_torn(group, particles_))));
     if (!check) {
-      if (far) updated += reframe(group, false, particles_);
+      if (due) updated += reframe(group, !far, particles_);
       continue;
     }
     const double threshold = group.update_threshold * (1 - group.most_alpha);
@@ -203,7 +207,7 @@ int Textbook::update_references() {
       kick_by_pull(group, 0.5);
       rest_anew(group, judged, particles_);
       kick_by_pull(group, -0.5);
-    } else if (!flows || !(far || reframe_is_due(group, particles_)) || !reframe(group, !far, particles_)) {
+    } else if (!due || !reframe(group, !far, particles_)) {
       continue;
     }
     ++updated;
@@ -232,13 +236,13 @@ double Textbook::stiffness(const Group& group) const {
 }
 
 /// Multiples of the period, which times may miss by what their sums are off.
-double Textbook::passed_periods(double time) const {
-  return std::floor((time + 1e-6 * base_step_) / period_);
+double Textbook::passed(double time, double period) const {
+  return std::floor((time + 1e-6 * base_step_) / period);
 }
 
 bool Textbook::check_is_due() const {
   if (counts_steps()) return steps_ > 0 && steps_ % *config_.update_interval == 0;
-  return passed_periods(time_) > passed_periods(last_start_);
+  return passed(time_, period_) > passed(last_start_, period_);
 }
 
 /// What counts at the next check: the step before it, or the largest mean over a Δt0 since the last one.

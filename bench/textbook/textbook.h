@@ -58,7 +58,7 @@ class Textbook {
   bool needs_sph() const;
   bool is_painted() const;
   bool counts_steps() const { return config_.update_interval && config_.time_step_factor == 1; }
-  double passed_periods(double time) const;
+  double passed(double time, double period) const;
   bool check_is_due() const;
   void kick_by_pull(const Group& group, double share);
   double stiffness(const Group& group) const;

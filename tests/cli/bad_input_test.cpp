@@ -91,11 +91,12 @@ TEST_F(cli_bad_input, folder_that_holds_no_run) {
 }
 
 TEST_F(cli_bad_input, a_step_that_cannot_be_taken_fails_the_run_and_is_reported) {
-  // So fast that a particle would cross its support radius in less than a thousandth of the time step.
+  // Gravity makes it so fast that a particle would cross its support radius in less than a thousandth of the
+  // time step.
   write(
       "fast.toml",
-      "[solver]\nsupport_radius = 2.0\n[[material]]\nname = \"a\"\nalpha = 0.7\n[[body]]\nmaterial = \"a\"\n"
-      "box = { count = [3, 3, 3], spacing = 1.0 }\nvelocity = [1e6, 0.0, 0.0]\n");
+      "[solver]\nsupport_radius = 2.0\ntime_step = 0.15\ngravity = [0.0, 0.0, -1e6]\n[[material]]\nname = \"a\"\nalpha = 0.7\n[[body]]\nmaterial = \"a\"\n"
+      "box = { count = [3, 3, 3], spacing = 1.0 }\n");
   const Outcome outcome =
       run_mallow({"run", at("fast.toml"), "--report", at("report.json"), "--state-out", at("state.csv")});
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;

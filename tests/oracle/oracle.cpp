@@ -693,7 +693,7 @@ void Oracle::flow(double dt) {
     Matrix g = Matrix::Identity() + y * strain;
     g /= std::cbrt(g.determinant());
     // None that adds to elastic energy of what is crushed or comes apart.
-    const bool is_whole = e.determinant() > 0.34 && e.determinant() < 2;
+    const bool is_whole = e.determinant() > 0.42 && e.determinant() < 2;
     const Matrix stretched = j.stretch * j.rest_moment * j.stretch.transpose();
     const auto energy = [&](const Matrix& goal) { return ((e - goal) * stretched * (e - goal)).trace(); };
     if (!is_whole && energy(g) > energy(Matrix::Identity())) continue;

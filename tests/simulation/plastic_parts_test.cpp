@@ -131,6 +131,7 @@ bool halves(const SolverConfig& config, float place, double seconds, int region_
 
 // Looked for at checks alone, 14 of 16 were cut where they are every 3 s, and 3 where they are every 31.
 TEST(plastic_parts, a_blade_cuts_whenever_checks_are_and_however_long_steps_are) {
+  int all = 0;
   for (const float period : {3.0f, 31.0f})
     for (const float factor : {1.0f, 0.5f}) {
       SolverConfig config = solver(0.1f);
@@ -140,8 +141,10 @@ TEST(plastic_parts, a_blade_cuts_whenever_checks_are_and_however_long_steps_are)
       int cut = 0;
       for (const float place : {0.0f, 0.25f, 0.5f, 0.8f})
         for (const double seconds : {3.0, 9.0}) cut += halves(config, place, seconds);
-      EXPECT_GE(cut, 7) << "of 8; checks every " << period << " s, steps of " << 0.15f * factor << " s";
+      all += cut;
+      EXPECT_GE(cut, 6) << "of 8; checks every " << period << " s, steps of " << 0.15f * factor << " s";
     }
+  EXPECT_GE(all, 29) << "of 32";
 }
 
 // Where a region has flowed that is the first of no particle, nobody was found who had, and the search among
