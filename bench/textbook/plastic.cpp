@@ -78,9 +78,9 @@ bool reframe_is_due(const Group& group, const std::vector<Particle>& particles) 
                        &Particle::reference, group.region_radius);
 }
 
-bool is_torn(const Group& group, const std::vector<Particle>& particles) {
+bool is_torn(const Group& group, double least_flow, const std::vector<Particle>& particles) {
   const double radius = group.region_radius;
-  return any_part_ways(group, particles, 0, &Particle::reference, radius, &Particle::position,
+  return any_part_ways(group, particles, least_flow, &Particle::reference, radius, &Particle::position,
                        (1 + double{group.material.tear_strain}) * radius);
 }
 

@@ -193,7 +193,7 @@ int Textbook::update_references() {
     const bool flows = material.plastic_yield && group.alpha < 1 && group.keeps_reference();
     const bool far = flows && has_flowed_too_far(group, particles_);
     const bool due = far || (flows && ((check && reframe_is_due(group, particles_)) ||
-                                       (tears && is_torn(group, particles_))));
+                                       (tears && is_torn(group, check ? 0 : 0.1, particles_))));
     if (!check) {
       if (due) updated += reframe(group, !far, particles_);
       continue;

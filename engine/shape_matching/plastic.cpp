@@ -98,22 +98,23 @@ float most_flow(const ShapeMatching& shape) {
 
 bool is_torn(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
              const Execution& execution, const ShapeMatching& shape, FlowScratch& scratch) {
-  if (most_flow(shape) == 0) return false;
+  const float least = limits.least_flow;
+  if (!(most_flow(shape) > least)) return false;
   const float far = (1 + limits.tear_strain) * shape.region_radius;
   if (shape.region_stride != 1) {  // regions are not those of all particles: who is near is searched for
-    gather_flowed(positions, begin, 0, shape, scratch);
+    gather_flowed(positions, begin, least, shape, scratch);
     return any_part_ways(scratch.rest, shape.region_radius, scratch.here, far, execution, scratch);
   }
   const TableLists& lists = shape.regions;
   const float* const flow = shape.plastic.flow.data();
   return any_below(lists.rows, execution.threads, [&](std::size_t j) {
-    if (!(flow[j] > 0)) return false;
+    if (!(flow[j] > least)) return false;
     const Vec3 own = positions.get(begin + j);
     float farthest = 0;
     lists.for_each_run(j, [&](std::size_t first, std::size_t length) {
       for (std::size_t i = std::max(first, j + 1); i < first + length; ++i) {  // a pair is in both lists
         const float square = (own - positions.get(begin + i)).squaredNorm();
-        farthest = std::max(farthest, flow[i] > 0 ? square : 0.0f);
+        farthest = std::max(farthest, flow[i] > least ? square : 0.0f);
       }
     });
     return farthest > far * far;

@@ -24,6 +24,9 @@ struct FlowRule {
 
 /// κ of a region from which the body gets a new frame: S would take it too far from its reference shape.
 inline constexpr float k_far_flow = 0.5f;
+/// κ of both that tear between checks. What a blade drives apart flows by far more; to look at all that
+/// creeps would take as long as an elastic step.
+inline constexpr float k_torn_flow = 0.1f;
 /// κ of half of the regions from which it gets one at once: pastes that hit a floor get there in a fraction
 /// of the time between checks, and with S so far from I hardly resist any more.
 inline constexpr float k_farthest_flow = 1.2f;
@@ -66,6 +69,7 @@ ReframedRegion reframed_region(const Eigen::Matrix3d& m, const Eigen::Matrix3d& 
 /// What gives a body a new frame, see Material.
 struct FrameLimits {
   float merge_flow = 0, tear_strain = 0;
+  float least_flow = 0;  ///< κ of both that tear is above this
 };
 /// What a look at what has flowed needs; all bodies take turns with it.
 struct FlowScratch {
@@ -80,8 +84,9 @@ struct FlowScratch {
 };
 /// Particles of a body, ascending, in regions that have flowed by more than `least`.
 void list_flowed(float least, const ShapeMatching& shape, Column<std::uint32_t>& which);
-/// Whether two of a body, from row `begin` on, that are in one's region, and have flowed, are farther apart
-/// than 1 + tear_strain of its radius: then it tears, and its positions should become its reference shape.
+/// Whether two of a body, from row `begin` on, that are in one's region, and have flowed by more than
+/// least_flow, are farther apart than 1 + tear_strain of its radius: then it tears, and its positions should
+/// become its reference shape.
 bool is_torn(const VectorColumn& positions, std::size_t begin, const FrameLimits& limits,
              const Execution& execution, const ShapeMatching& shape, FlowScratch& scratch);
 /// Whether they should for another reason: a region has flowed by more than k_far_flow; or two that are in no

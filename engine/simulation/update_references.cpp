@@ -64,7 +64,7 @@ struct Looks {
 
 bool frame_is_due(Simulation::State& state, const BodyState& body, const Looks& looks) {
   const Material& material = body.material->settings;
-  const FrameLimits limits{material.merge_flow, material.tear_strain};
+  const FrameLimits limits{material.merge_flow, material.tear_strain, looks.check ? 0.0f : k_torn_flow};
   const VectorColumn& x = state.store.position;
   FlowScratch& scratch = state.region_scratch.flow;
   return (looks.tears && is_torn(x, body.begin, limits, state.execution, body.shape, scratch)) ||

@@ -723,9 +723,10 @@ bool Oracle::is_torn(std::size_t group) const {
   const Group& g = groups_[group];
   if (!flows(g)) return false;
   const double radius = g.material.region_radius.value_or(*config_.support_radius);
+  const double least = check_is_due() ? 0 : 0.1;
   for (const Particle& i : particles_)
     for (const Particle& j : particles_) {
-      if (i.group != group || j.group != group || !(std::min(i.flow, j.flow) > 0)) continue;
+      if (i.group != group || j.group != group || !(std::min(i.flow, j.flow) > least)) continue;
       const double now = (i.x - j.x).norm(), rest = (i.reference - j.reference).norm();
       if (rest <= radius && now > (1 + double{g.material.tear_strain}) * radius) return true;
     }
