@@ -67,8 +67,8 @@ bool frame_is_due(Simulation::State& state, const BodyState& body, const Looks& 
   const FrameLimits limits{material.merge_flow, material.tear_strain, looks.check ? 0.0f : k_torn_flow};
   const VectorColumn& x = state.store.position;
   FlowScratch& scratch = state.region_scratch.flow;
-  return (looks.tears && is_torn(x, body.begin, limits, state.execution, body.shape, scratch)) ||
-         (looks.check && reframe_is_due(x, body.begin, limits, state.execution, body.shape, scratch));
+  return (looks.check && reframe_is_due(x, body.begin, limits, state.execution, body.shape, scratch)) ||
+         (looks.tears && is_torn(x, body.begin, limits, state.execution, body.shape, scratch));
 }
 
 /// What the regions of a body take along into a new frame, where it gets one now: where one is due and no

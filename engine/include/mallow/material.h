@@ -40,12 +40,12 @@ struct Material {
   /// hardly touched. Two bodies of this material that merge become one likewise: see Body::merges.
   float merge_flow = 0.1f;
   /// Where matter flows and a region has been stretched by more than this since the reference shape was
-  /// taken, it tears, >= 0: what is farther apart than region_radius then is not held together any more. It is
-  /// looked for every two time_steps, whatever checks and time_step_factor are, so that a gap counts while what
-  /// made it is there; only half a body in a blow waits for the blow's end. So a blade cuts where its thickness
-  /// and a spacing are more than (1 + tear_strain) region_radius; less makes matter short, more of it goes into
-  /// crumbs. What is pressed together again becomes one at a check, as merge_flow says: Body::splits keeps it
-  /// apart.
+  /// taken, it tears, >= 0: what is farther apart than region_radius then is not held together any more. It
+  /// is looked for at checks, and every two time_steps among regions that have flowed by more than 0.1, so
+  /// that a gap counts while what made it is there; only half a body in a blow waits for the blow's end. So a
+  /// blade cuts where its thickness and a spacing are more than (1 + tear_strain) region_radius; less makes
+  /// matter short, more of it goes into crumbs. What is pressed together again becomes one at a check, as
+  /// merge_flow says: Body::splits keeps it apart.
   float tear_strain = 0.5f;
   /// k [m²/s²], >= 0: pressure is k (ρ − ρ0). Left out: as stiff as a step can carry, see
   /// default_pressure_coefficient(); it then follows alpha, and between bodies, where pressure acts whatever
