@@ -194,6 +194,9 @@ Skin bind_skin(const SceneBody& body, BodyId id, const Material& material,
   if (body.merges && flows(material))
     throw ConfigError("skin",
                       "is not allowed on a body that merges and flows, as it may become part of another");
+  if (body.splits)
+    throw ConfigError("skin",
+                      "is not allowed on a body that splits, as its parts become bodies of their own");
   Eigen::Vector3d origin;
   const Mesh mesh = read_mesh(folder / body.skin, origin);
   return {simulation, id, std::visit(PlaceSkin{folder, mesh, origin}, body.source), threads};

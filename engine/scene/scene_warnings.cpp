@@ -236,6 +236,16 @@ void look_at_heat(const Scene& scene, const SimulationInfo& info, double seconds
   }
 }
 
+/// A skin follows all particles that it was bound to, or nothing.
+void look_at_skins(const Scene& scene, std::vector<std::string>& all) {
+  if (scene.sinks.empty()) return;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    if (!scene.bodies[b].skin.empty())
+      all.push_back("body[" + std::to_string(b) +
+                    "]: its skin ends the run where a sink takes a particle of it; leave out the skin, or "
+                    "keep the body from the sink");
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info) {
@@ -245,6 +255,7 @@ std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info
                   "; gravity = [0.0, 0.0, -9.81] is that of the earth");
   look_at_presets(scene, all);
   look_at_radians(scene, all);
+  look_at_skins(scene, all);
   for (std::string& text : surface_warnings(scene.surface, info)) all.push_back(std::move(text));
   const double frames = scene.run.frames, frame = frame_time(scene, info);
   const double seconds = frames * frame;

@@ -52,6 +52,12 @@ TEST(run_loop, keeps_what_a_body_looked_like_in_frames_before_another_had_its_sl
   run_frames(scene, simulation, {},
              {.frames = 4, .steps = {}, .surface = false, .images = false, .threads = 1, .checkpoints = {}},
              &cache, report, {.after_step = {}, .after_frame = trade, .stop = {}});
+  count_particles(simulation, report.info.bodies);
+  EXPECT_EQ(report.info.bodies[slot_of(blue)].particles, 27u);
+  EXPECT_EQ(report.info.bodies[slot_of(red)].particles, 8u);
+  simulation.remove_body(blue);
+  count_particles(simulation, report.info.bodies);
+  EXPECT_EQ(report.info.bodies[slot_of(blue)].particles, 0u);
   const std::vector<std::string> now = material_names(report.info.bodies);
   for (const auto& past : {report.past_bodies, past_bodies(to_json(report), "report.json")})
     for (const auto& [frame, material] :

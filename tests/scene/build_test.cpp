@@ -421,6 +421,18 @@ TEST_F(skin_of_scene, names_the_body_whose_skin_cannot_be) {
   EXPECT_EQ(error_of(scene("merges = true\n" + body)), "no error");
   const std::string part = error_of(scene("merges = true\n" + body, "0.1\nplastic_yield = 0.1"));
   EXPECT_NE(part.find("is not allowed on a body that merges and flows"), std::string::npos) << part;
+  Scene drained = scene(body);
+  Simulation simulation = build(drained, 1);
+  const auto warns_of_sinks = [&] {
+    return std::ranges::any_of(warnings(drained, simulation.info()), [](const std::string& text) {
+      return text.find("body[0]: its skin ends the run where a sink") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(warns_of_sinks());
+  drained.sinks.push_back({});
+  EXPECT_TRUE(warns_of_sinks());
+  const std::string splits = error_of(scene("splits = true\n" + body, "0.1\nplastic_yield = 0.1"));
+  EXPECT_NE(splits.find("is not allowed on a body that splits"), std::string::npos) << splits;
   const std::vector<std::string> missing = problems(
       "[solver]\nsupport_radius = 0.42\n[[material]]\nname = \"a\"\n[[body]]\nmaterial = \"a\"\n"
       "skin = \"none.obj\"\nbox = { count = [9, 9, 9], spacing = 0.2 }\n");

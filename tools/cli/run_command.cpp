@@ -347,6 +347,7 @@ void run(const RunOptions& options) {
     run.report.error = why_ended;
     run.report.complete = why_ended.empty();
     run.report.info.particles = run.simulation->particle_count();  // some may have come or gone
+    program::count_particles(*run.simulation, run.report.info.bodies);
     run.report.simulated_time = run.simulation->time();
     run.report.state_hash = run.simulation->state_hash();
     write_reports(options, run.scene, out, run.report);

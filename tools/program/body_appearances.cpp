@@ -47,6 +47,14 @@ bool follow_bodies(const Simulation& simulation, std::vector<BodyInfo>& by_slot)
   return true;
 }
 
+void count_particles(const Simulation& simulation, std::vector<BodyInfo>& by_slot) {
+  for (BodyInfo& body : by_slot) body.particles = 0;
+  for (const BodyId body : simulation.bodies()) {
+    const auto rows = simulation.rows(body);
+    if (slot_of(body) < by_slot.size()) by_slot[slot_of(body)].particles = rows.end - rows.begin;
+  }
+}
+
 std::vector<std::string> material_names(std::span<const BodyInfo> bodies) {
   std::vector<std::string> names;
   for (const BodyInfo& body : bodies) names.push_back(body.material);

@@ -18,6 +18,8 @@ std::vector<Appearance> body_appearances(const Scene& scene, std::span<const std
 /// What is known of each body by its slot: brought up to date where bodies have come since; of those that are
 /// gone, what was known stays. Returns whether any has come.
 bool follow_bodies(const Simulation& simulation, std::vector<BodyInfo>& by_slot);
+/// How many particles each has now, of those that are gone none.
+void count_particles(const Simulation& simulation, std::vector<BodyInfo>& by_slot);
 std::vector<std::string> material_names(std::span<const BodyInfo> bodies);
 
 /// The same before and after bodies have come: those that had a slot until this frame, and another material.
