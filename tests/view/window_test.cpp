@@ -159,7 +159,7 @@ TEST_F(view_window, marks_show_pins_the_region_of_a_particle_and_contacts) {
 TEST_F(view_window, a_film_holds_every_frame_of_the_scene_once) {
   const Played played =
       play({k_cube, "--width", "320", "--height", "240"},
-           "ready\nkey space\npictures 4\nkey f\nframes 8\npictures 2\nkey f\npictures 2\nclose\n");
+           "ready\nkey space\npictures 4\nkey f\nfilmed 8\npictures 2\nkey f\npictures 2\nclose\n");
   ASSERT_EQ(played.exit_code, 0) << played.out;
   if (!program::is_installed("ffmpeg") || !program::is_installed("ffprobe")) {
     EXPECT_TRUE(std::filesystem::exists(scratch() / "view.mp4.frames" / "images")) << "as no ffmpeg is here";
@@ -209,8 +209,8 @@ TEST_F(view_window, a_film_holds_every_frame_once_in_a_window_that_waits_for_eve
   const std::string turn =
       "press 1\nmove 0.3 0.3\npictures 3\nmove 0.5 0.4\npictures 3\nmove 0.4 0.3\nrelease 1\n";
   const Played played = play({tiny(), "--paused", "--width", "320", "--height", "240"},
-                             "ready\nhand\nkey =\nkey f\nframes 40\n" + turn +
-                                 "frames 40\nfilm\n"
+                             "ready\nhand\nkey =\nkey f\nfilmed 40\n" + turn +
+                                 "filmed 80\nfilm\n"
                                  "key f\npictures 1\njoined\nclose\n");
   ASSERT_EQ(played.exit_code, 0) << played.out;
   const double pictures = number_behind(played.out, "film pictures");
@@ -225,7 +225,7 @@ TEST_F(view_window, a_film_holds_every_frame_once_in_a_window_that_waits_for_eve
 TEST_F(view_window, closed_while_it_records_it_makes_the_film_and_says_where) {
   if (!can_look_into_films()) GTEST_SKIP() << "ffmpeg is not installed (Debian: ffmpeg)";
   const Played played =
-      play({tiny(), "--width", "320", "--height", "240"}, "ready\nkey f\nframes 9\nfilm\nclose\n");
+      play({tiny(), "--width", "320", "--height", "240"}, "ready\nkey f\nfilmed 9\nfilm\nclose\n");
   ASSERT_EQ(played.exit_code, 0) << played.out;
   EXPECT_NE(played.out.find("view.mp4"), std::string::npos) << played.out;
   EXPECT_FALSE(std::filesystem::exists(scratch() / "view.mp4.frames"));
@@ -236,9 +236,9 @@ TEST_F(view_window, a_film_ends_with_its_scene_and_the_next_one_plays) {
   if (!can_look_into_films()) GTEST_SKIP() << "ffmpeg is not installed (Debian: ffmpeg)";
   const Played played =
       play({tiny(), "--width", "320", "--height", "240"},
-           "ready\nkey space\npictures 4\nkey f\nframes 9\nkey escape\npictures 3\nopen " + k_cube +
+           "ready\nkey space\npictures 4\nkey f\nfilmed 9\nkey escape\npictures 3\nopen " + k_cube +
                "\npictures 3\nready\nframes 1\n"
-               "status\nkey space\npictures 4\nkey f\nframes 3\nkey f\npictures 3\njoined\nclose\n");
+               "status\nkey space\npictures 4\nkey f\nfilmed 3\nkey f\npictures 3\njoined\nclose\n");
   ASSERT_EQ(played.exit_code, 0) << played.out;
   EXPECT_NE(played.out.find("paused 0"), std::string::npos) << played.out;
   EXPECT_GE(pictures_in(scratch() / "view.mp4"), 9);

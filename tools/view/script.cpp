@@ -30,6 +30,10 @@ int key_of(const std::string& name) {
   throw ConfigError("script", "there is no key '" + name + "'");
 }
 
+std::uint64_t pictures_of(const FilmRecorder* film) {
+  return film ? static_cast<std::uint64_t>(film->frames()) : 0;
+}
+
 /// In the middle of what is drawn of bodies [m].
 Vec3 center_of(const Frame& frame) {
   const std::vector<Vec3>& points = frame.positions.empty() ? frame.mesh.vertices : frame.positions;
@@ -66,11 +70,12 @@ void Script::begin(Viewer& viewer, std::vector<std::string> words) {
   const auto number = [&](std::size_t k) { return words[k].empty() ? 0.0f : std::stof(words[k]); };
   Window& window = viewer.window();
   if (what == "frames" || what == "pictures" || what == "ready" || what == "sweep" || what == "thumbnails" ||
-      what == "joined") {
+      what == "joined" || what == "filmed") {
     waiting_ = what;
     const auto count = static_cast<std::uint64_t>(number(1));
-    goal_ = count +
-            (what == "frames" ? static_cast<std::uint64_t>(viewer.frame().stats.frame) : viewer.pictures());
+    goal_ = count + (what == "frames"   ? static_cast<std::uint64_t>(viewer.frame().stats.frame)
+                     : what == "filmed" ? 0
+                                        : viewer.pictures());
     swept_section_ = swept_field_ = 0;
     swept_place_ = 0;
   } else if (what == "screenshot") {
@@ -164,6 +169,7 @@ bool Script::is_done(Viewer& viewer) {
   const Frame& frame = viewer.frame();
   if (waiting_ == "ready") return !frame.building && frame.number > 0 && viewer.triangles() > 0;
   if (waiting_ == "frames") return frame.failed || static_cast<std::uint64_t>(frame.stats.frame) >= goal_;
+  if (waiting_ == "filmed") return frame.failed || pictures_of(viewer.film()) >= goal_;
   if (waiting_ == "pictures") return viewer.pictures() >= goal_;
   if (waiting_ == "joined") return !viewer.joins_films();
   if (waiting_ == "thumbnails") return viewer.gallery().missing() == 0;

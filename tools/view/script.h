@@ -13,6 +13,7 @@ namespace mallow::view {
 /// Plays a viewer by a text, for tests: a command a line, each begun after a picture was drawn.
 ///
 ///   frames N             until N frames of the scene have ended since this line
+///   filmed N             until the film has N pictures: frames that end before its key is read are in none
 ///   pictures N           until N pictures were drawn
 ///   ready                until a scene is built and drawn
 ///   screenshot FILE      the window, a PNG; scene FILE: without panels
@@ -32,10 +33,10 @@ namespace mallow::view {
 ///   rung K               a place between accurate (0) and realtime
 ///   preset NAME          a material of data/materials in place of the first one
 ///   message              prints what the window says; copied: what the clipboard holds
-///   bars                 prints where the lower one ends, how high it is, and how many plots the upper one has
-///   hand                 from here on the window waits and draws as for a hand, where something has changed
-///   film                 prints how many pictures a film has so far, and of which frames of the scene
-///   joined               until films are written
+///   bars                 prints where the lower one ends, how high it is, and how many plots the upper one
+///   has hand                 from here on the window waits and draws as for a hand, where something has
+///   changed film                 prints how many pictures a film has so far, and of which frames of the
+///   scene joined               until films are written
 class Script {
  public:
   explicit Script(const std::filesystem::path& file);
