@@ -67,7 +67,8 @@ TEST_F(sweep_by_parallel, gives_the_table_of_a_serial_one_also_where_a_task_is_k
   // The first run of a point that is seen is killed.
   EXPECT_EQ(
       shell("(until pkill -KILL -f \"[r]un .*$F/out/points\" && touch killed || [ -e stop ]; do sleep 0.01; "
-            "done) & \"$M\" sweep \"$S\" --out \"$F/out\" --on parallel --jobs 2 --points-per-task 4 >log.txt 2>&1; status=$?; "
+            "done) & \"$M\" sweep \"$S\" --out \"$F/out\" --on parallel --jobs 2 --points-per-task 4 "
+            ">log.txt 2>&1; status=$?; "
             "touch stop; wait; exit $status"),
       0);
   ASSERT_TRUE(fs::exists(at("killed")));
@@ -136,12 +137,13 @@ TEST_F(sweep_by_parallel, frames_of_tasks_that_are_killed_are_made_by_others_or_
   fs::copy(at("one"), at("many"), fs::copy_options::recursive);
   const std::string options = " --set render.samples=16 --set render.width=160 --set render.height=90 ";
   ASSERT_EQ(shell("\"$M\" render one" + options + ">log.txt 2>&1"), 0) << log();
-  // All tasks that are at it once two pictures are there.
+  // All tasks that are at it at a moment when two pictures are there.
   EXPECT_EQ(
-      shell("(until [ \"$(ls many/images 2>/dev/null | wc -l)\" -ge 2 ] || [ -e stop ]; do sleep 0.01; done; "
-            "pkill -KILL -f \"[r]ender many .*--share\" && touch killed) & "
-            "\"$M\" render many --on parallel --jobs 2" +
-            options + ">log.txt 2>&1; status=$?; touch stop; wait; exit $status"),
+      shell(
+          "(until [ \"$(ls many/images 2>/dev/null | wc -l)\" -ge 2 ] && "
+          "pkill -KILL -f \"[r]ender many .*--share\" && touch killed || [ -e stop ]; do sleep 0.01; done) & "
+          "\"$M\" render many --on parallel --jobs 2" +
+          options + ">log.txt 2>&1; status=$?; touch stop; wait; exit $status"),
       1);
   ASSERT_TRUE(fs::exists(at("killed")));
   EXPECT_NE(log().find("frames were not made; the same command goes on with them"), std::string::npos)
@@ -160,9 +162,10 @@ TEST_F(sweep_by_slurm, gives_the_table_of_a_serial_one_also_where_a_node_dies) {
   const int status = with_slurm(R"sh(
 (until ls out/points/*/point.json >/dev/null 2>&1; do sleep 0.05; done
  kill -KILL "$(cat "$SLURM_TEST_FOLDER/b.pid")" && touch node_killed
- pkill -KILL -f "[r]un .*$F/out/points" && touch task_killed
+ until pkill -KILL -f "[r]un .*$F/out/points" && touch task_killed || [ -e stop ]; do sleep 0.01; done
  sleep 1; scontrol update nodename=b state=down reason=died) &
 timeout 100 "$M" sweep "$S" --out out --on slurm
+touch stop
 cp out/table.csv first.csv
 wait
 timeout 100 "$M" sweep "$S" --out out --on slurm
