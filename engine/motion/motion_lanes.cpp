@@ -16,9 +16,9 @@ float largest(const Lanes& lanes) {
   return -smallest(-lanes);
 }
 
-// a_ext without contact.
+// a_ext without contact. Vectors of lanes go through memory where it is called.
 template <class Rows>
-LaneVec3 external_acceleration(const ForcesInput& in, const Rows& rows, LaneVec3 sum) {
+MALLOW_INLINE LaneVec3 external_acceleration(const ForcesInput& in, const Rows& rows, LaneVec3 sum) {
   if (in.cross_group.x) sum += get(rows, in.cross_group);
   if (in.walls.x) sum += get(rows, in.walls);
   if (in.user.x) sum += get(rows, in.user);

@@ -50,8 +50,10 @@ void update_frame(const VectorColumn& positions, std::size_t begin, std::span<co
 
 /// The few regions that Newton's method leaves: singular, mirrored, or turned too far.
 void solve_undecided(const ShapeInput& in, std::size_t begin, std::size_t end, ShapeMatching& shape) {
-  for (std::size_t j = begin; j < end; ++j) {
-    if (!shape.undecided[j]) continue;
+  const std::uint8_t* const open = shape.undecided.data();
+  for (std::size_t j = begin;; ++j) {
+    j = static_cast<std::size_t>(std::find(open + j, open + end, 1) - open);
+    if (j == end) return;
     const double scale = static_cast<double>(shape.moment[0][j] + shape.moment[1][j] + shape.moment[2][j]);
     const std::optional<Eigen::Quaterniond> rotation = solve_exactly(j, scale, shape);
     if (!rotation) continue;
