@@ -1,6 +1,6 @@
 """Holds tables of the benchmarks' pages to the results that were committed.
 
-check_tables.py SOURCE_FOLDER
+check_tables.py SOURCE_FOLDER [--write]    --write puts the numbers of the results in place of others
 
 Before such a table stands, in a comment, where its numbers are from, a cell each:
     <!-- results/table1.csv name: particles | fps1 | | 100 * surface_distance -->
@@ -14,6 +14,7 @@ import re
 import sys
 
 SOURCE = pathlib.Path(sys.argv[1])
+WRITE = "--write" in sys.argv
 NUMBER = r"-?\d+(?:\.\d+)?"
 
 
@@ -32,33 +33,53 @@ def expected(rows, column):
     return [float(factor or 1) * float(row[name]) for row in rows if row[name]]
 
 
-def check(page, file, key, columns, table):
-    """Problems of a table of a page."""
+def compare(page, file, key, columns, table):
+    """Problems of a table of a page, and its lines with the numbers of the results."""
     with open(page.parent / file, newline="") as text:
         results = list(csv.DictReader(text))
+    problems, lines = [], []
     for line in table:
-        name, *cells = (cell.strip() for cell in line.strip("|").split("|"))
-        rows = [row for row in results if row[key] == name]
+        name, *cells = line.strip("|").split("|")
+        rows = [row for row in results if row[key] == name.strip()]
         if not rows:
-            yield f"{page.name}: no {key} {name} in {file}"
-        for cell, column in zip(cells, columns, strict=True):
+            problems.append(f"{page.name}: no {key} {name.strip()} in {file}")
+        for place, (cell, column) in enumerate(zip(cells, columns, strict=True)):
             here = re.findall(NUMBER, cell)
             if not column or not here:
                 continue
             there = expected(rows, column)
             if there[1:] == there[:-1]:  # a theory is the same for all
                 there = there[:len(here)]
-            if len(here) != len(there) or any(shown(value, text) != text for text, value in zip(here, there)):
-                yield f"{page.name}: {name} has {cell} for {column}, {file} has {there}"
+            values = [shown(value, text) for text, value in zip(here, there)]
+            if len(here) != len(there) or values != here:
+                problems.append(f"{page.name}: {name.strip()} has {cell.strip()} for {column}, {file} has {there}")
+            if len(here) == len(there):
+                cells[place] = re.sub(NUMBER, lambda _: values.pop(0), cell)
+        lines.append("|" + "|".join([name, *cells]) + "|")
+    return problems, lines
 
 
-problems, tables = [], 0
-for page in (SOURCE / "bench").glob("*.md"):
-    for found in re.finditer(r"<!-- (\S+\.csv) (\w+): ([^>]*) -->\n\|.*\n\|[-: |]+\n((?:\|.*\n)+)", page.read_text()):
-        tables += 1
-        columns = [column.strip() for column in found[3].split("|")]
-        problems += check(page, found[1], found[2], columns, found[4].splitlines())
+def follow(page):
+    """Problems of all tables of a page, which is written anew where that is asked for."""
+    problems, text = [], page.read_text()
+
+    def table(found):
+        columns = [column.strip() for column in found[4].split("|")]
+        here, lines = compare(page, found[2], found[3], columns, found[6].splitlines())
+        problems.extend(here)
+        return found[1] + found[5] + "\n".join(lines) + "\n"
+
+    pattern = r"(<!-- (\S+\.csv) (\w+): ([^>]*) -->\n)(\|.*\n\|[-: |]+\n)((?:\|.*\n)+)"
+    text, tables = re.subn(pattern, table, text)
+    if WRITE:
+        page.write_text(text)
+    return problems, tables
+
+
+pages = [follow(page) for page in (SOURCE / "bench").glob("*.md")]
+problems = [problem for found, _ in pages for problem in found]
+tables = sum(count for _, count in pages)
 if tables < 3:
     problems.append(f"only {tables} tables name their results")
 print("\n".join(problems))
-sys.exit(1 if problems else 0)
+sys.exit(1 if problems and not WRITE else 0)
