@@ -52,7 +52,7 @@ program::Stills stills_of(const Scene& scene, const program::Cache& cache, const
   constexpr std::size_t k_looks = 128;
   const std::vector<int> frames = cache.particle_frames();
   const std::size_t looks = scene.render.eye ? 1 : std::min(k_looks, frames.size());
-  program::FilmBounds bounds(run.spacings);
+  program::FilmBounds bounds(run.spacings, scene.emitters);
   for (std::size_t k = 0; k < looks; ++k)
     bounds.add(
         read_particles(cache.particles_file(frames[looks > 1 ? k * (frames.size() - 1) / (looks - 1) : 0])));
