@@ -38,6 +38,7 @@ using SceneKeys = std::set<std::string>;
 SceneKeys check_late_options(const program::Cache& cache, const SceneOptions& given, const Scene& began) {
   const std::string folder = program::shell_word(cache.folder().string());
   std::vector<Problem> problems;
+  std::vector<std::string> warnings;
   SceneKeys told;
   const auto look = [&](const Scene& before, const Scene& after, const std::string& option) {
     const std::vector<program::SceneChange> of_run = program::scene_changes(began, after);
@@ -51,9 +52,9 @@ SceneKeys check_late_options(const program::Cache& cache, const SceneOptions& gi
       if (!counts_when_resumed(change.key))
         refused += (refused.empty() ? "" : "; ") + before_and_now;
       else
-        print_warning(option + ": " + before_and_now + ": from the next frame on; `mallow " +
-                      (change.key.starts_with("surface.") ? "surface " : "render ") + folder +
-                      " --set ...` draws all frames alike");
+        warnings.push_back(option + ": " + before_and_now + ": from the next frame on; `mallow " +
+                           (change.key.starts_with("surface.") ? "surface " : "render ") + folder +
+                           " --set ...` draws all frames alike");
     }
     if (!refused.empty())
       problems.push_back({"", 0, 0, option,
@@ -66,6 +67,7 @@ SceneKeys check_late_options(const program::Cache& cache, const SceneOptions& gi
   if (given.quality)
     look(set, scene_now(cache, given, true, true), std::string("--quality ") + name(*given.quality));
   if (!problems.empty()) throw ConfigError(std::move(problems));
+  for (const std::string& warning : warnings) print_warning(warning);
   return told;
 }
 
