@@ -78,8 +78,7 @@ std::vector<int> frames_to_show(const program::Cache& cache) {
 }
 
 PictureTaker::PictureTaker(const Scene& scene, const program::Cache& cache, const PictureRun& run)
-    : scene_(scene),
-      cache_(cache),
+    : cache_(cache),
       run_(run),
       stills_(stills_of(scene, cache, run)),
       taken_(cache.folder(), "render", job_of(scene, cache, run, stills_.camera()),

@@ -49,7 +49,6 @@ class PictureTaker {
   void write(int number, const ParticleFrame& particles, const Mesh& surface, const FrameClaim& claim,
              program::BackgroundWriter& files);
 
-  const Scene& scene_;
   const program::Cache& cache_;
   const PictureRun& run_;
   program::Stills stills_;
