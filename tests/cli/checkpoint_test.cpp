@@ -293,6 +293,45 @@ TEST_F(cli_checkpoint, run_that_goes_on_keeps_the_pictures_that_are_there_as_it_
   EXPECT_NE(age(0), first) << "another picture";
 }
 
+TEST_F(cli_checkpoint, is_left_by_a_run_whose_step_fails_and_it_says_that_the_step_would_fail_again) {
+  // Heat that spreads nearly as fast as steps carry, and faster once the cube lies on the plate.
+  const std::string scene = write("hot.toml", R"([solver]
+gravity = [0.0, 0.0, -9.81]
+time_step = 0.01
+[[material]]
+name = "metal"
+alpha = 0.2
+rest_density = 1000.0
+temperature = 300.0
+conductivity = 6.5e5
+specific_heat = 1000.0
+[[body]]
+material = "metal"
+box = { count = [6, 6, 6], spacing = 0.01, corner = [0, 0, 0.2], jitter = 0 }
+[[collider]]
+plane = {}
+temperature = 350.0
+[run]
+frames = 15
+frame_time = 0.0333333
+)")
+                                .string();
+  const Outcome failed = run_mallow({"run", scene, "--out", at("out"), "--no-images", "--no-surface"});
+  EXPECT_EQ(failed.exit_code, 1);
+  for (const char* text : {"carries heat that spreads so fast", "frames are whole, and a checkpoint is there",
+                           "would fail in the same step"})
+    EXPECT_NE(failed.err.find(text), std::string::npos) << failed.err;
+  const nlohmann::json report = read_json(at("out/report.json"));
+  ASSERT_GT(report.at("steps"), 6);
+  const Outcome again = resume("out");
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_NE(again.err.find("step " + std::to_string(report.at("steps").get<int>()) + ", frame " +
+                           std::to_string(report.at("frames").get<int>())),
+            std::string::npos)
+      << again.err;
+  EXPECT_EQ(read_json(at("out/report.json")).at("state_hash"), report.at("state_hash"));
+}
+
 TEST_F(cli_checkpoint, overwrite_removes_them) {
   ASSERT_EQ(run({"--out", at("out"), "--frames", "4", "--checkpoint-every", "1"}).exit_code, 0);
   ASSERT_EQ(run({"--out", at("out"), "--overwrite", "--no-surface"}).exit_code, 0);

@@ -261,13 +261,18 @@ void simulate(Run& run, const program::Cache* cache) {
                              program::interrupted());
 }
 
-/// What is left of a run that failed, where that is more than nothing.
-std::string how_to_go_on(const program::Cache* cache, const program::RunReport& report) {
+/// What is left of a run that ended in its middle, where that is more than nothing, and what to do with it.
+/// in_step: a step could not be taken, and cannot be when it is tried again.
+std::string how_to_go_on(const program::Cache* cache, const program::RunReport& report, bool in_step) {
   std::error_code unknown;
   if (!cache || !std::filesystem::exists(cache->checkpoint_file(), unknown)) return {};
-  return "\n  " + std::to_string(report.frames + 1) +
-         " frames are whole, and a checkpoint is there; to go on, once what is wrong is mended: mallow run "
-         "--resume " +
+  const std::string left =
+      "\n  " + std::to_string(report.frames + 1) + " frames are whole, and a checkpoint is there; ";
+  if (in_step)
+    return left +
+           "--resume would fail in the same step: change what the message names and run the scene anew, or "
+           "restore the checkpoint in a program and change it there";
+  return left + "to go on, once what is wrong is mended: mallow run --resume " +
          program::shell_word(cache->folder().string());
 }
 
@@ -290,7 +295,8 @@ void run_stages(const RunOptions& options, Run& run) {
       PictureTaker(run.scene, *cache, pictures)
           .take_all(PictureTaker::Existing::keep, run.report.stage_seconds);
     } catch (const program::Interrupted& told) {
-      throw program::Interrupted(told.what() + how_to_go_on(cache, run.report), program::interrupted());
+      throw program::Interrupted(told.what() + how_to_go_on(cache, run.report, false),
+                                 program::interrupted());
     }
   }
   const program::StageTimer timer(run.report.stage_seconds, program::Stage::film);
@@ -365,7 +371,8 @@ void run(const RunOptions& options) {
       // Where the disk is full the report written at the start stays, and it says that the run did not end.
     }
     if (dynamic_cast<const program::Interrupted*>(&failure)) throw;
-    throw program::RunFailure(failure.what() + how_to_go_on(out, run.report));
+    const bool in_step = dynamic_cast<const StepError*>(&failure) != nullptr;
+    throw program::RunFailure(failure.what() + how_to_go_on(out, run.report, in_step));
   }
   print_result(run.scene, out, run.report);
   require_film(options.film);
