@@ -140,6 +140,7 @@ constexpr double k_most_layers = 24;
 
 /// Whether a place is behind a nozzle, where a strand is that has not left it.
 bool is_held(const SceneEmitter& emitter, double time, const Vec3& x) {
+  if (emitter.stop && time > *emitter.stop) return false;
   Pose pose = emitter.pose;
   if (!emitter.keyframes.empty())
     pose = pose_at(emitter.keyframes, time);
