@@ -1,6 +1,13 @@
 #include "core/slots.h"
 
+#include <numeric>
+
 namespace mallow {
+
+std::uint64_t Slots::given() const {
+  const auto slots = static_cast<std::uint64_t>(index.size() - free.size());
+  return std::accumulate(generation.begin(), generation.end(), slots);  // each was given back so often
+}
 
 std::uint64_t Slots::take() {
   if (free.empty()) {

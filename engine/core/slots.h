@@ -21,6 +21,8 @@ struct Slots {
   std::vector<std::uint32_t> free;   ///< slots that are nobody's; the last one is given away next
 
   std::size_t size() const { return index.size(); }
+  /// How many ids there have been.
+  std::uint64_t given() const;
   std::size_t bytes() const {
     return index.bytes() + generation.bytes() + free.capacity() * sizeof(std::uint32_t);
   }

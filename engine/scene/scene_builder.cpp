@@ -2,7 +2,9 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 
+#include "config/gravity_units.h"
 #include "config/validation.h"
 #include "core/precision.h"
 #include "mallow/files.h"
@@ -241,6 +243,32 @@ void look_at_paint(const SceneBody& body, const Material& material, Body& points
   }
 }
 
+/// Of meshes as wide as this that give so many points, hardly one is meant to be [m].
+constexpr float k_wide_mesh = 1;
+constexpr std::size_t k_many_points = 200'000;
+constexpr float k_centimetre = 0.01f;
+
+/// A file in centimetres, read as metres, gives more points than anyone waits for.
+void look_at_size(const SceneBody& body, const Vec3& gravity, Body& points) {
+  const auto* mesh = std::get_if<MeshSource>(&body.source);
+  if (!mesh || mesh->placement.size || !is_in_metres(gravity) || points.positions.size() < k_many_points)
+    return;
+  Vec3 low = points.positions.front(), high = low;
+  for (const Vec3& x : points.positions) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  const float width = (high - low).maxCoeff() + points.spacing;
+  if (width < k_wide_mesh) return;
+  std::ostringstream text;
+  text.precision(2);  // points are jittered
+  text << mesh->file.string() << ": it is about " << width << " m wide, as the file has it, and gives "
+       << points.positions.size() << " particles " << points.spacing
+       << " m apart; give size = " << k_centimetre * width
+       << " where the file is in centimetres, or a larger spacing";
+  points.notes.push_back(text.str());
+}
+
 }  // namespace
 }  // namespace scene_file
 
@@ -295,6 +323,7 @@ Simulation build(const Scene& scene, int threads, std::vector<std::string>* note
     collect(problems, body.line, path, [&] {
       Body points = mallow::sample(body, scene.file, config.threads);
       paint(body, scene.materials[groups.list[groups.of_body[i]].material].material, points);
+      look_at_size(body, scene.solver.gravity, points);
       particles += points.positions.size();
       if (particles > k_most_particles)
         throw ConfigError({}, "is one body too many: with it there are " + std::to_string(particles) +

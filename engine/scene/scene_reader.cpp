@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <functional>
 #include <map>
+#include <set>
 #include <system_error>
 
 #include "config/validation.h"
@@ -201,7 +203,7 @@ class SceneReader {
   }
 
   /// Names are unique, bodies use names that there are, in the scene or as presets, and every material is
-  /// used.
+  /// used, but for those that a body was taken from by --set: they are left out.
   void check_materials() {
     std::map<std::string, std::size_t> index_of;
     std::vector<std::string> known;
@@ -236,10 +238,34 @@ class SceneReader {
     for (std::size_t i = 0; i < scene_.emitters.size(); ++i)
       look_up("emitter", i, scene_.emitters[i].material);
     if (scene_.bodies.empty() && scene_.emitters.empty()) return;
-    for (const auto& [name, i] : index_of)
-      if (i < own && !used[i])
+    const bool any_taken = is_any_set("body", "material") || is_any_set("emitter", "material");
+    std::set<std::size_t> left_out;
+    for (const auto& [name, i] : index_of) {
+      if (i >= own || used[i]) continue;
+      if (any_taken && !is_set((*lists_.at("material"))[i]))
+        left_out.insert(i);
+      else
         problems_.add(place_of("material", i, "name"), element_path("material", i),
                       "material '" + name + "' is not used by any body");
+    }
+    for (auto i = left_out.rbegin(); i != left_out.rend(); ++i)
+      scene_.materials.erase(scene_.materials.begin() + static_cast<std::ptrdiff_t>(*i));
+  }
+
+  /// Whether --set gave a table, or something of it.
+  static bool is_set(const Node& table) {
+    const Table* entries = table.get_if<Table>();
+    return !table.place.given_by.empty() || (entries && std::ranges::any_of(*entries, [](const Entry& entry) {
+                                               return !entry.node.place.given_by.empty();
+                                             }));
+  }
+  /// Whether it gave this key of an element of a list.
+  bool is_any_set(const char* list, const char* key) const {
+    const auto found = lists_.find(list);
+    return found != lists_.end() && std::ranges::any_of(*found->second, [&](const Node& table) {
+             const Node* value = find(table, key);
+             return value && !value->place.given_by.empty();
+           });
   }
 
   /// A group has one material.

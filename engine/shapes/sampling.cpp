@@ -34,13 +34,16 @@ struct Grid {
   }
 };
 
+constexpr double k_centimetre = 0.01;
+
 /// Why a spacing gives more points than there may be. Who reads it may have taken centimetres for metres.
 std::string too_fine(const Aabb& bounds, double spacing, const std::string& what) {
   const double width = static_cast<double>((bounds.max - bounds.min).maxCoeff());
   std::ostringstream text;
   text << spacing << " is not allowed: the shape is " << width << " m wide, " << width / spacing
        << " spacings, and " << what
-       << "; give a spacing that suits its width, or the width that it is meant to have (size)";
+       << "; give a spacing that suits its width, or the width that it is meant to have: size = "
+       << k_centimetre * width << " where it is in centimetres";
   return text.str();
 }
 std::string too_many_cells() {

@@ -190,7 +190,7 @@ void flow_out(Simulation::State& s, EmitterState& emitter) {
   hold_layers(extend(s, body, points), k_batch, s, emitter);
 }
 
-std::size_t drain(Simulation::State& s, const SinkState& sink) {
+std::size_t drain(Simulation::State& s, SinkState& sink) {
   std::vector<ParticleId> ids;
   const Aabb box{relative_to(s.origin, sink.box.min), relative_to(s.origin, sink.box.max)};
   for (const BodyState& body : s.bodies) {
@@ -202,7 +202,13 @@ std::size_t drain(Simulation::State& s, const SinkState& sink) {
     }
   }
   if (!ids.empty()) erase_particles(s, ids);
+  sink.drained += ids.size();
   return ids.size();
+}
+
+[[noreturn]] void refuse_sink(SinkId id) {
+  throw ConfigError("sink",
+                    "there is no sink " + std::to_string(static_cast<std::uint64_t>(id)) + ", or no longer");
 }
 
 std::size_t place_of(const Simulation::State& s, EmitterId id) {
@@ -243,7 +249,7 @@ std::size_t flow(Simulation::State& s) {
   });
   for (EmitterState& emitter : s.emitters) flow_out(s, emitter);
   std::size_t drained = 0;
-  for (const SinkState& sink : s.sinks) drained += drain(s, sink);
+  for (SinkState& sink : s.sinks) drained += drain(s, sink);
   return drained;
 }
 
@@ -362,9 +368,19 @@ SinkId Simulation::add_sink(const Aabb& box, bool outside) {
 void Simulation::remove_sink(SinkId id) {
   state_->refuse_in_callback();
   State& s = *state_;
-  if (std::erase_if(s.sinks, [&](const SinkState& sink) { return sink.id == id; }) == 0)
-    throw ConfigError(
-        "sink", "there is no sink " + std::to_string(static_cast<std::uint64_t>(id)) + ", or no longer");
+  if (std::erase_if(s.sinks, [&](const SinkState& sink) { return sink.id == id; }) == 0) refuse_sink(id);
+}
+
+std::vector<SinkId> Simulation::sink_ids() const {
+  std::vector<SinkId> ids;
+  for (const SinkState& sink : state_->sinks) ids.push_back(sink.id);
+  return ids;
+}
+
+std::uint64_t Simulation::drained(SinkId id) const {
+  const auto sink = std::ranges::find(state_->sinks, id, &SinkState::id);
+  if (sink == state_->sinks.end()) refuse_sink(id);
+  return sink->drained;
 }
 
 }  // namespace mallow

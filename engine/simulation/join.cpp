@@ -136,6 +136,8 @@ void give_names(Simulation::State& s, BodyId id, BodyId to) {
     if (emitter.body == id) emitter.body = to;
   for (EndedBody& ended : s.ended)
     if (ended.part_of == id) ended.part_of = to;
+  // Of each slot the last one is enough, and a run that lasts has no list that grows for ever.
+  std::erase_if(s.ended, [&](const EndedBody& ended) { return slot_of(BodyId{ended.id}) == slot_of(id); });
   s.ended.push_back({static_cast<std::uint64_t>(id), to});
   give_contacts(s, static_cast<std::uint64_t>(id), static_cast<std::uint64_t>(to));
 }
@@ -144,6 +146,7 @@ void give_names(Simulation::State& s, BodyId id, BodyId to) {
 void take_over(BodyState& body, const BodyState& from) {
   if (from.hit_impulse)
     body.hit_impulse = std::min(*from.hit_impulse, body.hit_impulse.value_or(*from.hit_impulse));
+  if (from.whole == body.whole) body.last_part = std::max(body.last_part, from.last_part);
   body.judged_external = std::max(body.judged_external, from.judged_external);
   body.recent_external.clear();
   body.slow_time = 0;

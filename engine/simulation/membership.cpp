@@ -195,7 +195,7 @@ BodyState place_points(Simulation::State& s, const Body& points, MaterialState& 
   check(points, checks);
   checks.finish();
   BodyState body;
-  body.name = name.empty() ? "body " + std::to_string(s.body_slots.size()) : std::move(name);
+  body.name = name.empty() ? "body " + std::to_string(s.body_slots.given()) : std::move(name);
   body.material = &material;
   body.merges = points.merges;
   body.splits = points.splits;

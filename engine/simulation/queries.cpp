@@ -8,6 +8,8 @@
 #include "colliders/shapes.h"
 #include "core/bounds.h"
 #include "core/checks.h"
+#include "shape_matching/parts.h"
+#include "simulation/phases.h"
 #include "simulation/state.h"
 
 namespace mallow {
@@ -172,6 +174,15 @@ Aabb Simulation::bounds(BodyId id) const {
   const BodyState& body = s.body(id);
   const Aabb box = box_around(s.store.position, body.begin, body.end);
   return {s.far(box.min), s.far(box.max)};
+}
+
+BodyParts Simulation::parts(BodyId id) const {
+  const BodyState& body = state_->body(id);
+  mallow::prepare(*state_);
+  if (!body.matches_shape() || !body.shape.built) return {};
+  Parts parts;
+  find_parts(body.shape, parts);
+  return {parts.count, parts.crumbs};
 }
 
 BodyMotion Simulation::motion(BodyId id) const {

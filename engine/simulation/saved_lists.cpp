@@ -63,6 +63,8 @@ void pass_body(Archive& archive, BodyState& body, ShapeSizes& sizes) {
   auto& frame = body.shape.frame;
   pass_id(archive, body.id);
   archive(body.name);
+  archive(body.whole);
+  archive(body.last_part);
   archive(body.merges);
   archive(body.splits);
   archive(body.enabled);
@@ -244,11 +246,12 @@ void pass_emitters(Archive& archive, State& state) {
       pass_list(archive, layer, sizeof(ParticleId), [&](auto& id) { archive(id); });
     });
   });
-  pass_list(archive, state.sinks, 33, [&](auto& sink) {
+  pass_list(archive, state.sinks, 41, [&](auto& sink) {
     pass_id(archive, sink.id);
     archive(sink.box.min);
     archive(sink.box.max);
     archive(sink.outside);
+    archive(sink.drained);
   });
 }
 

@@ -1,6 +1,8 @@
 // Bodies that were torn: their parts become bodies of their own.
 #include <algorithm>
+#include <charconv>
 #include <map>
+#include <string>
 
 #include "shape_matching/parts.h"
 #include "shape_matching/reshape.h"
@@ -67,6 +69,42 @@ BodyState body_like(const BodyState& body) {
   return like;
 }
 
+const std::string& whole_of(const BodyState& body) {
+  return body.whole.empty() ? body.name : body.whole;
+}
+
+/// Numbers the parts of a whole: "bar, part 2" and so on, whichever of them they are torn from. No number
+/// comes again as long as one of them is there, also where the part that had it has merged or is gone.
+class PartNames {
+ public:
+  PartNames(Simulation::State& s, const BodyState& body) : s_(s), whole_(whole_of(body)) {
+    const std::string begin = whole_ + k_part;
+    for (const BodyState& other : s.bodies) {
+      if (whole_of(other) == whole_) last_ = std::max(last_, other.last_part);
+      // Somebody may have called a body so.
+      std::uint32_t number = 0;
+      if (other.name.starts_with(begin))
+        std::from_chars(other.name.data() + begin.size(), other.name.data() + other.name.size(), number);
+      last_ = std::max(last_, number);
+    }
+  }
+  void name(BodyState& part) {
+    part.whole = whole_;
+    part.name = whole_ + k_part + std::to_string(++last_);
+  }
+  /// Once all parts are among the bodies.
+  void keep() const {
+    for (BodyState& other : s_.bodies)
+      if (whole_of(other) == whole_) other.last_part = last_;
+  }
+
+ private:
+  static constexpr const char* k_part = ", part ";
+  Simulation::State& s_;
+  std::string whole_;
+  std::uint32_t last_ = 1;
+};
+
 /// Rows of a body in the order of its pieces.
 void sort_rows(Simulation::State& s, const BodyState& body, const std::vector<Places>& pieces) {
   Places order;
@@ -98,10 +136,11 @@ std::vector<BodyId> split_body(Simulation::State& s, BodyState& body) {
 
   std::vector<BodyId> ids = {body.id};
   std::size_t place = s.place_of(body), end = body.end;
+  PartNames names(s, body);
   for (std::size_t k = 1; k < pieces.size(); ++k) {
     BodyState part = body_like(body);
     part.id = BodyId{s.body_slots.take()};
-    part.name = body.name + ", part " + std::to_string(k + 1);
+    names.name(part);
     part.begin = end;
     part.end = end += pieces[k].size();
     part.shape = std::move(shapes[k - 1].shape);
@@ -112,6 +151,7 @@ std::vector<BodyId> split_body(Simulation::State& s, BodyState& body) {
     s.body_names.add(part);
     s.bodies.insert(++place, std::move(part));
   }
+  names.keep();
   number_bodies(s);
   s.rows_changed();
   return ids;

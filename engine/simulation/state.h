@@ -82,7 +82,9 @@ struct BodyState {
   bool measures_external = false;  ///< in it
   RigidMotion rigid;               ///< kept where deformations are damped towards it
   bool apart = false;              ///< its reference shape was updated, and it may be in several parts
-  bool enabled = true;             ///< see Simulation::enable()
+  std::string whole = {};       ///< of a part that was split off: what the body is called that it was part of
+  std::uint32_t last_part = 1;  ///< the number of the last part of the same whole that was split off
+  bool enabled = true;          ///< see Simulation::enable()
   std::uint64_t user_data = 0;
   std::optional<double> hit_impulse;  ///< see Simulation::report_contacts(): what says it there [N s]
   /// Those that fell asleep together share a number, that of the slot of one of them and 1, and wake
@@ -154,6 +156,7 @@ struct SinkState {
   SinkId id{};
   Aabb box;
   bool outside = false;
+  std::uint64_t drained = 0;  ///< particles that it took
 };
 
 /// Who touches whom: a body, and a collider or a body of a greater id. In the order in which events tell of
@@ -247,7 +250,7 @@ struct Simulation::State {
   std::vector<BodyEvent> events;                    ///< of the last step, and of calls before it
   std::vector<BodyEvent> next_events;               ///< of calls since then
   std::size_t events_of_calls = 0;                  ///< the first of `events`, while a step is taken
-  std::vector<EndedBody> ended;                     ///< as they became one with others
+  std::vector<EndedBody> ended;                     ///< as they became one with others, the last of each slot
   Contacts contacts;
   ForceCallback force;
   Sph sph;

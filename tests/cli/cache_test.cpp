@@ -20,8 +20,8 @@ TEST_F(cli_cache, holds_particles_surfaces_pictures_report_and_summary) {
   const Outcome outcome = run({"--out", at("out"), "--no-film"}, true);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(names_in(at("out")),
-            (std::vector<std::string>{".mallow-run", "checkpoint", "images", "particles", "report.json",
-                                      "scene.toml", "summary.html", "surface"}));
+            (std::vector<std::string>{".mallow-run", ".mallow-share", "checkpoint", "images", "particles",
+                                      "report.json", "scene.toml", "summary.html", "surface"}));
   EXPECT_EQ(names_in(at("out/particles")), k_three_surfaces);
   EXPECT_EQ(names_in(at("out/surface")), k_three_surfaces);
   EXPECT_EQ(names_in(at("out/images")), k_three_images);

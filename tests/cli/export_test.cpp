@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "cli/program.h"
@@ -125,6 +126,64 @@ TEST_F(cli_export, groups_and_materials_have_the_names_and_looks_of_the_scene) {
   EXPECT_NE(vtp.find("cube" + zero + "2nd" + zero), std::string::npos);
   EXPECT_NE(vtp.find("paste" + zero + "blue \"clay\"" + zero), std::string::npos);
   expect_texts("frame_000000.vdb", {"cube", "2nd", "body_name", "paste", "blue \"clay\""});
+}
+
+TEST_F(cli_export, a_body_whose_slot_another_one_took_keeps_its_name_and_looks_in_the_frames_that_show_it) {
+  // The red cube goes into the first sink; then the second cuts the blue bar, whose part takes the red slot.
+  const std::string scene = write("slots.toml", R"([solver]
+support_radius = 2.1
+gravity = [0.0, 0.0, 0.0]
+[[material]]
+name = "red"
+color = [0.5, 0.0, 0.0]
+[[material]]
+name = "blue"
+color = [0.0, 0.0, 0.5]
+[[body]]
+material = "red"
+box = { count = [3, 3, 3], spacing = 1.0, corner = [0, 0, 0], jitter = 0 }
+velocity = [-2.0, 0.0, 0.0]
+[[body]]
+material = "blue"
+splits = true
+box = { count = [3, 3, 18], spacing = 1.0, corner = [20, 0, 0], jitter = 0 }
+velocity = [2.0, 0.0, 0.0]
+[[sink]]
+box = { min = [-9.0, -9.0, -9.0], max = [-0.5, 9.0, 9.0] }
+[[sink]]
+box = { min = [27.0, -9.0, 6.5], max = [60.0, 9.0, 10.5] }
+[run]
+frames = 9
+frame_time = 0.45
+)")
+                                .string();
+  ASSERT_EQ(run_mallow({"run", scene, "--out", at("out"), "--no-images"}).exit_code, 0);
+  const nlohmann::json report = read_json(at("out/report.json"));
+  ASSERT_EQ(report.at("groups")[0].at("name"), "body[1], part 2") << "which has the slot now";
+  ASSERT_EQ(report.at("past_bodies").size(), 1u);
+  EXPECT_EQ(report.at("past_bodies")[0].at("name"), "body[0]");
+  const Outcome outcome = run_mallow({"export", at("out"), "--surface", "obj,glb,usda,vtp,vdb", "--particles",
+                                      "vtp,csv", "--animation", "glb"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto obj = [&](const char* frame) {
+    return read_text(folder_ / "out/export/surface" / (std::string("frame_00000") + frame + ".obj"));
+  };
+  EXPECT_NE(obj("0").find("g body[0]\nusemtl red\n"), std::string::npos);
+  EXPECT_EQ(obj("0").find("part_2"), std::string::npos);
+  EXPECT_NE(obj("9").find("g body[1],_part_2\nusemtl blue\n"), std::string::npos);
+  EXPECT_EQ(obj("9").find("body[0]"), std::string::npos);
+  for (const char* name : {"newmtl red\n", "newmtl blue\n"})
+    EXPECT_NE(read_text(at("out/export/surface/materials.mtl")).find(name), std::string::npos);
+  const auto json = json_of_glb(read_text(at("out/export/surface.glb")));
+  std::set<std::string> nodes;
+  for (const auto& node : json.at("nodes")) nodes.insert(node.at("name").get<std::string>());
+  for (const char* name : {"body[0]", "body[1]", "body[1], part 2"})
+    EXPECT_TRUE(nodes.contains(name)) << name;
+  for (const auto& mesh : json.at("meshes")) {
+    const auto& material =
+        json.at("materials").at(mesh.at("primitives")[0].at("material").get<std::size_t>());
+    EXPECT_EQ(material.at("name"), mesh.at("name") == "body[0]" ? "red" : "blue") << mesh.at("name");
+  }
 }
 
 TEST_F(cli_export, a_thousand_bodies_are_told_apart_in_frames_surfaces_and_pictures) {

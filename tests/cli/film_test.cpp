@@ -10,8 +10,9 @@ namespace film_test {
 namespace fs = std::filesystem;
 using cli_film = CliTest;
 
-const std::vector<std::string> k_run_without_film = {".mallow-run", "checkpoint", "images",       "particles",
-                                                     "report.json", "scene.toml", "summary.html", "surface"};
+const std::vector<std::string> k_run_without_film = {".mallow-run", ".mallow-share", "checkpoint",
+                                                     "images",      "particles",     "report.json",
+                                                     "scene.toml",  "summary.html",  "surface"};
 
 /// A PATH on which there is no ffmpeg, for as long as it lives.
 class NoPrograms {

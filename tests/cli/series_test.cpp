@@ -106,6 +106,47 @@ samples = 1
   EXPECT_EQ(again.exit_code, 0) << again.err;
 }
 
+TEST_F(cli_series, counts_no_parts_that_a_sink_took_and_reports_say_what_each_sink_took) {
+  // A bar that the first sink cuts in two; the second takes one half.
+  const std::string cut = write("cut.toml", R"([solver]
+support_radius = 2.1
+gravity = [0.0, 0.0, 0.0]
+[[material]]
+name = "jelly"
+[[body]]
+material = "jelly"
+box = { count = [24, 3, 3], spacing = 1.0, corner = [0, 0, 5], jitter = 0 }
+velocity = [1.0, 0.0, 0.0]
+[[sink]]
+box = { min = [9.6, -9, -9], max = [13.4, 9, 19] }
+[[sink]]
+box = { min = [24.5, -9, -9], max = [60, 9, 19] }
+[run]
+frames = 30
+frame_time = 0.45
+)");
+  const Outcome made =
+      run_mallow({"run", cut, "--out", at("cut"), "--series", at("cut.csv"), "--no-surface", "--no-images"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  auto series = columns(read_text(at("cut.csv")));
+  EXPECT_EQ(series.at("parts")[1], 2) << "cut by the first sink";
+  EXPECT_EQ(series.at("parts").back(), 0) << "all is gone";
+  EXPECT_EQ(series.at("particles").back(), 0);
+  const nlohmann::json report = read_json(at("cut/report.json"));
+  const auto& sinks = report.at("sinks");
+  ASSERT_EQ(sinks.size(), 2u);
+  EXPECT_EQ(sinks[0].at("name"), "sink[0]");
+  const int first = sinks[0].at("drained"), second = sinks[1].at("drained");
+  EXPECT_GE(first, 10 * 9) << "ten layers come to it, and what they cling to";
+  EXPECT_GE(second, 10 * 9) << "as many have passed it";
+  EXPECT_EQ(first + second, 24 * 9);
+  EXPECT_EQ(report.at("drained"), 24 * 9);
+  EXPECT_NE(made.out.find("\ndrained 216\nsink[0].drained " + std::to_string(first) + "\nsink[1].drained " +
+                          std::to_string(second) + '\n'),
+            std::string::npos)
+      << made.out;
+}
+
 TEST_F(cli_series, forces_on_colliders_and_weight_are_what_changes_the_momentum) {
   ASSERT_EQ(run({"--frames", "20", "--series", at("a.csv")}).exit_code, 0);
   auto series = columns(read_text(at("a.csv")));

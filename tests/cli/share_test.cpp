@@ -170,6 +170,9 @@ TEST_F(cli_share, whole_commands_and_those_that_share_wait_for_each_other) {
   running.send(SIGKILL);
   running.wait();
   EXPECT_EQ(run_mallow({"render", at("many"), "--no-film"}).exit_code, 0);
+  EXPECT_EQ(run_mallow({"render", at("many"), "--no-film", "--share"}).out, "pictures 0\n")
+      << "the whole command notes what it took";
+  EXPECT_EQ(run_mallow({"surface", at("many")}).exit_code, 0);
   EXPECT_FALSE(fs::exists(at("many/.mallow-share"))) << "it has all frames, and forgets who had which";
 }
 

@@ -176,6 +176,27 @@ TEST(film_bounds, of_what_drips_hold_the_drops_that_all_of_it_became) {
   EXPECT_TRUE(holds(bounds.box(scene), {1.95f, 0, 0}));
 }
 
+TEST(film_bounds, leave_out_what_a_nozzle_holds_once_something_has_left_it) {
+  const Scene scene = scene_of(
+      "[[emitter]]\nmaterial = \"paste\"\nradius = 0.02\nspacing = 0.01\ntranslate = [0, 0, 0.3]\n"
+      "rotate = [180.0, 0.0, 0.0]\nvelocity = [0.1, 0.0, 0.0]\nspeed = 0.5\n");
+  Simulation simulation = build(scene, 1);
+  FilmBounds bounds(k_spacings, snapshot(simulation), scene.emitters);
+  EXPECT_TRUE(holds(bounds.box(scene), {0, 0, 0.4f})) << "there is nothing else";
+  for (int frame = 1; frame <= 6; ++frame) {
+    simulation.advance(0.04);
+    bounds.add(snapshot(simulation));
+    for (const EmitterId nozzle : simulation.emitter_ids()) {
+      const std::vector<ParticleId> held = simulation.held(nozzle);
+      for (std::size_t row = 0; row < simulation.particle_count(); ++row)
+        if (std::ranges::find(held, simulation.ids()[row]) == held.end()) {
+          EXPECT_TRUE(holds(bounds.box(scene), simulation.positions()[row])) << frame << ' ' << row;
+        }
+    }
+  }
+  EXPECT_LT(bounds.box(scene).max.z(), 0.33f);
+}
+
 /// So many particles in a row, from a place on.
 void add_row(float x, int count, std::uint32_t body, ParticleFrame& frame) {
   for (int i = 0; i < count; ++i) {

@@ -67,7 +67,7 @@ TEST_P(scene_pictures, show_every_particle) {
   Simulation simulation = build(scene, 0);
   std::vector<float> spacings;
   for (const BodyInfo& body : simulation.info().bodies) spacings.push_back(body.spacing);
-  FilmBounds bounds(spacings, snapshot(simulation));
+  FilmBounds bounds(spacings, snapshot(simulation), scene.emitters);
   std::vector<std::vector<Vec3>> frames{seen(simulation)};
   for (int frame = 1; frame <= 3; ++frame) {
     simulation.advance(frame_time(scene, simulation.info()));

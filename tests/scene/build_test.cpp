@@ -1,5 +1,7 @@
 #include "scene/scene_fixture.h"
 
+#include <sstream>
+
 namespace mallow {
 namespace build_test {
 
@@ -468,6 +470,37 @@ points = { file = "points.csv", spacing = 1.0 }
     EXPECT_EQ(simulation.stiffnesses()[simulation.row(id)], id == 0 ? 0.25f : 1.0f) << id;
     EXPECT_EQ(simulation.temperatures()[simulation.row(id)], id == 4 ? 310 : id == 5 ? 320 : 300) << id;
   }
+}
+
+/// A cube as a mesh file has it.
+std::string cube_off(float width) {
+  std::ostringstream text;
+  text << "OFF\n8 12 0\n";
+  for (int corner = 0; corner < 8; ++corner)
+    for (int axis = 0; axis < 3; ++axis) text << (corner >> axis & 1 ? width : 0) << (axis < 2 ? ' ' : '\n');
+  return text.str() +
+         "3 0 2 3\n3 0 3 1\n3 4 5 7\n3 4 7 6\n3 0 1 5\n3 0 5 4\n3 2 6 7\n3 2 7 3\n3 0 4 6\n3 0 6 2\n"
+         "3 1 3 7\n3 1 7 5\n";
+}
+
+TEST_F(build_scene, notes_a_mesh_that_is_in_centimetres_and_gives_more_particles_than_anyone_waits_for) {
+  write("cube.off", cube_off(6));
+  const auto notes_of = [&](const std::string& mesh) {
+    std::vector<std::string> notes;
+    build(read("[solver]\ngravity = [0, 0, -9.81]\n[[body]]\nmaterial = \"jelly\"\nmesh = { file = "
+               "\"cube.off\", " +
+               mesh + " }\n"),
+          2, &notes);
+    return notes;
+  };
+  const std::vector<std::string> notes = notes_of("spacing = 0.1");
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(
+      notes[0],
+      "body[0].mesh: cube.off: it is about 6 m wide, as the file has it, and gives 216000 particles 0.1 m "
+      "apart; give size = 0.06 where the file is in centimetres, or a larger spacing");
+  EXPECT_TRUE(notes_of("spacing = 0.2").empty()) << "few enough";
+  EXPECT_TRUE(notes_of("spacing = 0.1, size = 6").empty()) << "as it is meant";
 }
 
 }  // namespace build_test

@@ -120,6 +120,20 @@ TEST_F(materials_by_name, have_one_number_turned_by_an_override) {
   EXPECT_EQ(own.materials[0].material.viscosity, 3.0f);
 }
 
+TEST_F(materials_by_name, take_the_place_of_a_scenes_own_by_an_override_which_leaves_that_out) {
+  const std::string own = "[[material]]\nname = \"mine\"\nalpha = 0.25\n";
+  const Scene changed = read(by_name("mine", own), {"body[0].material=dough", "material.dough.friction=0.5"});
+  ASSERT_EQ(changed.materials.size(), 1u);
+  EXPECT_EQ(changed.materials[0].name, "dough");
+  EXPECT_EQ(changed.materials[0].material.friction, 0.5f);
+  EXPECT_EQ(changed.bodies[0].material, "dough");
+  // What nobody has is told of still, where --set turns it or took nothing from anybody.
+  EXPECT_EQ(
+      problems(by_name("mine", own), {"body[0].material=dough", "material.mine.alpha=0.5"}),
+      (std::vector<std::string>{"scene.toml:5:8: material[0]: material 'mine' is not used by any body"}));
+  EXPECT_EQ(problems(by_name("dough", own), {"body[0].velocity=[0, 0, 1]"}).size(), 1u);
+}
+
 TEST_F(materials_by_name, name_the_override_that_is_wrong) {
   const std::pair<const char*, const char*> cases[] = {
       {"material.dough.plastic_yeild=0.2",

@@ -147,13 +147,21 @@ TEST(emitter, grows_no_longer_than_its_budget_and_sinks_take_what_comes_to_them)
   for (int k = 0; k < 150; ++k) s.step();
   EXPECT_GE(s.particle_count(), 400u);
   EXPECT_LT(s.particle_count(), 400u + 8 * 12) << "a batch of layers is put behind the nozzle at once";
-  s.add_sink(Aabb{{-1000, -1000, -1000}, {1000, 1000, 0}});
+  const SinkId sink = s.add_sink(Aabb{{-1000, -1000, -1000}, {1000, 1000, 0}});
+  const SinkId idle = s.add_sink(Aabb{{5000, 0, 0}, {5001, 1, 1}});
+  std::uint64_t drained = 0;
   for (int k = 0; k < 250; ++k) {
-    s.step();
+    drained += s.step().drained;
     ASSERT_GT(s.bounds(s.body(id)).min.z(), -1.5f);
   }
   EXPECT_LT(s.particle_count(), 400u) << "and it flows on as room is made";
   EXPECT_GT(s.particle_count(), 150u);
+  s = Simulation::restore(s.save());
+  EXPECT_EQ(s.sink_ids(), (std::vector{sink, idle}));
+  EXPECT_EQ(s.drained(sink), drained);
+  EXPECT_EQ(s.drained(idle), 0u);
+  s.remove_sink(idle);
+  EXPECT_THROW(s.drained(idle), ConfigError);
 }
 
 TEST(emitter, leaves_what_others_have_pinned_and_gives_its_pin_back) {

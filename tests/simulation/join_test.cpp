@@ -99,6 +99,20 @@ TEST(join, two_lumps_that_are_pressed_together_become_one_and_events_say_so) {
   EXPECT_NE(refusal([&] { m.s.rows(m.upper); }).find("body 2 was merged into body 0"), std::string::npos);
 }
 
+TEST(join, leaves_no_list_of_bodies_that_grows_for_ever) {
+  Meeting m(3.0f);
+  std::vector<std::size_t> sizes;
+  for (int meeting = 0; meeting < 4; ++meeting) {
+    ASSERT_FALSE(m.run(100).empty()) << meeting;
+    sizes.push_back(m.s.save().find("events")->size());
+    m.s.remove_body(m.lower);
+    m.lower = m.s.add_body(lump(-5.2f, 1.5f), m.material, "lower");
+    m.upper = m.s.add_body(lump(5.2f, -1.5f), m.material, "upper");
+  }
+  EXPECT_EQ(sizes.back(), sizes[1]);
+  EXPECT_NE(refusal([&] { m.s.rows(BodyId{2}); }).find("body 2 was"), std::string::npos);
+}
+
 TEST(join, two_that_touch_lightly_stay_two) {
   for (const float speed : {0.05f, 0.2f}) {
     Meeting m(speed);

@@ -240,6 +240,63 @@ TEST(split, into_many_leaves_crumbs_with_the_one_that_keeps_the_id) {
   for (int k = 0; k < 10; ++k) s.step();
 }
 
+/// Names of all bodies, sorted.
+std::vector<std::string> names(const Simulation& s) {
+  std::vector<std::string> all;
+  for (const BodyId body : s.bodies()) all.push_back(s.name(body));
+  std::ranges::sort(all);
+  return all;
+}
+
+TEST(split, gives_each_part_a_number_that_no_other_of_the_same_body_had_also_after_a_restore) {
+  SolverConfig config = solver();
+  config.gravity = {0, 0, 0};
+  const auto cut_again_and_again = [&](bool restores) {
+    Simulation s(config);
+    Body points = sample(Lattice{.count = {60, 2, 2}, .spacing = 1, .corner = {0, 0, 0}, .jitter = 0});
+    points.splits = true;
+    s.add_body(points, Material{}, "bar");
+    s.step();
+    const auto cut = [&](float at) {
+      s.remove_particles(Aabb{{at, -1, -1}, {at + 3, 3, 3}});
+      s.step();
+      if (restores) s = Simulation::restore(s.save());
+    };
+    cut(40);
+    EXPECT_EQ(names(s), (std::vector<std::string>{"bar", "bar, part 2"}));
+    cut(20);  // the first part once more
+    EXPECT_EQ(names(s), (std::vector<std::string>{"bar", "bar, part 2", "bar, part 3"}));
+    cut(50);  // and one that was split off
+    EXPECT_EQ(names(s), (std::vector<std::string>{"bar", "bar, part 2", "bar, part 3", "bar, part 4"}));
+    s.remove_body(*s.find_body("bar, part 4"));
+    s.remove_body(*s.find_body("bar"));
+    cut(28);
+    EXPECT_EQ(names(s), (std::vector<std::string>{"bar, part 2", "bar, part 3", "bar, part 5"}))
+        << "numbers of parts that are gone do not come again";
+  };
+  for (const bool restores : {false, true}) cut_again_and_again(restores);
+}
+
+TEST(split, gives_no_part_a_name_that_somebody_chose) {
+  Cut cut = cut_bar(solver(), {.alpha = 0}, true);
+  Body other = bar(3, 50);
+  cut.simulation.add_body(other, Material{}, "bar, part 2");
+  cut.simulation.step();
+  EXPECT_EQ(names(cut.simulation), (std::vector<std::string>{"bar", "bar, part 2", "bar, part 3"}));
+}
+
+TEST(bodies, that_were_given_no_name_have_names_of_their_own_whoever_went_before) {
+  Simulation s(solver());
+  float at = 0;
+  const auto add = [&] { return s.add_body(bar(2, at += 10), Material{}); };
+  const BodyId first = add();
+  add();
+  s.remove_body(first);
+  add();
+  add();
+  EXPECT_EQ(names(s), (std::vector<std::string>{"body 1", "body 2", "body 3"}));
+}
+
 TEST(split, of_nobody_is_refused) {
   Cut cut = cut_bar(solver(), {.alpha = 0});
   cut.simulation.remove_body(cut.body);

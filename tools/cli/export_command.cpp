@@ -68,7 +68,8 @@ program::RunLock lock_folder(const fs::path& out, bool shared) {
 
 /// What makes the files what they are, beside the frames that they are made of.
 std::string job_of(const ExportOptions& options, const program::CachedRun& run) {
-  std::string job = print_scene(run.scene) + options.up + run.report.at("groups").dump();
+  std::string job = print_scene(run.scene) + options.up + run.report.at("groups").dump() +
+                    run.report.value("past_bodies", nlohmann::ordered_json()).dump();
   for (const auto* formats : {&options.surface, &options.particles, &options.animation, &options.skins})
     for (const std::string& format : *formats) job += (format == formats->front() ? '\n' : ' ') + format;
   return job;
@@ -173,7 +174,9 @@ void add_export_command(CLI::App& app) {
       "Velocities: _VELOCITY in glb, Velocity in vtp, velocities in usda, v in vdb, vx vy vz in csv; "
       "an OBJ and an animation have none.\n"
       "Temperatures [K] where the scene has heat: temperature in csv, Temperature in vtp.\n"
-      "Bodies of particles, counted from 0 as in report.json: Group in vtp, body in csv.\n"
+      "Bodies of particles, counted from 0 as the groups in report.json, behind them past_bodies: Group in "
+      "vtp,\n"
+      "body in csv.\n"
       "Groups and materials have the names of the scene in obj (materials.mtl), glb, usda, vtp (field "
       "arrays)\n"
       "and vdb (names and metadata of grids).\n"

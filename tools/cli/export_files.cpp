@@ -25,15 +25,29 @@ bool contains(const std::vector<std::string>& formats, const char* format) {
   return std::find(formats.begin(), formats.end(), format) != formats.end();
 }
 
-/// What files say of each body, of those too that were thrown at the scene before it was saved.
-std::vector<MeshBody> mesh_bodies(const program::CachedRun& run) {
-  const std::vector<Appearance> appearances = program::body_appearances(run.scene, run.materials);
-  const std::vector<std::size_t> materials = body_materials(run.scene);
+/// All bodies that there have been: those that have the slots of frames now, and behind them those that had
+/// them before. So one list is that of all frames, as what plays them asks for.
+std::vector<program::SlotBody> all_bodies(const program::CachedRun& run) {
+  std::vector<program::SlotBody> all = run.bodies;
+  for (const program::PastBody& past : run.past) all.push_back(past.body);
+  return all;
+}
+
+/// What files say of each.
+std::vector<MeshBody> mesh_bodies(const program::CachedRun& run, std::span<const program::SlotBody> all) {
+  const std::vector<Appearance> appearances =
+      program::body_appearances(run.scene, program::material_names(all));
   std::vector<MeshBody> bodies;
-  for (std::size_t b = 0; b < run.spacings.size(); ++b)
-    bodies.push_back({appearances[b], run.report.at("groups").at(b).value("name", ""),
-                      b < materials.size() ? run.scene.materials[materials[b]].name : run.materials[b]});
+  for (std::size_t b = 0; b < all.size(); ++b)
+    bodies.push_back({appearances[b], all[b].name, all[b].material});
   return bodies;
+}
+
+/// Slots of a frame -> places in all_bodies().
+void number_bodies(const program::CachedRun& run, int frame, std::vector<std::uint32_t>& bodies) {
+  const std::vector<std::uint32_t> numbers = program::slot_numbers_at(frame, run.bodies.size(), run.past);
+  for (std::uint32_t& body : bodies)
+    if (body < numbers.size()) body = numbers[body];
 }
 
 /// Simulated seconds from a frame to the next, as the particles say.
@@ -111,26 +125,33 @@ class FrameWriter {
   FrameWriter(const program::CachedRun& run, UpAxis up)
       : run_(run),
         usd_(usd_options(run, up)),
-        bodies_(mesh_bodies(run)),
+        spacings_(program::spacings_of(all_bodies(run))),
+        bodies_(mesh_bodies(run, all_bodies(run))),
         surfacer_(run.scene.surface, run.threads),
-        voxel_size_(2 * *std::max_element(run.spacings.begin(), run.spacings.end())) {}
+        voxel_size_(2 * *std::max_element(spacings_.begin(), spacings_.end())) {}
 
   const UsdOptions& usd() const { return usd_; }
   std::span<const MeshBody> bodies() const { return bodies_; }
 
   ParticleFrame read_particles(int number) const {
     ParticleFrame frame = mallow::read_particles(run_.cache.particles_file(number));
+    number_bodies(run_, number, frame.bodies);
     if (usd_.up == UpAxis::z) return frame;
     turn(frame.positions);
     turn(frame.velocities);
     return frame;
+  }
+  Mesh read_surface(int number) const {
+    Mesh mesh = read_mesh(run_.cache.surface_file(number));
+    number_bodies(run_, number, mesh.material_ids);
+    return mesh;
   }
   void write_particles(const ParticleFrame& frame, const std::string& format, const fs::path& file) const {
     if (format == "vdb") write_particles_vdb(file, frame, voxel_size_, run_.threads);
     if (format == "vtp") write_particles_vtp(file, frame, bodies_);
     if (format == "csv") write_state_csv(file, frame);
   }
-  /// mesh: as the cache has it
+  /// mesh: of read_surface()
   void write_surface(const Mesh& mesh, int number, const std::string& format, const fs::path& file) const {
     if (format == "obj")
       write_mesh_obj(file, mesh, {.up = usd_.up, .bodies = bodies_, .material_library = k_materials});
@@ -140,7 +161,7 @@ class FrameWriter {
   }
   /// Level sets are no part of a cache: they are drawn again, with the run's settings.
   void write_level_set(const ParticleFrame& frame, const fs::path& file) {
-    SurfaceParticles particles = surface_particles(frame, run_.spacings);
+    SurfaceParticles particles = surface_particles(frame, spacings_);
     particles.velocities = {};
     std::vector<std::string> names;
     for (const SceneMaterial& material : run_.scene.materials) names.push_back(material.name);
@@ -163,7 +184,8 @@ class FrameWriter {
 
   const program::CachedRun& run_;
   UsdOptions usd_;
-  std::vector<MeshBody> bodies_;
+  std::vector<float> spacings_;   ///< of all_bodies() [m]
+  std::vector<MeshBody> bodies_;  ///< likewise
   Surfacer surfacer_;
   float voxel_size_;
 };
@@ -194,7 +216,7 @@ struct Export::Work {
         writer_.write_particles(frame, format, file);
       });
     if (options_.surface.empty() || !has_surface(number)) return;
-    const Mesh mesh = read_mesh(run_.cache.surface_file(number));
+    const Mesh mesh = writer_.read_surface(number);
     surfaces_.write(number, [&](const std::string& format, const fs::path& file) {
       if (format == "vdb")
         writer_.write_level_set(frame, file);
@@ -209,7 +231,7 @@ struct Export::Work {
     if (!has_surface(number)) return;
     if (!options_.surface.empty()) surfaces_.add(number, time);
     if (!animation_.any() && !skins_) return;
-    const Mesh mesh = read_mesh(run_.cache.surface_file(number));
+    const Mesh mesh = writer_.read_surface(number);
     animation_.add(mesh, number);
     if (skins_) skins_->add(mesh, number);
   }

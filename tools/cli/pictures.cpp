@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <future>
+#include <limits>
 #include <memory>
+#include <sstream>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "cli/frame_loop.h"
-#include "mallow/files.h"
-#include "program/background_writer.h"
 #include "program/film_bounds.h"
-#include "program/stills.h"
 
 namespace mallow::cli {
 namespace {
@@ -52,21 +52,22 @@ program::Stills stills_of(const Scene& scene, const program::Cache& cache, const
   constexpr std::size_t k_looks = 128;
   const std::vector<int> frames = cache.particle_frames();
   const std::size_t looks = scene.render.eye ? 1 : std::min(k_looks, frames.size());
-  program::FilmBounds bounds(run.spacings);
+  program::FilmBounds bounds(run.spacings, scene.emitters);
   for (std::size_t k = 0; k < looks; ++k)
     bounds.add(
         read_particles(cache.particles_file(frames[looks > 1 ? k * (frames.size() - 1) / (looks - 1) : 0])));
   return {scene, bounds, run.spacings, run.threads};
 }
 
-/// Ready for pictures of any of `frames`.
-program::Stills prepare(const Scene& scene, const program::Cache& cache, const PictureRun& run,
-                        const std::vector<int>& frames) {
-  program::Stills stills = stills_of(scene, cache, run);
-  stills.set_frame_time(run.frame_time);
-  std::filesystem::create_directories(cache.images_folder());
-  cache.remove_images_but(frames);
-  return stills;
+/// What makes a picture what it is, beside the files that it is taken of.
+std::string job_of(Scene scene, const program::Cache& cache, const PictureRun& run,
+                   const render::Camera& camera) {
+  scene.run.frames = 0;  // a film that gets longer has the same pictures, as long as it is seen from there
+  std::ostringstream job;
+  job.precision(std::numeric_limits<float>::max_digits10);
+  job << print_scene(cache.moved_here(std::move(scene))) << run.frame_time << '\n'
+      << camera.eye.transpose() << ", " << camera.target.transpose() << ", " << camera.field_of_view;
+  return job.str();
 }
 
 }  // namespace
@@ -76,41 +77,53 @@ std::vector<int> frames_to_show(const program::Cache& cache) {
   return surfaces.empty() ? cache.particle_frames() : surfaces;
 }
 
-std::size_t share_pictures(const Scene& scene, const program::Cache& cache, const PictureRun& run,
-                           const std::vector<int>& chosen, const program::SharedFrames& shared, bool share,
-                           program::StageTimes& seconds) {
-  const bool with_surfaces = !cache.surface_frames().empty();
-  program::Stills stills = prepare(scene, cache, run, frames_to_show(cache));
+PictureTaker::PictureTaker(const Scene& scene, const program::Cache& cache, const PictureRun& run)
+    : cache_(cache),
+      run_(run),
+      stills_(stills_of(scene, cache, run)),
+      taken_(cache.folder(), "render", job_of(scene, cache, run, stills_.camera()),
+             [&cache](int frame) -> program::SharedFrames::Files {
+               return {{cache.particles_file(frame), cache.surface_file(frame)}, {cache.image_file(frame)}};
+             }) {
+  stills_.set_frame_time(run.frame_time);
+  std::filesystem::create_directories(cache.images_folder());
+  cache.remove_images_but(frames_to_show(cache));
+}
+
+void PictureTaker::write(int number, const ParticleFrame& particles, const Mesh& surface,
+                         const FrameClaim& claim, program::BackgroundWriter& files) {
+  stills_.set_appearances(run_.appearances(number));
+  auto picture = std::make_shared<const render::Image>(stills_.take(particles, surface));
+  files.add([this, number, picture, claim] {
+    render::write_png(cache_.image_file(number), *picture);
+    claim->done();
+  });
+}
+
+std::size_t PictureTaker::share(const std::vector<int>& chosen, bool share, program::StageTimes& seconds) {
+  const bool with_surfaces = !cache_.surface_frames().empty();
   program::BackgroundWriter files;
   const std::size_t count =
-      for_each_frame(chosen, &shared, share, "rendering", [&](int number, const FrameClaim& claim) {
+      for_each_frame(chosen, &taken_, share, "rendering", [&](int number, const FrameClaim& claim) {
         const program::StageTimer timer(seconds, program::Stage::pictures);
-        const ParticleFrame particles = read_particles(cache.particles_file(number));
-        const Mesh surface = with_surfaces ? read_mesh(cache.surface_file(number)) : Mesh{};
-        stills.set_appearances(run.appearances(number));
-        auto picture = std::make_shared<const render::Image>(stills.take(particles, surface));
-        files.add([&cache, number, picture, claim] {
-          render::write_png(cache.image_file(number), *picture);
-          claim->done();
-        });
+        const ParticleFrame particles = read_particles(cache_.particles_file(number));
+        write(number, particles, with_surfaces ? read_mesh(cache_.surface_file(number)) : Mesh{}, claim,
+              files);
       });
   const program::StageTimer timer(seconds, program::Stage::pictures);
   files.finish();
   return count;
 }
 
-std::size_t take_pictures(const Scene& scene, const program::Cache& cache, const PictureRun& run,
-                          program::StageTimes& seconds) {
-  const std::vector<int> frames = frames_to_show(cache);
-  program::Stills stills = prepare(scene, cache, run, frames);
-  FrameReader reader(cache, frames);
+std::size_t PictureTaker::take_all(Existing existing, program::StageTimes& seconds) {
+  std::vector<int> frames = frames_to_show(cache_);
+  if (existing == Existing::keep) std::erase_if(frames, [&](int frame) { return taken_.is_done(frame); });
+  FrameReader reader(cache_, frames);
   program::BackgroundWriter files;
-  for_each_frame(frames, "rendering", [&](int number) {
+  for_each_frame(frames, &taken_, false, "rendering", [&](int number, const FrameClaim& claim) {
     const program::StageTimer timer(seconds, program::Stage::pictures);
     const FrameReader::Frame frame = reader.next();
-    stills.set_appearances(run.appearances(number));
-    auto picture = std::make_shared<const render::Image>(stills.take(frame.particles, frame.surface));
-    files.add([&cache, number, picture] { render::write_png(cache.image_file(number), *picture); });
+    write(number, frame.particles, frame.surface, claim, files);
   });
   const program::StageTimer timer(seconds, program::Stage::pictures);
   files.finish();

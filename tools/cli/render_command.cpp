@@ -31,19 +31,11 @@ struct RenderOptions : program::CachedRunOptions {
   FrameOptions frames;
 };
 
-/// What makes a picture what it is, beside the files that it is taken of.
-std::string job_of(const program::CachedRun& run, const std::vector<int>& frames) {
-  std::string job = print_scene(run.scene) + std::to_string(run.report.value("frame_time", 0.0));
-  for (const int frame : frames) job += ' ' + std::to_string(frame);  // the camera has all of them in view
-  return job;
-}
-
 PictureRun picture_run(const program::CachedRun& run) {
-  return {.spacings = run.spacings,
+  return {.spacings = program::spacings_of(run.bodies),
           .appearances =
-              [&run, past = program::past_bodies(run.report, run.cache.report_file())](int frame) {
-                return program::body_appearances(run.scene,
-                                                 program::materials_at(frame, run.materials, past));
+              [&run](int frame) {
+                return program::body_appearances(run.scene, program::material_names(run.bodies_at(frame)));
               },
           .frame_time = run.report.value("frame_time", 0.0),
           .threads = run.threads};
@@ -62,20 +54,18 @@ void finish(const RenderOptions& options, program::CachedRun& run, program::Stag
 /// Beside other processes; the one that finds all pictures taken joins the film.
 void share_rendering(const RenderOptions& options, program::CachedRun& run, const std::vector<int>& chosen) {
   const program::Cache& cache = run.cache;
-  const std::vector<int> frames = frames_to_show(cache);
-  const program::SharedFrames shared(
-      cache.folder(), "render", job_of(run, frames), [&](int frame) -> program::SharedFrames::Files {
-        return {{cache.particles_file(frame), cache.surface_file(frame)}, {cache.image_file(frame)}};
-      });
+  const PictureRun pictures = picture_run(run);
+  PictureTaker taker(run.scene, cache, pictures);
   program::StageTimes seconds{};
   const std::size_t count =
       options.frames.elsewhere.by_scheduler()
-          ? do_frames_elsewhere(options.frames, chosen, shared, cache.folder(), options.threads)
-          : share_pictures(run.scene, cache, picture_run(run), chosen, shared, options.frames.share, seconds);
+          ? do_frames_elsewhere(options.frames, chosen, taker.taken(), cache.folder(), options.threads)
+          : taker.share(chosen, options.frames.share, seconds);
   std::vector<std::filesystem::path> made;
   if (!options.film.no_film && program::can_make_films())
     made.push_back(options.film.file.empty() ? cache.film_file() : std::filesystem::path(options.film.file));
-  const std::size_t left = shared.join(frames, made, [&] { finish(options, run, seconds); });
+  const std::size_t left =
+      taker.taken().join(frames_to_show(cache), made, [&] { finish(options, run, seconds); });
   std::printf("pictures %zu\n", count);
   if (left > 0) std::printf("left %zu, and the film\n", left);
 }
@@ -92,7 +82,9 @@ void render_cache(const RenderOptions& options) {
       share_rendering(options, run, chosen);
     } else {
       program::StageTimes seconds{};
-      const std::size_t count = take_pictures(run.scene, run.cache, picture_run(run), seconds);
+      const PictureRun pictures = picture_run(run);
+      const std::size_t count =
+          PictureTaker(run.scene, run.cache, pictures).take_all(PictureTaker::Existing::replace, seconds);
       finish(options, run, seconds);
       std::printf("pictures %zu\n", count);
     }

@@ -15,6 +15,7 @@
 #include "cli/film_options.h"
 #include "cli/messages.h"
 #include "cli/pictures.h"
+#include "cli/resumed_scene.h"
 #include "cli/scene_options.h"
 #include "cli/summary.h"
 #include "mallow/errors.h"
@@ -172,46 +173,14 @@ Run begin(const RunOptions& options, int threads) {
   return run;
 }
 
-/// What of a scene counts when a run goes on: how frames look, and how many there are. What moves the
-/// particles is in the checkpoint.
-bool counts_when_resumed(const std::string& key) {
-  const bool hides_collider = key.starts_with("collider[") && key.ends_with("].visible");
-  return key.starts_with("surface.") || key.starts_with("render.") || key == "run.frames" || hides_collider;
-}
-
-/// Takes over what counts of a scene that is not the checkpoint's any more, and says on stderr what differs.
-/// own: it is the scene.toml of the run, which then says again how the run began. file: where it was read.
-void take_changes(const Scene& now, bool own, const std::string& file, Scene& scene) {
-  std::string said;
-  bool put_back = false;
-  for (const program::SceneChange& change : program::scene_changes(scene, now)) {
-    if (change.key == "run.frames") continue;  // to go on longer is no change of what is there
-    const auto text = [](const std::string& value) { return value.empty() ? "left out" : value; };
-    said += "\n  " + change.key + " is " + text(change.now) + ", was " + text(change.before) +
-            (counts_when_resumed(change.key) ? ": from the next frame on" : ": without effect");
-    put_back = put_back || (own && !counts_when_resumed(change.key));
-  }
-  if (put_back) said += "\n  scene.toml is put back to what has an effect";
-  if (!said.empty())
-    print_warning(
-        file + (own ? " has changed since the run began" : " is not as the scene that the run began with") +
-        "; the motion continues as it began:" + said);
-  scene.surface = now.surface;
-  scene.render = now.render;
-  for (std::size_t i = 0; i < std::min(scene.colliders.size(), now.colliders.size()); ++i)
-    scene.colliders[i].visible = now.colliders[i].visible;
-  scene.run.frames = now.run.frames;
-}
-
 /// The series of a run that goes on, behind the rows that its checkpoint knows of, or from here on.
 void resume_series(const RunOptions& options, const program::CheckpointedRun& saved, Run& run) try {
   if (!saved.series.empty()) {
     run.series.emplace(saved.series, options.series, *run.simulation);
   } else if (!options.series.empty()) {
     run.series.emplace(options.series, *run.simulation);
-    print_warning(
-        "--series " + options.series + ": begins behind frame " + std::to_string(saved.report.frames) +
-        ", as the run was started without it; of bodies that were torn by then it counts parts from 1 on");
+    print_warning("--series " + options.series + ": begins behind frame " +
+                  std::to_string(saved.report.frames) + ", as the run was started without it");
   }
 } catch (const nlohmann::json::exception& error) {
   throw IoError({saved.file.string(), 0, 0, "", error.what()});
@@ -226,14 +195,7 @@ Run resume(const RunOptions& options, int threads) {
   print_warning(saved.passed_over);
   std::fprintf(stderr, "resuming from %s: step %lld, frame %d\n", saved.file.c_str(),
                static_cast<long long>(saved.report.steps), saved.report.frames);
-  SceneOptions now = options.scene;
-  std::error_code unknown;
-  const bool own = now.file.empty() || std::filesystem::equivalent(now.file, cache.scene_file(), unknown);
-  if (own) now.file = cache.scene_file().string();
-  now.allow_outside_paths = true;  // what it names is not read: the particles are there
-  const Scene scene_now = read_scene(now);
-  refuse_inputs(options, scene_now);
-  take_changes(cache.moved_here(scene_now), own, now.file, saved.scene);
+  refuse_inputs(options, take_scene(cache, options.scene, saved));
   if (options.frames) saved.scene.run.frames = *options.frames;
 
   Run run;
@@ -299,6 +261,21 @@ void simulate(Run& run, const program::Cache* cache) {
                              program::interrupted());
 }
 
+/// What is left of a run that ended in its middle, where that is more than nothing, and what to do with it.
+/// in_step: a step could not be taken, and cannot be when it is tried again.
+std::string how_to_go_on(const program::Cache* cache, const program::RunReport& report, bool in_step) {
+  std::error_code unknown;
+  if (!cache || !std::filesystem::exists(cache->checkpoint_file(), unknown)) return {};
+  const std::string left =
+      "\n  " + std::to_string(report.frames + 1) + " frames are whole, and a checkpoint is there; ";
+  if (in_step)
+    return left +
+           "--resume would fail in the same step: change what the message names and run the scene anew, or "
+           "restore the checkpoint in a program and change it there";
+  return left + "to go on, once what is wrong is mended: mallow run --resume " +
+         program::shell_word(cache->folder().string());
+}
+
 /// Motion, surfaces, pictures and film; the report says what was done, also when this throws.
 void run_stages(const RunOptions& options, Run& run) {
   const program::Cache* cache = run.cache ? &*run.cache : nullptr;
@@ -308,11 +285,19 @@ void run_stages(const RunOptions& options, Run& run) {
   if (!run.scene.render.eye) {
     std::vector<float> spacings;
     for (const BodyInfo& body : run.report.info.bodies) spacings.push_back(body.spacing);
-    const auto looks = [&, now = program::material_names(run.report.info.bodies)](int frame) {
-      return program::body_appearances(run.scene, program::materials_at(frame, now, run.report.past_bodies));
+    const auto looks = [&, now = program::slot_bodies(run.report.info.bodies)](int frame) {
+      return program::body_appearances(
+          run.scene, program::material_names(program::slot_bodies_at(frame, now, run.report.past_bodies)));
     };
-    take_pictures(run.scene, *cache, {spacings, looks, run.report.frame_time, run.plan.threads},
-                  run.report.stage_seconds);
+    const PictureRun pictures{spacings, looks, run.report.frame_time, run.plan.threads};
+    // A run that was ended while it drew has some already.
+    try {
+      PictureTaker(run.scene, *cache, pictures)
+          .take_all(PictureTaker::Existing::keep, run.report.stage_seconds);
+    } catch (const program::Interrupted& told) {
+      throw program::Interrupted(told.what() + how_to_go_on(cache, run.report, false),
+                                 program::interrupted());
+    }
   }
   const program::StageTimer timer(run.report.stage_seconds, program::Stage::film);
   make_film(options.film, *cache, run.scene.render.frames_per_second);
@@ -322,11 +307,21 @@ void print_result(const Scene& scene, const program::Cache* cache, const program
   std::printf("particles %zu\nframes %d\nsteps %lld\nsimulated_time %.9g\nstate_hash %s\n",
               report.info.particles, report.frames, static_cast<long long>(report.steps),
               report.simulated_time, program::hash_text(report.state_hash).c_str());
+  const auto print = [](const std::string& what, std::int64_t count) {
+    std::printf("%s %lld\n", what.c_str(), static_cast<long long>(count));
+  };
   const program::RunReport::Events& events = report.events;
-  if (events.torn > 0 || events.merged > 0)
-    std::printf("torn %lld\nmerged %lld\n", static_cast<long long>(events.torn),
-                static_cast<long long>(events.merged));
-  if (!scene.sinks.empty()) std::printf("drained %lld\n", static_cast<long long>(report.drained));
+  if (events.torn > 0 || events.merged > 0) {
+    print("torn", events.torn);
+    print("merged", events.merged);
+  }
+  if (events.split > 0 || events.merged_bodies > 0) {
+    print("split_bodies", events.split);
+    print("merged_bodies", events.merged_bodies);
+  }
+  if (!scene.sinks.empty()) print("drained", report.drained);
+  for (std::size_t k = 0; scene.sinks.size() > 1 && k < report.sink_drained.size(); ++k)
+    print(program::sink_name(k) + ".drained", report.sink_drained[k]);
   if (cache) std::printf("summary %s\n", cache->summary_file().c_str());
 }
 
@@ -348,6 +343,9 @@ void run(const RunOptions& options) {
     run.report.complete = why_ended.empty();
     run.report.info.particles = run.simulation->particle_count();  // some may have come or gone
     program::count_particles(*run.simulation, run.report.info.bodies);
+    run.report.sink_drained.clear();
+    for (const SinkId sink : run.simulation->sink_ids())
+      run.report.sink_drained.push_back(static_cast<std::int64_t>(run.simulation->drained(sink)));
     run.report.simulated_time = run.simulation->time();
     run.report.state_hash = run.simulation->state_hash();
     write_reports(options, run.scene, out, run.report);
@@ -373,7 +371,8 @@ void run(const RunOptions& options) {
       // Where the disk is full the report written at the start stays, and it says that the run did not end.
     }
     if (dynamic_cast<const program::Interrupted*>(&failure)) throw;
-    throw program::RunFailure(failure.what());
+    const bool in_step = dynamic_cast<const StepError*>(&failure) != nullptr;
+    throw program::RunFailure(failure.what() + how_to_go_on(out, run.report, in_step));
   }
   print_result(run.scene, out, run.report);
   require_film(options.film);

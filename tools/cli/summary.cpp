@@ -80,6 +80,15 @@ std::string bars(const std::vector<Bar>& rows, const char* per) {
   return html + "</table>\n";
 }
 
+/// Particles that each sink took.
+std::string drained(const json& sinks) {
+  std::string text;
+  for (const auto& sink : sinks)
+    text += (text.empty() ? "" : ", ") + sink.at("name").get<std::string>() +
+            format(" %lld", sink.at("drained").get<long long>());
+  return html_text(text);
+}
+
 std::string facts(const json& report) {
   const auto& step = report.at("time_step");
   std::string html = "<table>\n";
@@ -98,9 +107,15 @@ std::string facts(const json& report) {
   html += fact("reference updates", std::to_string(report.at("reference_updates").size()));
   // Reports of earlier versions count none.
   if (const auto events = report.find("events"); events != report.end())
-    html += fact("bodies", format("yielded %lld times, tore %lld times, merged %lld times",
-                                  events->at("yielded").get<long long>(), events->at("torn").get<long long>(),
-                                  events->at("merged").get<long long>()));
+    html +=
+        fact("bodies",
+             format("yielded %lld times, tore %lld times, parts merged %lld times; %lld bodies came as parts "
+                    "of others were split off, %lld ended as they merged with others",
+                    events->at("yielded").get<long long>(), events->at("torn").get<long long>(),
+                    events->at("merged").get<long long>(), events->value("split", 0ll),
+                    events->value("merged_bodies", 0ll)));
+  if (const auto sinks = report.find("sinks"); sinks != report.end() && !sinks->empty())
+    html += fact("drained", drained(*sinks));
   html += fact("memory", format("%.1f MiB", report.at("bytes").get<double>() / (1024.0 * 1024.0)));
   html +=
       fact("machine", html_text(report.at("machine").at("processor").get<std::string>()) +

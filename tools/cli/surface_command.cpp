@@ -36,11 +36,13 @@ class Redrawer {
   /// Skins follow what only the run knew: they stay as they were drawn.
   Mesh draw(int number) {
     const ParticleFrame frame = read_particles(run_.cache.particles_file(number));
-    SurfaceParticles particles = surface_particles(frame, run_.spacings);
+    SurfaceParticles particles = surface_particles(frame, program::spacings_of(run_.bodies_at(number)));
     const std::filesystem::path earlier = run_.cache.surface_file(number);
     const bool any = std::ranges::find(skinned_, true) != skinned_.end();
     if (!any || !std::filesystem::exists(earlier)) return surfacer_.draw(particles);
-    std::erase_if(particles.bodies, [&](const SurfaceBody& body) { return skinned_[body.body]; });
+    std::erase_if(particles.bodies, [&](const SurfaceBody& body) {
+      return body.body < skinned_.size() && skinned_[body.body];
+    });
     Mesh mesh;
     if (!particles.bodies.empty()) mesh = surfacer_.draw(particles);
     program::append(program::part_of(read_mesh(earlier), skinned_), mesh);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 namespace mallow::program {
 namespace {
@@ -38,12 +39,17 @@ bool follow_bodies(const Simulation& simulation, std::vector<BodyInfo>& by_slot)
   const auto slot = [](BodyId body) { return static_cast<std::size_t>(slot_of(body)); };
   // A slot may be another's by now.
   const auto is_known = [&](BodyId body) {
-    return slot(body) < by_slot.size() && by_slot[slot(body)].name == simulation.name(body);
+    if (slot(body) >= by_slot.size()) return false;
+    const BodyInfo& known = by_slot[slot(body)];
+    return known.name == simulation.name(body) && known.spacing == simulation.spacing(body);
   };
   if (std::ranges::all_of(bodies, is_known)) return false;
   const std::vector<BodyInfo> known = simulation.info().bodies;
   by_slot.resize(std::max(by_slot.size(), slot(*std::ranges::max_element(bodies, {}, slot)) + 1));
   for (std::size_t b = 0; b < bodies.size(); ++b) by_slot[slot(bodies[b])] = known[b];
+  // Somebody may have come and gone between two frames: nobody is seen there, but no spacing is 0.
+  for (BodyInfo& body : by_slot)
+    if (body.spacing == 0) body.spacing = known.front().spacing;
   return true;
 }
 
@@ -55,24 +61,44 @@ void count_particles(const Simulation& simulation, std::vector<BodyInfo>& by_slo
   }
 }
 
-std::vector<std::string> material_names(std::span<const BodyInfo> bodies) {
+std::vector<SlotBody> slot_bodies(std::span<const BodyInfo> bodies) {
+  std::vector<SlotBody> by_slot;
+  for (const BodyInfo& body : bodies) by_slot.push_back({body.name, body.material, body.spacing});
+  return by_slot;
+}
+
+std::vector<std::string> material_names(std::span<const SlotBody> bodies) {
   std::vector<std::string> names;
-  for (const BodyInfo& body : bodies) names.push_back(body.material);
+  for (const SlotBody& body : bodies) names.push_back(body.material);
   return names;
 }
 
-std::vector<PastBody> past_bodies(std::span<const std::string> before, std::span<const std::string> after,
+std::vector<std::string> material_names(std::span<const BodyInfo> bodies) {
+  return material_names(slot_bodies(bodies));
+}
+
+std::vector<PastBody> past_bodies(std::span<const SlotBody> before, std::span<const SlotBody> after,
                                   int frame) {
   std::vector<PastBody> past;
   for (std::size_t slot = 0; slot < std::min(before.size(), after.size()); ++slot)
-    if (before[slot] != after[slot]) past.push_back({slot, frame, before[slot]});
+    if (!before[slot].name.empty() && before[slot] != after[slot])
+      past.push_back({slot, frame, before[slot]});
   return past;
 }
 
-std::vector<std::string> materials_at(int frame, std::vector<std::string> now,
-                                      std::span<const PastBody> past) {
-  for (auto body = past.rbegin(); body != past.rend(); ++body)
-    if (frame < body->until && body->slot < now.size()) now[body->slot] = body->material;
+std::vector<std::uint32_t> slot_numbers_at(int frame, std::size_t slots, std::span<const PastBody> past) {
+  std::vector<std::uint32_t> numbers(slots);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  for (std::size_t k = past.size(); k-- > 0;)
+    if (frame < past[k].until && past[k].slot < slots)
+      numbers[past[k].slot] = static_cast<std::uint32_t>(slots + k);
+  return numbers;
+}
+
+std::vector<SlotBody> slot_bodies_at(int frame, std::vector<SlotBody> now, std::span<const PastBody> past) {
+  const std::vector<std::uint32_t> numbers = slot_numbers_at(frame, now.size(), past);
+  for (std::size_t slot = 0; slot < numbers.size(); ++slot)
+    if (numbers[slot] != slot) now[slot] = past[numbers[slot] - numbers.size()].body;
   return now;
 }
 

@@ -20,13 +20,17 @@ std::vector<Appearance> body_appearances(const Scene& scene, std::span<const std
 bool follow_bodies(const Simulation& simulation, std::vector<BodyInfo>& by_slot);
 /// How many particles each has now, of those that are gone none.
 void count_particles(const Simulation& simulation, std::vector<BodyInfo>& by_slot);
+std::vector<SlotBody> slot_bodies(std::span<const BodyInfo> bodies);
 std::vector<std::string> material_names(std::span<const BodyInfo> bodies);
+std::vector<std::string> material_names(std::span<const SlotBody> bodies);
 
-/// The same before and after bodies have come: those that had a slot until this frame, and another material.
-std::vector<PastBody> past_bodies(std::span<const std::string> before, std::span<const std::string> after,
+/// The same before and after bodies have come: those whose slot is another's from this frame on.
+std::vector<PastBody> past_bodies(std::span<const SlotBody> before, std::span<const SlotBody> after,
                                   int frame);
-/// Names of materials by slot as they were in a frame.
-std::vector<std::string> materials_at(int frame, std::vector<std::string> now,
-                                      std::span<const PastBody> past);
+/// Who had the slots in a frame, each by a number: below `slots` it is who has that slot now, above it
+/// `slots` and the place in `past`.
+std::vector<std::uint32_t> slot_numbers_at(int frame, std::size_t slots, std::span<const PastBody> past);
+/// Who had the slots in a frame.
+std::vector<SlotBody> slot_bodies_at(int frame, std::vector<SlotBody> now, std::span<const PastBody> past);
 
 }  // namespace mallow::program

@@ -205,7 +205,6 @@ Cache Cache::open_to_resume(const fs::path& folder) {
                    std::string("holds no run of mallow (no ") + (marked ? "scene.toml" : k_run_mark) +
                        "); start one with: mallow run SCENE --out " + shell_word(folder.string())});
   cache.lock_ = RunLock::for_writing(folder);
-  forget_shared_frames(folder);
   for (const fs::path& file : cache.half_written_files()) {
     std::error_code ignored;
     fs::remove(file, ignored);

@@ -20,7 +20,8 @@ std::filesystem::path frame_name(int frame, const std::string& ending);
 ///   checkpoint  checkpoint.previous  what a run goes on from
 ///   particles/frame_000000.ply  surface/frame_000000.ply  images/frame_000000.png
 ///   export/                     what `mallow export` made of these for other programs
-///   .mallow-share/              who works on which frame, where several programs share them
+///   .mallow-share/              what each picture is of; who works on which frame, where several programs
+///                               share them
 /// Frame 0 is the initial state. A folder of an earlier mallow has no mark: it is known by its report.json
 /// and its frame 0, gets a mark from what writes into it, but is not overwritten.
 class Cache {

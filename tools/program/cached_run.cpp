@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "mallow/errors.h"
+#include "program/body_appearances.h"
 #include "program/input_files.h"
 #include "program/machine.h"
 #include "program/shared_frames.h"
@@ -86,15 +87,25 @@ CachedRun open_cached_run(const CachedRunOptions& options, const std::string& se
   if (writes)
     scene = parse_scene(with_section_as_run(std::move(scene), section, report), cache.scene_file(),
                         options.overrides, k_anywhere);
-  std::vector<float> spacings = body_spacings(report, cache.report_file());
+  std::vector<SlotBody> bodies = slot_bodies(report, cache.report_file());
   // There may be more: what was thrown at a scene before it was saved.
-  if (spacings.size() < body_materials(scene).size()) {
+  if (bodies.size() < body_materials(scene).size()) {
     throw IoError({cache.report_file().string(), 0, 0, "groups", "does not list the groups of scene.toml"});
   }
   if (writes) Cache::refuse_inputs(options.folder, InputFiles(scene), "", false);
-  std::vector<std::string> materials = material_names(report, cache.report_file());
-  return {std::move(cache),    std::move(scene),     std::move(report),
-          std::move(spacings), std::move(materials), resolve_threads(options.threads)};
+  std::vector<PastBody> past = past_bodies(report, cache.report_file());
+  return {std::move(cache),  std::move(scene), std::move(report),
+          std::move(bodies), std::move(past),  resolve_threads(options.threads)};
+}
+
+std::vector<SlotBody> CachedRun::bodies_at(int frame) const {
+  return slot_bodies_at(frame, bodies, past);
+}
+
+std::vector<float> spacings_of(std::span<const SlotBody> bodies) {
+  std::vector<float> spacings;
+  for (const SlotBody& body : bodies) spacings.push_back(body.spacing);
+  return spacings;
 }
 
 void close_cached_run(CachedRun& run, const StageTimes& seconds, std::span<const Stage> stages) {

@@ -24,10 +24,16 @@ struct CachedRun {
   Cache cache;
   Scene scene;
   nlohmann::ordered_json report;
-  std::vector<float> spacings;         ///< h of each body, by its slot [m]
-  std::vector<std::string> materials;  ///< names of the materials of the same
+  std::vector<SlotBody> bodies;  ///< by slot, as the run ended
+  std::vector<PastBody> past;    ///< those that had these slots before
   int threads;
+
+  /// By slot, as they were in a frame.
+  std::vector<SlotBody> bodies_at(int frame) const;
 };
+
+/// h of each [m].
+std::vector<float> spacings_of(std::span<const SlotBody> bodies);
 
 /// Throws IoError and ConfigError. `section`: the one whose keys may be changed, as the motion is there
 /// already, with "render" also which colliders are visible; empty: none, and the run stays as it is.

@@ -40,7 +40,7 @@ render::Image difference_picture(const ComparedStates& a, const ComparedStates& 
   }
   const Scene scene = b.scene();
   const std::vector<Collider> colliders = colliders_at(scene, particles.time);
-  const FilmBounds bounds(a.spacings(), particles);
+  const FilmBounds bounds(a.spacings(), particles, scene.emitters);
   const render::Camera camera =
       render::frame_camera(bounds.boxes(scene), scene.render, visible_colliders(scene));
   render::Renderer renderer(scene.render, threads);

@@ -135,6 +135,28 @@ void add_near(const std::vector<Vec3>& drops, Aabb& box) {
     if (holds(near, {x, x})) extend(box, {x, x});
 }
 
+/// Layers that a nozzle holds behind it, at most: as many as regions of the usual radius ask for, and more.
+constexpr double k_most_layers = 24;
+
+/// Whether a place is behind a nozzle, where a strand is that has not left it.
+bool is_held(const SceneEmitter& emitter, double time, const Vec3& x) {
+  if (emitter.stop && time > *emitter.stop) return false;
+  Pose pose = emitter.pose;
+  if (!emitter.keyframes.empty())
+    pose = pose_at(emitter.keyframes, time);
+  else
+    pose.translation += time * emitter.velocity.cast<double>();
+  const Eigen::Quaterniond rotation = Eigen::Quaterniond(pose.rotation).normalized();
+  const Eigen::Vector3d local = rotation.conjugate() * (x.cast<double>() - pose.translation);
+  const double h = static_cast<double>(emitter.spacing);
+  // The nearest layer is half a spacing behind the mouth.
+  if (local.z() > -0.25 * h || local.z() < -k_most_layers * h) return false;
+  float side =
+      emitter.radius.value_or(0.5f * std::max(emitter.width.value_or(0), emitter.height.value_or(0)));
+  for (const Vec3& point : emitter.points) side = std::max(side, point.head<2>().norm());
+  return local.head<2>().cwiseAbs().maxCoeff() <= static_cast<double>(side) + h;
+}
+
 }  // namespace
 
 std::vector<Collider> visible_colliders(const Scene& scene) {
@@ -150,9 +172,28 @@ void FilmBounds::Reach::add(const Aabb& frame, std::size_t count) {
 }
 
 void FilmBounds::add(const ParticleFrame& frame) {
-  const std::size_t count = frame.positions.size();
-  if (count == 0) return;
+  if (frame.positions.empty()) return;
   last_time_ = std::max(last_time_, frame.time);
+  if (emitters_.empty()) return add_seen(frame);
+  ParticleFrame seen;
+  seen.time = frame.time;
+  for (std::size_t i = 0; i < frame.positions.size(); ++i) {
+    const auto holds = [&](const SceneEmitter& emitter) {
+      return is_held(emitter, frame.time, frame.positions[i]);
+    };
+    if (std::ranges::any_of(emitters_, holds)) continue;
+    seen.positions.push_back(frame.positions[i]);
+    seen.bodies.push_back(frame.bodies[i]);
+  }
+  if (seen.positions.empty())
+    held_.push_back(bounds_of(frame.positions));
+  else
+    add_seen(seen);
+}
+
+/// All but what nozzles hold, which is something.
+void FilmBounds::add_seen(const ParticleFrame& frame) {
+  const std::size_t count = frame.positions.size();
   if (frame.time <= 0) {  // nothing has flown off or come apart yet, however far from each other things begin
     const Aabb box = bounds_of(frame.positions);
     all_.add(box, count);
@@ -171,6 +212,7 @@ void FilmBounds::add(const ParticleFrame& frame) {
 
 const std::vector<Aabb>& FilmBounds::reached() const {
   // What drips from a nozzle holds together only as long as it is little: it is seen wherever it goes.
+  if (all_.boxes.empty()) return held_;
   return 10 * whole_.particles >= 9 * all_.particles ? whole_.boxes : all_.boxes;
 }
 
@@ -207,7 +249,7 @@ Aabb FilmBounds::box(const Scene& scene) const {
 Aabb bounds_now(const Scene& scene, Simulation& simulation) {
   std::vector<float> spacings;
   for (const BodyInfo& body : simulation.info().bodies) spacings.push_back(body.spacing);
-  Aabb box = FilmBounds(spacings, snapshot(simulation)).box(scene);
+  Aabb box = FilmBounds(spacings, snapshot(simulation), scene.emitters).box(scene);
   const Vec3 middle = 0.5f * (box.min + box.max);
   for (const Plane& plane : Room(scene).grounds)
     if (const Vec3 foot(middle.x(), middle.y(), ground_height(plane, middle)); foot.z() < middle.z())

@@ -13,12 +13,19 @@ namespace mallow::program {
 /// later but for drops that fly off, the ground near below, and the visible colliders near by, where their
 /// keyframes take them too: whole, but for those that are many times as large as what moves. A splash is seen
 /// as far as most of it holds together: pieces of less than a twentieth of their body leave the picture, as
-/// all do once they are what most of the frame is.
+/// all do once they are what most of the frame is. What a nozzle still holds has not come into the film yet:
+/// it counts only where nothing else is ever seen.
 class FilmBounds {
  public:
-  /// spacings: of the particles of each body [m]; a body without one does not come apart.
-  explicit FilmBounds(std::span<const float> spacings) : spacings_(spacings.begin(), spacings.end()) {}
-  FilmBounds(std::span<const float> spacings, const ParticleFrame& only) : FilmBounds(spacings) { add(only); }
+  /// spacings: of the particles of each body [m]; a body without one does not come apart. emitters: of the
+  /// scene, where there are any.
+  explicit FilmBounds(std::span<const float> spacings, std::span<const SceneEmitter> emitters = {})
+      : spacings_(spacings.begin(), spacings.end()), emitters_(emitters.begin(), emitters.end()) {}
+  FilmBounds(std::span<const float> spacings, const ParticleFrame& only,
+             std::span<const SceneEmitter> emitters = {})
+      : FilmBounds(spacings, emitters) {
+    add(only);
+  }
   void add(const ParticleFrame& frame);
   /// What a frame each reaches, and what is seen beside it: together smaller than one box around all of it.
   /// Something around 0 where no frame had any particles.
@@ -34,11 +41,14 @@ class FilmBounds {
     void add(const Aabb& frame, std::size_t count);
   };
   const std::vector<Aabb>& reached() const;
+  void add_seen(const ParticleFrame& frame);
 
   std::vector<float> spacings_;
-  Reach whole_;           ///< of frames that hold together, without drops
-  Reach all_;             ///< of all frames
-  double last_time_ = 0;  ///< [s]
+  std::vector<SceneEmitter> emitters_;
+  std::vector<Aabb> held_;  ///< what frames reach in which nozzles hold all
+  Reach whole_;             ///< of frames that hold together, without drops
+  Reach all_;               ///< of all frames
+  double last_time_ = 0;    ///< [s]
 };
 
 /// What a picture of a simulation as it is now has to have in view, with the ground below it: what is in the

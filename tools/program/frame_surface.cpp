@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
+
+#include "mallow/errors.h"
 
 namespace mallow::program {
 namespace {
@@ -9,6 +12,13 @@ namespace {
 template <class T>
 void append(const std::vector<T>& part, std::vector<T>& list) {
   list.insert(list.end(), part.begin(), part.end());
+}
+
+void follow(const Simulation& simulation, Skin& skin) try {
+  skin.update(simulation);
+} catch (const ConfigError& error) {
+  throw ConfigError("skin", std::string("cannot follow its body any more (") + error.what() +
+                                "); keep it from what takes its particles away, or go on with --no-surface");
 }
 
 }  // namespace
@@ -37,7 +47,7 @@ void FrameSurface::draw(const Simulation& simulation, Mesh& mesh) {
     mesh = surfacer_.draw(particles);
   }
   for (Skin& skin : skins_) {
-    skin.update(simulation);
+    follow(simulation, skin);
     append(skin.find_velocities(simulation), mesh);
   }
 }

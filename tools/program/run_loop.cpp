@@ -19,6 +19,8 @@
 namespace mallow::program {
 namespace {
 
+using ParticleFramePointer = std::shared_ptr<const ParticleFrame>;
+
 /// Writes particles, surface and picture of a frame, and keeps the time of each: what the run waits for, as
 /// files are written by another thread while it goes on.
 class FrameWriter {
@@ -61,7 +63,7 @@ class FrameWriter {
 
   /// frame: the particles of the simulation as they are now. Returns the surface where there is one.
   std::shared_ptr<const Mesh> write(int number, const Simulation& simulation,
-                                    const std::shared_ptr<const ParticleFrame>& frame) {
+                                    const ParticleFramePointer& frame) {
     {
       const StageTimer timer(report_.stage_seconds, Stage::particles);
       files_.add([this, number, frame] {
@@ -78,11 +80,11 @@ class FrameWriter {
         whole_frames_ = number;
       });
     }
-    const std::vector<std::string> before = material_names(report_.info.bodies);
+    const std::vector<SlotBody> before = slot_bodies(report_.info.bodies);
     if (follow_bodies(simulation, report_.info.bodies)) {
-      const std::vector<std::string> now = material_names(report_.info.bodies);
+      const std::vector<SlotBody> now = slot_bodies(report_.info.bodies);
       std::ranges::copy(past_bodies(before, now, number), std::back_inserter(report_.past_bodies));
-      report_.appearances = body_appearances(scene_, now);
+      report_.appearances = body_appearances(scene_, material_names(now));
       if (stills_) stills_->set_appearances(report_.appearances);
     }
     if (stills_) {
@@ -114,6 +116,14 @@ class FrameWriter {
       write_checkpoint(simulation);
   }
 
+  /// Where a run ends in its middle: what was computed until then is kept, if it can be.
+  void after_failure(const Simulation& simulation) noexcept try {
+    after_run(simulation);
+    finish();
+  } catch (...) {
+    // What ended the run is what is told of; an earlier checkpoint is still there.
+  }
+
   /// Waits until all files are there.
   void finish() {
     const StageTimer timer(report_.stage_seconds, surface_ ? Stage::surface : Stage::particles);
@@ -135,7 +145,7 @@ class FrameWriter {
 };
 
 /// Frame 0, which every picture is framed by: as the simulation has it, or of the run that goes on.
-std::shared_ptr<const ParticleFrame> first_frame(const Simulation& simulation, const Cache& cache) {
+ParticleFramePointer first_frame(const Simulation& simulation, const Cache& cache) {
   return std::make_shared<const ParticleFrame>(
       simulation.step_count() == 0 ? snapshot(simulation) : read_particles(cache.particles_file(0)));
 }
@@ -149,22 +159,18 @@ void write_last_checkpoint(const Simulation& simulation, FrameWriter& writer, co
                    " steps, and no checkpoint could be written: " + error.what());
 }
 
-}  // namespace
-
-RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> skins, const RunPlan& plan,
-                  const Cache* cache, RunReport& report, const RunCallbacks& callbacks, Series* series) {
-  std::optional<FrameWriter> writer;
+/// What run_frames() does, once it has a writer where there is a cache.
+RunEnd run_with(FrameWriter* writer, const ParticleFramePointer& first, Simulation& simulation,
+                const RunPlan& plan, RunReport& report, const RunCallbacks& callbacks, Series* series) {
   const auto add_row = [&](int number, const Mesh* surface) {
     if (!series) return;
     series->add_row(number, simulation, surface ? std::optional(enclosed_volume(*surface)) : std::nullopt);
   };
   std::shared_ptr<const Mesh> surface;
-  if (cache) {
-    const auto first = first_frame(simulation, *cache);
-    writer.emplace(scene, skins, plan, *cache, *first, report, series);
-    if (report.steps == 0) surface = writer->write(0, simulation, first);
+  if (report.steps == 0) {
+    if (writer) surface = writer->write(0, simulation, first);
+    add_row(0, surface.get());
   }
-  if (report.steps == 0) add_row(0, surface.get());
 
   const auto steps_left = [&] { return !plan.steps || report.steps < *plan.steps; };
   const auto ended = [&] { return plan.steps ? !steps_left() : report.frames >= plan.frames; };
@@ -200,6 +206,21 @@ RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> sk
     writer->finish();
   }
   return RunEnd::complete;
+}
+
+}  // namespace
+
+RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> skins, const RunPlan& plan,
+                  const Cache* cache, RunReport& report, const RunCallbacks& callbacks, Series* series) {
+  if (!cache) return run_with(nullptr, nullptr, simulation, plan, report, callbacks, series);
+  const ParticleFramePointer first = first_frame(simulation, *cache);
+  FrameWriter writer(scene, skins, plan, *cache, *first, report, series);
+  try {
+    return run_with(&writer, first, simulation, plan, report, callbacks, series);
+  } catch (...) {
+    writer.after_failure(simulation);
+    throw;
+  }
 }
 
 std::string nothing_left(const RunPlan& plan, const RunReport& report) {

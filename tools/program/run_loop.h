@@ -26,8 +26,8 @@ enum class RunEnd { complete, stopped };
 /// Runs a scene to its end, from where `simulation`, its skins and `report` are, and writes its frames and
 /// checkpoints into `cache`, where there is one (else null), and a row of `series` for each frame. `report`
 /// is kept up to date: it is right also when this throws. A run that is stopped ends with a checkpoint, from
-/// which it can be resumed; one that is complete too, where the plan asks for any. Throws RunFailure where
-/// that cannot be written, and what steps and files throw.
+/// which it can be resumed; one that is complete too, or that a step, a surface or a picture ends, where the
+/// plan asks for any. Throws RunFailure where that cannot be written, and what steps and files throw.
 RunEnd run_frames(const Scene& scene, Simulation& simulation, std::span<Skin> skins, const RunPlan& plan,
                   const Cache* cache, RunReport& report, const RunCallbacks& callbacks = {},
                   Series* series = nullptr);

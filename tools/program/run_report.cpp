@@ -61,14 +61,35 @@ nlohmann::ordered_json updates_json(const RunReport& report) {
 }
 
 nlohmann::ordered_json events_json(const RunReport& report) {
-  return {{"yielded", report.events.yielded}, {"torn", report.events.torn}, {"merged", report.events.merged}};
+  return {{"yielded", report.events.yielded},
+          {"torn", report.events.torn},
+          {"merged", report.events.merged},
+          {"merged_bodies", report.events.merged_bodies},
+          {"split", report.events.split}};
+}
+
+nlohmann::ordered_json sinks_json(const RunReport& report) {
+  nlohmann::ordered_json sinks = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < report.sink_drained.size(); ++k)
+    sinks.push_back({{"name", sink_name(k)}, {"drained", report.sink_drained[k]}});
+  return sinks;
 }
 
 nlohmann::ordered_json past_bodies_json(const RunReport& report) {
   nlohmann::ordered_json past = nlohmann::ordered_json::array();
   for (const PastBody& body : report.past_bodies)
-    past.push_back({{"slot", body.slot}, {"until", body.until}, {"material", body.material}});
+    past.push_back({{"slot", body.slot},
+                    {"until", body.until},
+                    {"name", body.body.name},
+                    {"material", body.body.material},
+                    {"spacing", body.body.spacing}});
   return past;
+}
+
+SlotBody slot_body_from(const nlohmann::ordered_json& body) {
+  return {.name = body.at("name").get<std::string>(),
+          .material = body.at("material").get<std::string>(),
+          .spacing = body.at("spacing").get<float>()};
 }
 
 std::vector<PastBody> past_bodies_from(const nlohmann::ordered_json& all) {
@@ -76,7 +97,7 @@ std::vector<PastBody> past_bodies_from(const nlohmann::ordered_json& all) {
   for (const auto& body : all)
     past.push_back({.slot = body.at("slot").get<std::size_t>(),
                     .until = body.at("until").get<int>(),
-                    .material = body.at("material").get<std::string>()});
+                    .body = slot_body_from(body)});
   return past;
 }
 
@@ -140,6 +161,10 @@ nlohmann::ordered_json stages_json(const RunReport& report) {
 
 }  // namespace
 
+std::string sink_name(std::size_t number) {
+  return "sink[" + std::to_string(number) + ']';
+}
+
 const char* name(Stage stage) {
   static constexpr std::array<const char*, k_stage_count> k_names = {"build",   "motion",   "particles",
                                                                      "surface", "pictures", "film"};
@@ -173,6 +198,8 @@ void RunReport::add(const StepReport& step, const Simulation& simulation) {
     if (event.kind == BodyEvent::Kind::yielded) ++events.yielded;
     if (event.kind == BodyEvent::Kind::torn) ++events.torn;
     if (event.kind == BodyEvent::Kind::merged) ++events.merged;
+    if (event.kind == BodyEvent::Kind::merged && event.other) ++events.merged_bodies;
+    if (event.kind == BodyEvent::Kind::split) ++events.split;
   }
   compression.mean = std::max(compression.mean, step.mean_compression);
   compression.largest = std::max(compression.largest, step.largest_compression);
@@ -215,6 +242,8 @@ void RunReport::set_progress(const nlohmann::ordered_json& progress) {
     counts->at("yielded").get_to(events.yielded);
     counts->at("torn").get_to(events.torn);
     counts->at("merged").get_to(events.merged);
+    counts->at("merged_bodies").get_to(events.merged_bodies);
+    counts->at("split").get_to(events.split);
   }
   if (const auto found = progress.find("drained"); found != progress.end()) found->get_to(drained);
   if (const auto found = progress.find("past_bodies"); found != progress.end())
@@ -265,6 +294,7 @@ nlohmann::ordered_json to_json(const RunReport& report) {
           {"reference_updates", updates_json(report)},
           {"events", events_json(report)},
           {"drained", report.drained},
+          {"sinks", sinks_json(report)},
           {"past_bodies", past_bodies_json(report)},
           {"compression", compression_json(report)},
           {"loads", loads_json(report)},
@@ -322,30 +352,20 @@ void add_gone_bodies(const nlohmann::ordered_json& earlier, const std::filesyste
   }
 }
 
-namespace {
-
-/// A value of each body.
-template <class T>
-std::vector<T> of_bodies(const nlohmann::ordered_json& report, const char* key,
-                         const std::filesystem::path& file) {
-  std::vector<T> values;
+std::vector<SlotBody> slot_bodies(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
+  std::vector<SlotBody> bodies;
   try {
-    for (const auto& group : report.at("groups")) values.push_back(group.at(key).template get<T>());
+    for (const auto& group : report.at("groups")) bodies.push_back(slot_body_from(group));
   } catch (const nlohmann::ordered_json::exception& error) {
     throw IoError({file.string(), 0, 0, "groups", error.what()});
   }
-  return values;
+  return bodies;
 }
-
-}  // namespace
 
 std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
-  return of_bodies<float>(report, "spacing", file);
-}
-
-std::vector<std::string> material_names(const nlohmann::ordered_json& report,
-                                        const std::filesystem::path& file) {
-  return of_bodies<std::string>(report, "material", file);
+  std::vector<float> spacings;
+  for (const SlotBody& body : slot_bodies(report, file)) spacings.push_back(body.spacing);
+  return spacings;
 }
 
 std::vector<PastBody> past_bodies(const nlohmann::ordered_json& report, const std::filesystem::path& file) {

@@ -36,11 +36,17 @@ class StageTimer {
   Clock::time_point started_ = Clock::now();
 };
 
-/// A body whose slot another one has by now: frames name bodies by slots.
+/// What frames say of a body by its slot alone.
+struct SlotBody {
+  std::string name, material;
+  float spacing = 0;  ///< h [m]
+  bool operator==(const SlotBody&) const = default;
+};
+/// A body whose slot another one has by now.
 struct PastBody {
   std::size_t slot = 0;
   int until = 0;  ///< the first frame in which it is the other one's
-  std::string material = {};
+  SlotBody body = {};
 };
 
 /// What a run did: report.json.
@@ -68,10 +74,14 @@ struct RunReport {
   std::vector<ReferenceUpdate> reference_updates;
   /// How often bodies did what BodyEvent tells, all together.
   struct Events {
-    std::int64_t yielded = 0, torn = 0, merged = 0;
+    std::int64_t yielded = 0, torn = 0;
+    std::int64_t merged = 0;         ///< parts that became one with others, of one body or of two
+    std::int64_t merged_bodies = 0;  ///< of these: whole bodies, which are no more
+    std::int64_t split = 0;          ///< bodies that came, as parts were split off others
   } events;
-  std::int64_t drained = 0;           ///< particles that sinks took
-  std::vector<PastBody> past_bodies;  ///< in the order of frames
+  std::int64_t drained = 0;                ///< particles that sinks took
+  std::vector<std::int64_t> sink_drained;  ///< of these, each sink, as the scene lists them
+  std::vector<PastBody> past_bodies;       ///< in the order of frames
   /// Of volume iterations, where there are any: StepReport::mean_compression and largest_compression.
   struct Compression {
     double mean = 0;     ///< over all particles, in the step where it was largest
@@ -103,6 +113,9 @@ struct RunReport {
 
 nlohmann::ordered_json to_json(const RunReport& report);
 
+/// What a scene's sink is called: "sink[0]".
+std::string sink_name(std::size_t number);
+
 /// 16 digits after 0x.
 std::string hash_text(std::uint64_t hash);
 /// The report of a cache. Throws IoError where it cannot be read.
@@ -116,9 +129,8 @@ void add_gone_bodies(const nlohmann::ordered_json& earlier, const std::filesyste
 /// What later commands need of a report: h of each body [m]. Throws IoError where the report does not fit
 /// the scene.
 std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file);
-/// Names of the materials of the same. Throws IoError likewise.
-std::vector<std::string> material_names(const nlohmann::ordered_json& report,
-                                        const std::filesystem::path& file);
+/// All that is known of the same. Throws IoError likewise.
+std::vector<SlotBody> slot_bodies(const nlohmann::ordered_json& report, const std::filesystem::path& file);
 /// RunReport::past_bodies; none in a report of an earlier version. Throws IoError likewise.
 std::vector<PastBody> past_bodies(const nlohmann::ordered_json& report, const std::filesystem::path& file);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <utility>
@@ -80,6 +81,14 @@ Free free_of(const Simulation& simulation, const Simulation::Rows& rows, const s
   return free;
 }
 
+/// What a row says of a body.
+struct BodyNow {
+  Simulation::Rows rows;
+  Free free;
+  BodyMotion motion;
+  BodyParts parts;
+};
+
 /// What a set of bodies has in sum.
 struct Sums {
   Free free;
@@ -87,6 +96,14 @@ struct Sums {
   double volume = 0;
   Eigen::Vector3d momentum{0, 0, 0};
 
+  void add(const BodyNow& body) {
+    free.low = free.low.cwiseMin(body.free.low);
+    free.high = free.high.cwiseMax(body.free.high);
+    free.particles += body.free.particles;
+    parts += body.parts.parts;
+    crumbs += body.parts.crumbs;
+    momentum += body.motion.momentum;
+  }
   Eigen::Vector3d extent() const {
     return free.particles > 0 ? Eigen::Vector3d(free.high - free.low) : Eigen::Vector3d(0, 0, 0);
   }
@@ -103,6 +120,19 @@ void add_temperatures(const Simulation& simulation, const Simulation::Rows& rows
   line.add(static_cast<double>(std::ranges::min(own)));
   line.add(std::accumulate(own.begin(), own.end(), 0.0) / static_cast<double>(own.size()));
   line.add(static_cast<double>(std::ranges::max(own)));
+}
+
+/// The columns of a body; empty cells where it is gone.
+void add_body(const BodyNow* body, Line& line) {
+  if (!body) {
+    for (int cell = 0; cell < 7; ++cell) line.add(std::string());
+    return;
+  }
+  line.add(body->free.height());
+  line.add(body->free.top());
+  line.add(body->motion.center_of_mass);
+  line.add(body->motion.kinetic_energy);
+  line.add(body->parts.parts);
 }
 
 std::vector<ColliderId> measured_colliders(const Simulation& simulation) {
@@ -143,10 +173,7 @@ Series::Series(const std::string& text, const fs::path& file, Simulation& simula
   for (const auto& body : state.at("bodies"))
     bodies_.push_back({.id = BodyId{body.at("id").get<std::uint64_t>()},
                        .name = body.at("name").get<std::string>(),
-                       .parts = body.at("parts").get<std::size_t>(),
-                       .crumbs = body.at("crumbs").get<std::size_t>(),
-                       .is_heated = body.value("is_heated", false),
-                       .is_described = body.value("is_described", true)});
+                       .is_heated = body.at("is_heated").get<bool>()});
   state.at("row_time").get_to(row_time_);
   state.at("largest_compression").get_to(largest_compression_);
   state.at("mean_compression").get_to(mean_compression_);
@@ -154,18 +181,15 @@ Series::Series(const std::string& text, const fs::path& file, Simulation& simula
   loads_.resize(colliders_.size());
 }
 
-std::size_t Series::described() const {
-  return static_cast<std::size_t>(std::ranges::count(bodies_, true, &Body::is_described));
-}
 bool Series::has_body_columns() const {
-  return described() > 1 && described() <= k_most_described;
+  return bodies_.size() > 1 && bodies_.size() <= k_most_described;
 }
 bool Series::has_collider_columns() const {
   return colliders_.size() <= k_most_described;
 }
 
 bool Series::has_temperatures(const Body& body) const {
-  return body.is_described && body.is_heated && described() <= k_most_described;
+  return body.is_heated && bodies_.size() <= k_most_described;
 }
 
 std::string Series::header() const {
@@ -215,52 +239,27 @@ void Series::add_step(const StepReport& step, const Simulation& simulation) {
   largest_compression_ = std::max(largest_compression_, step.largest_compression);
   mean_compression_ = step.mean_compression;
   for (std::size_t k = 0; k < colliders_.size(); ++k) add(simulation.load(colliders_[k]), loads_[k]);
-  for (const BodyEvent& event : simulation.events()) {
-    using Kind = BodyEvent::Kind;
-    if (event.kind != Kind::torn && event.kind != Kind::merged && event.kind != Kind::split) continue;
-    const auto body = std::ranges::find(bodies_, event.body, &Body::id);
-    if (body == bodies_.end()) continue;
-    if (event.kind == Kind::split) {
-      body->parts = 1;
-      bodies_.push_back({.id = *event.other, .name = {}, .is_described = false});
-      continue;
-    }
-    body->parts = event.parts;
-    body->crumbs = event.crumbs;
-  }
 }
 
 void Series::add_row(int frame, Simulation& simulation, const std::optional<double>& volume_of_surface) {
-  const std::vector<BodyId> ids = simulation.bodies();
   const std::vector<bool> held = held_rows(simulation);
+  std::map<BodyId, BodyNow> bodies;
   Sums sums;
+  for (const BodyId id : simulation.bodies()) {
+    const Simulation::Rows rows = simulation.rows(id);
+    const BodyNow& now =
+        bodies[id] = {rows, free_of(simulation, rows, held), simulation.motion(id), simulation.parts(id)};
+    sums.add(now);
+    sums.awake += simulation.is_awake(id) ? 1 : 0;
+    if (!volume_of_surface) sums.volume += simulation.volume(id);
+  }
   Line of_bodies, of_heat;
   for (const Body& body : bodies_) {
-    const bool is_there = std::ranges::find(ids, body.id) != ids.end();
-    const Simulation::Rows rows = is_there ? simulation.rows(body.id) : Simulation::Rows{};
-    if (has_temperatures(body)) add_temperatures(simulation, rows, of_heat);
-    const bool is_told = body.is_described && has_body_columns();
-    if (!is_there) {
-      if (is_told)
-        for (int cell = 0; cell < 7; ++cell) of_bodies.add(std::string());
-      continue;
-    }
-    const Free free = free_of(simulation, rows, held);
-    const BodyMotion motion = simulation.motion(body.id);
-    sums.free.low = sums.free.low.cwiseMin(free.low);
-    sums.free.high = sums.free.high.cwiseMax(free.high);
-    sums.free.particles += free.particles;
-    sums.awake += simulation.is_awake(body.id) ? 1 : 0;
-    sums.parts += body.parts;
-    sums.crumbs += body.crumbs;
-    if (!volume_of_surface) sums.volume += simulation.volume(body.id);
-    sums.momentum += motion.momentum;
-    if (!is_told) continue;
-    of_bodies.add(free.height());
-    of_bodies.add(free.top());
-    of_bodies.add(motion.center_of_mass);
-    of_bodies.add(motion.kinetic_energy);
-    of_bodies.add(body.parts);
+    const auto now = bodies.find(body.id);
+    const bool is_there = now != bodies.end();
+    if (has_temperatures(body))
+      add_temperatures(simulation, is_there ? now->second.rows : Simulation::Rows{}, of_heat);
+    if (has_body_columns()) add_body(is_there ? &now->second : nullptr, of_bodies);
   }
   const Energy energy = simulation.particle_count() > 0 ? simulation.energy() : Energy{};
   Line line;
@@ -299,12 +298,8 @@ std::string Series::saved() const {
   file_.sync();
   nlohmann::json bodies = nlohmann::json::array(), loads = nlohmann::json::array();
   for (const Body& body : bodies_)
-    bodies.push_back({{"id", static_cast<std::uint64_t>(body.id)},
-                      {"name", body.name},
-                      {"parts", body.parts},
-                      {"crumbs", body.crumbs},
-                      {"is_heated", body.is_heated},
-                      {"is_described", body.is_described}});
+    bodies.push_back(
+        {{"id", static_cast<std::uint64_t>(body.id)}, {"name", body.name}, {"is_heated", body.is_heated}});
   for (const ColliderLoad& load : loads_) loads.push_back(nlohmann::json(to_json(load)));
   const nlohmann::json state = {{"file", fs::absolute(file_.file()).string()},
                                 {"bytes", file_.size()},
@@ -328,8 +323,9 @@ const char* series_help() {
          "kinetic_energy, elastic_energy, conserved_energy (what elastic bodies keep), without pinned "
          "particles;\n"
          "momentum_x, _y, _z: of all particles;\n"
-         "parts: pieces that shape matching holds together, of four particles or more, one a body until an\n"
-         "  update of its reference shape tears or merges it; crumbs: smaller pieces, as of then;\n"
+         "parts: pieces that shape matching holds together now, of four particles or more, in all bodies "
+         "that\n"
+         "  are there; crumbs: smaller pieces;\n"
          "  what splits off a body counts in all sums and has no columns of its own;\n"
          "awake_bodies: that do not sleep;\n"
          "largest_compression: of a particle in any step since the row before; mean_compression: over all\n"

@@ -31,15 +31,12 @@ class Series {
   const std::filesystem::path& file() const { return file_.file(); }
 
  private:
-  /// A body that the run began with, or that was part of one: what comes later has no columns.
+  /// A body that the run began with: what comes later has no columns.
   struct Body {
     BodyId id;
     std::string name;
-    std::size_t parts = 1, crumbs = 0;
     bool is_heated = false;
-    bool is_described = true;
   };
-  std::size_t described() const;
   std::string header() const;
   bool has_body_columns() const;
   bool has_collider_columns() const;

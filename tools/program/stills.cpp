@@ -38,7 +38,7 @@ Stills::Stills(const Scene& scene, const FilmBounds& film, std::span<const float
 }
 
 Stills::Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads)
-    : Stills(scene, FilmBounds(spacings, first), spacings, threads) {}
+    : Stills(scene, FilmBounds(spacings, first, scene.emitters), spacings, threads) {}
 
 render::Image Stills::take(const ParticleFrame& frame, const Mesh& surface) {
   const std::vector<Collider> colliders = colliders_at(scene_, frame.time);

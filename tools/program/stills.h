@@ -26,6 +26,8 @@ class Stills {
   /// Of a film of which one frame is known.
   Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads);
 
+  const render::Camera& camera() const { return camera_; }
+
   /// Simulated time from one frame to the next [s], of which the shutter is open for a share; 0 to begin
   /// with.
   void set_frame_time(double seconds) {

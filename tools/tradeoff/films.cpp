@@ -77,7 +77,7 @@ class Filmer {
       : study_(study),
         runner_(options, study.frames, study.frame_time),
         deadline_(deadline),
-        film_(study.rows.front().motion.spacings) {
+        film_(study.rows.front().motion.spacings, study.rows.front().setting.scene.emitters) {
     for (const MotionMoment& moment : study.rows.front().motion.moments) film_.add(moment.particles);
   }
 

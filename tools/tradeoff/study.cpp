@@ -36,7 +36,7 @@ constexpr float k_fine_voxels = 2;  ///< of the surface that others are compared
 
 /// The pixels of the scene's camera.
 PixelOf camera_of(const Scene& scene, const Motion& motion) {
-  program::FilmBounds film(motion.spacings);
+  program::FilmBounds film(motion.spacings, scene.emitters);
   for (const MotionMoment& moment : motion.moments) film.add(moment.particles);
   const auto camera =
       render::frame_camera(film.boxes(scene), scene.render, program::visible_colliders(scene));

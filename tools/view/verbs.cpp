@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace mallow::view {
@@ -55,7 +56,10 @@ BodyId throw_ball(Simulation& simulation, MaterialId material, const Ray& ray, f
   const Vec3 start = ray.origin + 2 * ball.radius * ray.direction;
   for (Vec3& x : body.positions) x += start;
   body.velocity = ball.speed * ray.direction;
-  return simulation.add_body(body, material, "ball");
+  int number = 1;
+  const auto name = [&] { return "ball " + std::to_string(number); };
+  while (simulation.find_body(name())) ++number;
+  return simulation.add_body(body, material, name());
 }
 
 std::string poke(Simulation& simulation, const Ray& ray, float radius, float speed) {

@@ -130,6 +130,12 @@ struct NearestParticle {
   ParticleId particle;
   BodyId body;
 };
+/// Pieces of a body that shape matching holds together: particles are in one where they share a region,
+/// directly or through others.
+struct BodyParts {
+  std::size_t parts = 1;   ///< of four particles or more
+  std::size_t crumbs = 0;  ///< smaller ones
+};
 /// A body as a whole; pinned particles count as all others.
 struct BodyMotion {
   double mass;                       ///< [kg]
@@ -217,6 +223,9 @@ class MALLOW_EXPORT Simulation {
   SinkId add_sink(const Aabb& box, bool outside = false);
   /// Throws ConfigError where there is none of this id.
   void remove_sink(SinkId sink);
+  /// How many particles it has taken. Throws as remove_sink() does.
+  std::uint64_t drained(SinkId sink) const;
+  std::vector<SinkId> sink_ids() const;  ///< of all that there are, as they were added
   /// Particles that are in `region` now move with `velocity` from now on and answer to nothing else. The
   /// region may hold none: that is a ConfigError, as nobody means it.
   PinId pin(const Aabb& region, const Vec3& velocity = {0, 0, 0});
@@ -462,6 +471,10 @@ class MALLOW_EXPORT Simulation {
   /// has given way to a compressed one knows of that no more. Else of its particles at rest. Summed in
   /// double, as slow as energy(), and throws as that does.
   double volume(BodyId body) const;
+
+  /// In how many parts a body is now; in one where no shapes are matched. What prepare() would do is done
+  /// first, as energy() does it, and throws what that throws, or as bounds() does.
+  BodyParts parts(BodyId body) const;
 
   /// 64 bits of positions and velocities in id order, time and step: equal states have equal hashes.
   std::uint64_t state_hash() const;

@@ -182,6 +182,10 @@ void bind_queries(py::module_& module) {
       .field("particle", &NearestParticle::particle)
       .field("body", &NearestParticle::body)
       .done();
+  Struct<BodyParts>(module, "BodyParts", Change::frozen)
+      .field("parts", &BodyParts::parts)
+      .field("crumbs", &BodyParts::crumbs)
+      .done();
   Struct<BodyMotion>(module, "BodyMotion", Change::frozen)
       .field("mass", &BodyMotion::mass)
       .field("center_of_mass", &BodyMotion::center_of_mass)

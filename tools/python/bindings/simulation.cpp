@@ -104,6 +104,7 @@ void bind_steps(SimulationClass& simulation) {
       .def("energy", long_verb(py::overload_cast<BodyId>(&Simulation::energy, py::const_)), py::arg("body"),
            doc("Simulation.energy#2"))
       .def("volume", long_verb(&Simulation::volume), py::arg("body"), doc("Simulation.volume"))
+      .def("parts", long_verb(&Simulation::parts), py::arg("body"), doc("Simulation.parts"))
       .def("info", long_verb(&Simulation::info), doc("Simulation.info"))
       .def(
           "save",

@@ -132,6 +132,8 @@ void bind_of_scene(SimulationClass& simulation) {
   def("emitter", query(&Simulation::emitter), "emitter");
   def("emitter_ids", query(&Simulation::emitter_ids));
   def("held", query(&Simulation::held), "emitter");
+  def("sink_ids", query(&Simulation::sink_ids));
+  def("drained", query(&Simulation::drained), "sink");
   def("colliders", query(&Simulation::colliders));
   def("collider_ids", query(&Simulation::collider_ids));
   def("collider", query(&Simulation::collider), "collider");
