@@ -261,19 +261,21 @@ void simulate(Run& run, const program::Cache* cache) {
                              program::interrupted());
 }
 
-/// What is left of a run that ended in its middle, where that is more than nothing, and what to do with it.
-/// in_step: a step could not be taken, and cannot be when it is tried again.
-std::string how_to_go_on(const program::Cache* cache, const program::RunReport& report, bool in_step) {
+enum class RunStop { interrupted, failed, step_failed };
+
+/// What is left of a run that ended in its middle, where that is more than nothing, and what to do with it. A
+/// step that could not be taken cannot be when it is tried again.
+std::string how_to_go_on(const program::Cache* cache, const program::RunReport& report, RunStop stop) {
   std::error_code unknown;
   if (!cache || !std::filesystem::exists(cache->checkpoint_file(), unknown)) return {};
   const std::string left =
       "\n  " + std::to_string(report.frames + 1) + " frames are whole, and a checkpoint is there; ";
-  if (in_step)
+  if (stop == RunStop::step_failed)
     return left +
            "--resume would fail in the same step: change what the message names and run the scene anew, or "
            "restore the checkpoint in a program and change it there";
-  return left + "to go on, once what is wrong is mended: mallow run --resume " +
-         program::shell_word(cache->folder().string());
+  return left + "to go on" + (stop == RunStop::failed ? ", once what is wrong is mended" : "") +
+         ": mallow run --resume " + program::shell_word(cache->folder().string());
 }
 
 /// Motion, surfaces, pictures and film; the report says what was done, also when this throws.
@@ -295,7 +297,7 @@ void run_stages(const RunOptions& options, Run& run) {
       PictureTaker(run.scene, *cache, pictures)
           .take_all(PictureTaker::Existing::keep, run.report.stage_seconds);
     } catch (const program::Interrupted& told) {
-      throw program::Interrupted(told.what() + how_to_go_on(cache, run.report, false),
+      throw program::Interrupted(told.what() + how_to_go_on(cache, run.report, RunStop::interrupted),
                                  program::interrupted());
     }
   }
@@ -372,7 +374,8 @@ void run(const RunOptions& options) {
     }
     if (dynamic_cast<const program::Interrupted*>(&failure)) throw;
     const bool in_step = dynamic_cast<const StepError*>(&failure) != nullptr;
-    throw program::RunFailure(failure.what() + how_to_go_on(out, run.report, in_step));
+    throw program::RunFailure(
+        failure.what() + how_to_go_on(out, run.report, in_step ? RunStop::step_failed : RunStop::failed));
   }
   print_result(run.scene, out, run.report);
   require_film(options.film);
