@@ -21,6 +21,8 @@ constexpr float k_least_spread = 0.15f;
 /// Nodes are at most this share of the kernel radius apart. Cubic interpolation is off by 0.6% of a
 /// particle's weight at a quarter.
 constexpr double k_node_distance = 0.2;
+/// Weights below this are no part of a body: a particle's is so far out at 0.85 of its radius.
+constexpr float k_least_weight = 0.02f;
 /// Probes are at most this far apart, in spacings: less than a sphere is wide at the default particle radius
 /// and at most what three voxels of background bridge.
 constexpr double k_probe_distance = 0.75;
@@ -49,8 +51,18 @@ SurfaceShape make_shape(const SurfaceConfig& config, double spacing, double voxe
           .extra_spread = k_extra_spread,
           // ∫ (1 − r²)³ dV = 64π/315 for one particle per cubic spacing.
           .full_weight = static_cast<float>(64 * std::numbers::pi / 315 * radius * radius * radius),
+          .least_weight = k_least_weight,
           .threshold = 0,
           .background = SurfaceField::k_background};
+}
+
+/// k_least_weight where weights are interpolated. A cubic leaves some up to three nodes away from a body,
+/// where there is none, and a mean that may be anywhere: crumbs. What is near enough to count has twice as
+/// much: a lone particle where its distance is cut.
+float least_interpolated_weight(const SurfaceShape& shape) {
+  const float cut = shape.offset + shape.background * shape.voxel_size;
+  const float t = std::max(0.0f, 1 - cut * cut);
+  return std::max(k_least_weight, 0.5f * t * t * t);
 }
 
 /// The farthest from all particles that a point inside can be, in kernel radii: their mean square distance,
@@ -98,7 +110,10 @@ void SurfaceField::build(const PickedVectors& positions, float spacing, const Su
       // The cells around an edge that leaves the body are less than two voxels away. Sums are interpolated
       // from nodes in all blocks that any particle reaches.
       reach = farthest_inside(shape_) * static_cast<double>(config.kernel_radius) * voxels + 2;
-      if (node_step_ > 1) reach = std::max(reach, static_cast<double>(config.kernel_radius) * voxels);
+      if (node_step_ > 1) {
+        reach = std::max(reach, static_cast<double>(config.kernel_radius) * voxels);
+        shape_.least_weight = least_interpolated_weight(shape_);
+      }
       break;
     case SurfaceKind::anisotropic:
       radius_ = config.kernel_radius * spacing;
