@@ -18,9 +18,10 @@ constexpr float k_spread = 0.0375f, k_extra_spread = 0.2625f;
 /// The least of it, in squared spacings: a small kernel sees but few particles of a full body.
 constexpr float k_least_spread = 0.15f;
 
-/// Nodes are at most this share of the kernel radius apart. Cubic interpolation is off by 0.6% of a
-/// particle's weight at a quarter.
-constexpr double k_node_distance = 0.2;
+/// Nodes two and four voxels apart are at most this share of the kernel radius apart. Cubic interpolation is
+/// off by 0.6% of a particle's weight at a quarter. Nodes that are a wider voxel apart may be so by more
+/// before the surface is off by as much of one.
+constexpr double k_near_nodes = 0.22, k_far_nodes = 0.2;
 /// Weights below this are no part of a body: a particle's is so far out at 0.85 of its radius.
 constexpr float k_least_weight = 0.02f;
 /// Probes are at most this far apart, in spacings: less than a sphere is wide at the default particle radius
@@ -76,6 +77,10 @@ double farthest_inside(const SurfaceShape& shape) {
 int step_within(double distance) {
   return distance >= 4 ? 4 : distance >= 2 ? 2 : 1;
 }
+/// Voxels from node to node where the kernel reaches over so many of them.
+int node_step(double radius) {
+  return std::max(step_within(k_far_nodes * radius), std::min(2, step_within(k_near_nodes * radius)));
+}
 
 void find_neighbors(const BlockMap& blocks, const Threads& threads,
                     std::vector<std::array<std::uint32_t, 27>>& neighbors) {
@@ -106,7 +111,7 @@ void SurfaceField::build(const PickedVectors& positions, float spacing, const Su
   switch (config.kind) {
     case SurfaceKind::blended:
       radius_ = config.kernel_radius * spacing;
-      node_step_ = step_within(k_node_distance * static_cast<double>(config.kernel_radius) * voxels);
+      node_step_ = node_step(static_cast<double>(config.kernel_radius) * voxels);
       // The cells around an edge that leaves the body are less than two voxels away. Sums are interpolated
       // from nodes in all blocks that any particle reaches.
       reach = farthest_inside(shape_) * static_cast<double>(config.kernel_radius) * voxels + 2;
