@@ -202,7 +202,7 @@ void SurfaceField::probe(const Threads& threads) {
   signs_.resize(blocks_.size());
   if (probe_step_ == 1) distances_.resize_unset(n * blocks_.size());
   const bool keep = node_step_ == probe_step_ && node_step_ > 1;
-  if (keep) node_sums_.resize(k_sums * n * blocks_.size());
+  if (keep) node_sums_.resize_unset(k_sums * n * blocks_.size());
   for_each_block(
       threads, [](std::uint32_t) { return true; },
       [&](std::uint32_t b, BlockNear& near) {
@@ -305,7 +305,7 @@ void SurfaceField::sum_at_nodes(const Threads& threads) {
     node_place_[b] = stored;
     if (needs_nodes_[b]) stored += k_sums * n;
   }
-  node_sums_.resize(stored);
+  node_sums_.resize_unset(stored);
   for_each_block(
       threads, [&](std::uint32_t b) { return needs_nodes_[b] != 0; },
       [&](std::uint32_t b, BlockNear& near) {
@@ -344,8 +344,8 @@ void SurfaceField::fill(const Threads& threads) {
 }
 
 std::size_t SurfaceField::bytes() const {
-  return particles_.bytes() + finder_.bytes() + blocks_.bytes() + distances_.bytes() +
-         neighbors_.capacity() * sizeof neighbors_[0] + node_sums_.capacity() * sizeof(float) +
+  return particles_.bytes() + finder_.bytes() + blocks_.bytes() + distances_.bytes() + node_sums_.bytes() +
+         neighbors_.capacity() * sizeof neighbors_[0] +
          (place_.capacity() + node_place_.capacity()) * sizeof(std::size_t) + kind_.capacity() +
          signs_.capacity() * sizeof(BlockBits) + needs_nodes_.capacity() + outside_.capacity() +
          inside_.capacity();

@@ -85,8 +85,10 @@ MALLOW_INLINE L blend(const NodeWeights& weights, std::size_t v, const L* nodes,
 }
 
 template <int step>
-void fill_between(const SurfaceShape& shape, const NodeWeights& weights, const NodeRows& nodes,
+void fill_between(const SurfaceShape& of, const NodeWeights& weights, const NodeRows& nodes,
                   float* to) noexcept {
+  // A copy that what is written cannot alias: else its quotients are taken anew for each row.
+  const SurfaceShape shape = of;
   constexpr std::size_t k_side = k_block_side;
   // Weights along z, a lane a voxel.
   Floats along_z[k_nodes];
