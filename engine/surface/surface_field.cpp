@@ -18,9 +18,12 @@ constexpr float k_spread = 0.0375f, k_extra_spread = 0.2625f;
 /// The least of it, in squared spacings: a small kernel sees but few particles of a full body.
 constexpr float k_least_spread = 0.15f;
 
-/// Nodes are at most this share of the kernel radius apart. Cubic interpolation is off by 0.6% of a
-/// particle's weight at a quarter.
-constexpr double k_node_distance = 0.2;
+/// Nodes two and four voxels apart are at most this share of the kernel radius apart. Cubic interpolation is
+/// off by 0.6% of a particle's weight at a quarter. Nodes that are a wider voxel apart may be so by more
+/// before the surface is off by as much of one.
+constexpr double k_near_nodes = 0.22, k_far_nodes = 0.2;
+/// Weights below this are no part of a body: a particle's is so far out at 0.85 of its radius.
+constexpr float k_least_weight = 0.02f;
 /// Probes are at most this far apart, in spacings: less than a sphere is wide at the default particle radius
 /// and at most what three voxels of background bridge.
 constexpr double k_probe_distance = 0.75;
@@ -49,8 +52,18 @@ SurfaceShape make_shape(const SurfaceConfig& config, double spacing, double voxe
           .extra_spread = k_extra_spread,
           // ∫ (1 − r²)³ dV = 64π/315 for one particle per cubic spacing.
           .full_weight = static_cast<float>(64 * std::numbers::pi / 315 * radius * radius * radius),
+          .least_weight = k_least_weight,
           .threshold = 0,
           .background = SurfaceField::k_background};
+}
+
+/// k_least_weight where weights are interpolated. A cubic leaves some up to three nodes away from a body,
+/// where there is none, and a mean that may be anywhere: crumbs. What is near enough to count has twice as
+/// much: a lone particle where its distance is cut.
+float least_interpolated_weight(const SurfaceShape& shape) {
+  const float cut = shape.offset + shape.background * shape.voxel_size;
+  const float t = std::max(0.0f, 1 - cut * cut);
+  return std::max(k_least_weight, 0.5f * t * t * t);
 }
 
 /// The farthest from all particles that a point inside can be, in kernel radii: their mean square distance,
@@ -63,6 +76,10 @@ double farthest_inside(const SurfaceShape& shape) {
 /// The largest of 4, 2, 1 voxels that is at most `distance`.
 int step_within(double distance) {
   return distance >= 4 ? 4 : distance >= 2 ? 2 : 1;
+}
+/// Voxels from node to node where the kernel reaches over so many of them.
+int node_step(double radius) {
+  return std::max(step_within(k_far_nodes * radius), std::min(2, step_within(k_near_nodes * radius)));
 }
 
 void find_neighbors(const BlockMap& blocks, const Threads& threads,
@@ -94,11 +111,14 @@ void SurfaceField::build(const PickedVectors& positions, float spacing, const Su
   switch (config.kind) {
     case SurfaceKind::blended:
       radius_ = config.kernel_radius * spacing;
-      node_step_ = step_within(k_node_distance * static_cast<double>(config.kernel_radius) * voxels);
+      node_step_ = node_step(static_cast<double>(config.kernel_radius) * voxels);
       // The cells around an edge that leaves the body are less than two voxels away. Sums are interpolated
       // from nodes in all blocks that any particle reaches.
       reach = farthest_inside(shape_) * static_cast<double>(config.kernel_radius) * voxels + 2;
-      if (node_step_ > 1) reach = std::max(reach, static_cast<double>(config.kernel_radius) * voxels);
+      if (node_step_ > 1) {
+        reach = std::max(reach, static_cast<double>(config.kernel_radius) * voxels);
+        shape_.least_weight = least_interpolated_weight(shape_);
+      }
       break;
     case SurfaceKind::anisotropic:
       radius_ = config.kernel_radius * spacing;
@@ -182,7 +202,7 @@ void SurfaceField::probe(const Threads& threads) {
   signs_.resize(blocks_.size());
   if (probe_step_ == 1) distances_.resize_unset(n * blocks_.size());
   const bool keep = node_step_ == probe_step_ && node_step_ > 1;
-  if (keep) node_sums_.resize(k_sums * n * blocks_.size());
+  if (keep) node_sums_.resize_unset(k_sums * n * blocks_.size());
   for_each_block(
       threads, [](std::uint32_t) { return true; },
       [&](std::uint32_t b, BlockNear& near) {
@@ -285,7 +305,7 @@ void SurfaceField::sum_at_nodes(const Threads& threads) {
     node_place_[b] = stored;
     if (needs_nodes_[b]) stored += k_sums * n;
   }
-  node_sums_.resize(stored);
+  node_sums_.resize_unset(stored);
   for_each_block(
       threads, [&](std::uint32_t b) { return needs_nodes_[b] != 0; },
       [&](std::uint32_t b, BlockNear& near) {
@@ -324,8 +344,8 @@ void SurfaceField::fill(const Threads& threads) {
 }
 
 std::size_t SurfaceField::bytes() const {
-  return particles_.bytes() + finder_.bytes() + blocks_.bytes() + distances_.bytes() +
-         neighbors_.capacity() * sizeof neighbors_[0] + node_sums_.capacity() * sizeof(float) +
+  return particles_.bytes() + finder_.bytes() + blocks_.bytes() + distances_.bytes() + node_sums_.bytes() +
+         neighbors_.capacity() * sizeof neighbors_[0] +
          (place_.capacity() + node_place_.capacity()) * sizeof(std::size_t) + kind_.capacity() +
          signs_.capacity() * sizeof(BlockBits) + needs_nodes_.capacity() + outside_.capacity() +
          inside_.capacity();

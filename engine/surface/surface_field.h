@@ -100,7 +100,7 @@ class SurfaceField {
   /// Of each block, a bit for each slot: whether all of its probes are outside, and inside. Slot 4 x + 2 y +
   /// z of 0 and 1: along an axis that has a 1 only those of the first slice count.
   std::vector<std::uint8_t> outside_, inside_;
-  std::vector<float> node_sums_;  ///< of the blocks that need them
+  Column<float> node_sums_;  ///< of the blocks that need them
   std::vector<std::size_t> node_place_, place_;
   std::vector<BlockBits> signs_;  ///< of each block, set where the surface is in it
   Column<float> distances_;

@@ -18,10 +18,6 @@ namespace {
 
 static_assert(k_cluster == k_block_side, "a row of voxels is a row of lanes");
 
-/// Weights below this are no part of a body: a particle's is so far out at 0.85 of its radius. Interpolated
-/// sums are wrong by a fifth of it at the most.
-constexpr float k_least_weight = 0.02f;
-
 /// Densities, and slopes of them [per kernel radius], below this are none.
 constexpr float k_least_density = 1e-6f, k_least_slope = 1e-6f;
 
@@ -46,13 +42,13 @@ MALLOW_INLINE L cut(const SurfaceShape& shape, const L& distance) {
 template <class L>
 MALLOW_INLINE L distance_of(const SurfaceShape& shape, const Sums<L>& s) {
   const L full = smaller(2.0f / shape.full_weight * s.weight, in_all<L>(1.0f));
-  const L per_weight = 1.0f / larger(s.weight, in_all<L>(k_least_weight));
+  const L per_weight = 1.0f / larger(s.weight, in_all<L>(shape.least_weight));
   const Vec3Of<L> mean = per_weight * s.offset;
   const L from_mean = dot_from_left(mean, mean);
   const L excess = s.square * per_weight - from_mean - (shape.spread + shape.extra_spread * full);
   const L r = shape.offset + shape.extra_offset * full;
   const L distance = square_root(from_mean + k_excess_share * larger(excess, L{})) - r;
-  const auto body = is_larger(s.weight, in_all<L>(k_least_weight));
+  const auto body = is_larger(s.weight, in_all<L>(shape.least_weight));
   const L outside = where(~body, in_all<L>(shape.background));
   return where(body, cut(shape, distance * (1.0f / shape.voxel_size))) + outside;
 }
@@ -89,8 +85,10 @@ MALLOW_INLINE L blend(const NodeWeights& weights, std::size_t v, const L* nodes,
 }
 
 template <int step>
-void fill_between(const SurfaceShape& shape, const NodeWeights& weights, const NodeRows& nodes,
+void fill_between(const SurfaceShape& of, const NodeWeights& weights, const NodeRows& nodes,
                   float* to) noexcept {
+  // A copy that what is written cannot alias: else its quotients are taken anew for each row.
+  const SurfaceShape shape = of;
   constexpr std::size_t k_side = k_block_side;
   // Weights along z, a lane a voxel.
   Floats along_z[k_nodes];

@@ -23,6 +23,7 @@ struct SurfaceShape {
   float spread;        ///< variance of the x_i about x̄ that is taken for one part of a body at fullness 0
   float extra_spread;  ///< added to it at fullness 1/2
   float full_weight;   ///< Σ w in the middle of a body
+  float least_weight;  ///< Σ w below this is no part of a body
   float threshold;     ///< fourth root of the density at the surface, where kernels are anisotropic
   float background;    ///< distances are cut here [voxels]
 };

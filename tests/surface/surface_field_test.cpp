@@ -96,11 +96,12 @@ std::vector<Vec3> shaken_ball(float radius) {
   return ball.positions;
 }
 
-/// Probes at each voxel (0.45), sums at each (0.3), at every second (0.15) and at every fourth one (0.08).
+/// Probes at each voxel (0.45), sums at each (0.3), at every second (as few as are allowed at 0.219, 0.15)
+/// and at every fourth one (0.08).
 TEST(surface_field, near_the_surface_is_the_formula_of_its_source_also_where_sums_are_interpolated) {
   const std::vector<Vec3> positions = shaken_ball(4);
   const LiteralDistance literal(positions, 2);
-  for (const double voxel_size : {0.45, 0.3, 0.15, 0.08}) {
+  for (const double voxel_size : {0.45, 0.3, 0.219, 0.15, 0.08}) {
     const SurfaceField field = build_field(positions, voxel_size, {});
     double worst = 0, sum = 0;
     int checked = 0, k = 0;
@@ -112,8 +113,8 @@ TEST(surface_field, near_the_surface_is_the_formula_of_its_source_also_where_sum
       ++checked;
     });
     ASSERT_GT(checked, 100);
-    EXPECT_LT(worst, voxel_size > 0.2 ? 1e-4 : 0.15) << voxel_size;
-    EXPECT_LT(sum / checked, voxel_size > 0.2 ? 1e-5 : 0.02) << voxel_size;
+    EXPECT_LT(worst, voxel_size > 0.22 ? 1e-4 : 0.15) << voxel_size;
+    EXPECT_LT(sum / checked, voxel_size > 0.22 ? 1e-5 : 0.02) << voxel_size;
   }
 }
 

@@ -19,6 +19,7 @@ constexpr SurfaceShape k_shape{.voxel_size = 0.1f,
                                .spread = 0.0375f,
                                .extra_spread = 0.2625f,
                                .full_weight = 5.1f,
+                               .least_weight = 0.02f,
                                .threshold = 0.5f,
                                .background = 3.0f};
 

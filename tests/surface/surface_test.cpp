@@ -3,6 +3,7 @@
 #include <limits>
 #include <random>
 
+#include "mallow/body.h"
 #include "mallow/surface.h"
 #include "meshes.h"
 
@@ -152,6 +153,22 @@ TEST(surface, of_a_sheet_has_two_sides) {
   const Mesh mesh = surface(points, 1, k_coarse);
   expect_sound(mesh, 1);
   EXPECT_NEAR(signed_volume(mesh), 1.1 * 12 * 12, 0.05 * 1.1 * 12 * 12);
+}
+
+/// Voxels as wide as those that sums are still interpolated to may be: 0.11 kernel radii.
+TEST(surface, is_one_piece_where_kernels_reach_far_and_where_a_body_is_pressed) {
+  for (const float kernel_radius : {2.0f, 2.5f, 3.0f, 4.0f}) {
+    for (const float pressed : {1.0f, 0.8f}) {
+      for (const float share : {0.09f, 0.0995f, 0.1095f}) {
+        SCOPED_TRACE(testing::Message() << kernel_radius << ", " << pressed << ", " << share);
+        std::vector<Vec3> points =
+            sample(Lattice{.count = {9, 9, 9}, .spacing = 1, .jitter = 0.3f}).positions;
+        for (Vec3& x : points) x = pressed * (Eigen::AngleAxisf(0.5f, Vec3(1, 2, 3).normalized()) * x);
+        expect_sound(
+            surface(points, 1, {.voxel_size = share * kernel_radius, .kernel_radius = kernel_radius}), 1);
+      }
+    }
+  }
 }
 
 TEST(surface, of_no_particles_is_empty) {
