@@ -9,7 +9,7 @@ namespace mallow {
 namespace {
 
 /// Counted up whenever the chunks or what they mean change.
-constexpr std::uint32_t k_version = 14;
+constexpr std::uint32_t k_version = 15;
 static_assert(sizeof(std::size_t) == sizeof(std::uint64_t), "sizes are saved as they are");
 
 template <class Archive, class State>

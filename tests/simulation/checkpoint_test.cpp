@@ -354,7 +354,7 @@ TEST(checkpoint, of_another_version_is_refused) {
     Simulation::restore(saved);
     ADD_FAILURE();
   } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find("version 15; this build of mallow reads 14"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("version 16; this build of mallow reads 15"), std::string::npos)
         << error.what();
   }
 }
