@@ -17,4 +17,9 @@ inline bool has_free_units(const Vec3& gravity) {
   return gravity != Vec3::Zero() && !is_in_metres(gravity);
 }
 
+/// What stands behind a number, in units of SI; nothing where a scene has its own.
+inline const char* unit_of(const Vec3& gravity, const char* name) {
+  return has_free_units(gravity) ? "" : name;
+}
+
 }  // namespace mallow

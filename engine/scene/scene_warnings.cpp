@@ -2,13 +2,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <span>
 #include <sstream>
 #include <utility>
 
 #include "config/gravity_units.h"
 #include "mallow/materials.h"
 #include "mallow/scene.h"
+#include "scene/motion_warnings.h"
 #include "scene/scene_fields.h"
 #include "scene/surface_warnings.h"
 
@@ -145,25 +145,6 @@ void look_at_beginnings(const Scene& scene, double seconds, std::vector<std::str
   }
 }
 
-/// Half a turn [degrees]: from one keyframe to the next things turn the shorter way round.
-constexpr float k_half_turn = 180;
-
-/// What turns farther between two keyframes than it can: 0 to 360 degrees is no turn at all.
-void look_at_turns(const std::string& what, std::span<const SceneKeyframe> keys,
-                   std::vector<std::string>& all) {
-  for (std::size_t k = 1; k < keys.size(); ++k) {
-    const float turn = (keys[k].rotate - keys[k - 1].rotate).cwiseAbs().maxCoeff();
-    if (turn < k_half_turn) continue;
-    std::ostringstream text;
-    text << what << ": keyframes[" << k << "].rotate is " << turn
-         << " degrees from the one before, and the shorter way round is taken: give a keyframe for at most "
-            "every "
-         << k_half_turn - 1 << " degrees, or angular_velocity";
-    all.push_back(text.str());
-    return;
-  }
-}
-
 /// Numbers of degrees that are parts of a turn in radians, to this relative difference: twelfths of half a
 /// turn, from a twelfth to two.
 constexpr float k_same_turn = 1e-3f;
@@ -263,10 +244,7 @@ std::vector<std::string> warnings(const Scene& scene, const SimulationInfo& info
   look_at_creep(scene, seconds, all);
   look_at_heat(scene, info, seconds, all);
   look_at_beginnings(scene, seconds, all);
-  for (std::size_t c = 0; c < scene.colliders.size(); ++c)
-    look_at_turns("collider[" + std::to_string(c) + "]", scene.colliders[c].scene_keyframes, all);
-  for (std::size_t e = 0; e < scene.emitters.size(); ++e)
-    look_at_turns("emitter[" + std::to_string(e) + "]", scene.emitters[e].scene_keyframes, all);
+  for (std::string& text : motion_warnings(scene, seconds, frame)) all.push_back(std::move(text));
   const double gravity = static_cast<double>(scene.solver.gravity.norm());
   double spacing = std::numeric_limits<double>::infinity();
   for (const BodyInfo& body : info.bodies) spacing = std::min(spacing, static_cast<double>(body.spacing));

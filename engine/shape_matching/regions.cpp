@@ -155,10 +155,21 @@ void carry_measures(std::span<const Run> now, std::size_t regions, RegionScratch
 /// W_j, c̄_j and B_j of the regions [begin, end), but for those that did not change.
 void measure_regions(std::size_t begin, std::size_t end, const MomentLanes& lanes, const double* moment_rows,
                      const RegionScratch& scratch, ShapeMatching& shape) {
+  std::vector<Run> kept;
+  const auto runs_of = [&](std::size_t j) -> std::span<const Run> {
+    const RunLists& near = scratch.near;
+    if (near.kept.empty() || near.kept[j] != Kept::runs)
+      return near.of(scratch.owners.empty() ? j : scratch.owners[j]);
+    kept.clear();
+    shape.regions.for_each_whole_run(j, [&](std::uint32_t first, std::uint32_t count) {
+      kept.push_back({first, count});
+    });
+    return kept;
+  };
   for (std::size_t j = begin; j < end; ++j) {
     if (!scratch.changed.empty() && scratch.changed[j] == 0) continue;
     double s[k_moment_row];
-    const std::span<const Run> runs = scratch.near.of(scratch.owners.empty() ? j : scratch.owners[j]);
+    const std::span<const Run> runs = runs_of(j);
     lanes.sum_runs(moment_rows, runs.data(), runs.size(), s);
     const double weight = s[0];
     // In double, what cancels here is less than what the single precision of positions has lost.
@@ -265,7 +276,7 @@ void list_regions(const Execution& execution, RegionScratch& scratch, ShapeMatch
   if (!every) choose_owners(static_cast<std::uint32_t>(shape.region_stride), execution.threads, scratch);
   shape.owners.resize_unset(scratch.owners.size());
   std::copy(scratch.owners.begin(), scratch.owners.end(), shape.owners.begin());
-  encode(scratch.near, scratch.owners.span(), n, execution.threads, shape.regions);
+  encode(scratch.near, scratch.owners.span(), n, execution.threads, shape.regions, every ? former : nullptr);
   shape.weight.resize_unset(n);
   shape.average_neighbors =
       static_cast<double>(weigh_particles(every, execution.threads, scratch, shape)) / static_cast<double>(n);

@@ -11,7 +11,7 @@
 #include "core/threads.h"
 #include "particles/pillar_order.h"
 #include "shape_matching/plastic.h"
-#include "shape_matching/run_lists.h"
+#include "shape_matching/run_tables.h"
 
 namespace mallow {
 
@@ -21,6 +21,7 @@ struct ShapeMatching;
 struct RegionScratch {
   PillarOrder pillars;
   RunLists near;                       ///< per particle: those within the region radius
+  TableLists former;                   ///< lists before some particles came or went
   Column<std::uint32_t> owners;        ///< particles that own a region, ascending; with a stride above 1
   Column<std::uint32_t> first_region;  ///< per particle: regions of the particles before it
   Column<std::uint8_t> changed;        ///< per region: measured anew; empty where all are
@@ -32,8 +33,8 @@ struct RegionScratch {
   FlowScratch flow;
 
   std::size_t bytes() const {
-    return pillars.bytes() + near.bytes() + owners.bytes() + first_region.bytes() + changed.bytes() +
-           carried.bytes() + carried_center.bytes() + flow.bytes();
+    return pillars.bytes() + near.bytes() + former.bytes() + owners.bytes() + first_region.bytes() +
+           changed.bytes() + carried.bytes() + carried_center.bytes() + flow.bytes();
   }
 };
 

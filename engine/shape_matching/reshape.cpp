@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -50,24 +51,33 @@ Eigen::Quaternionf turn(const Eigen::Vector4f& rotation) {
 /// which evens out what their regions are turned by.
 struct Beside {
   std::size_t added;
-  std::vector<std::size_t> of;
+  std::size_t begin, end;  ///< of what it is put beside, in `of`
+};
+struct PutBeside {
+  std::vector<Beside> order;
+  std::vector<std::uint32_t> of;  ///< places in the body; of added points those behind it
+
+  std::span<const std::uint32_t> beside(const Beside& one) const {
+    return {of.data() + one.begin, one.end - one.begin};
+  }
 };
 
 /// In which order added points are put beside what is within the region radius: first those beside
 /// the body, then those beside these, and so on. Nothing is beside the rest.
-std::vector<Beside> put_beside(const VectorColumn& positions, std::size_t begin, std::span<const Vec3> added,
-                               const Execution& execution, const ShapeMatching& shape) {
+PutBeside put_beside(const VectorColumn& positions, std::size_t begin, std::span<const Vec3> added,
+                     const Execution& execution, const ShapeMatching& shape) {
   Aabb box = empty_box();
   for (const Vec3& x : added) box = box_around(box, {x, x});
-  std::vector<std::size_t> rows;
+  std::vector<std::uint32_t> rows;
   for (std::size_t i = 0; i < shape.reference.size(); ++i)
-    if (is_near(positions.get(begin + i), box, shape.region_radius)) rows.push_back(i);
+    if (is_near(positions.get(begin + i), box, shape.region_radius))
+      rows.push_back(static_cast<std::uint32_t>(i));
   const std::size_t n = rows.size();
   VectorColumn points(n + added.size());
   for (std::size_t k = 0; k < n; ++k) points.set(k, positions.get(begin + rows[k]));
   for (std::size_t k = 0; k < added.size(); ++k) {
     points.set(n + k, added[k]);
-    rows.push_back(shape.reference.size() + k);
+    rows.push_back(static_cast<std::uint32_t>(shape.reference.size() + k));
   }
   CellGrid grid;
   NeighborLists lists;
@@ -76,30 +86,31 @@ std::vector<Beside> put_beside(const VectorColumn& positions, std::size_t begin,
 
   std::vector<bool> placed(points.size(), false);
   std::fill_n(placed.begin(), n, true);
-  const auto beside = [&](std::size_t own, std::span<const std::uint32_t> list) {
-    std::vector<std::pair<float, std::size_t>> found;
-    for (const std::uint32_t t : list)
-      if (const std::size_t other = grid.order[t]; placed[other])
-        found.emplace_back((points.get(own) - points.get(other)).squaredNorm(), rows[other]);
+  PutBeside put;
+  std::vector<std::uint64_t> found;  // bits of a distance, which are in its order, and a row
+  const auto find_beside = [&](std::size_t own, std::span<const std::uint32_t> list) {
+    found.clear();
+    for (const std::uint32_t t : list) {
+      const std::size_t other = grid.order[t];
+      if (!placed[other]) continue;
+      const float distance = (points.get(own) - points.get(other)).squaredNorm();
+      found.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(distance)} << 32 | rows[other]);
+    }
     // Of several as near the first, so that the order of a list does not matter.
     std::ranges::sort(found);
-    std::vector<std::size_t> of;
-    for (const auto& [distance, row] : found) of.push_back(row);
-    return of;
+    if (found.empty()) return;
+    put.order.push_back({own - n, put.of.size(), put.of.size() + found.size()});
+    for (const std::uint64_t one : found) put.of.push_back(static_cast<std::uint32_t>(one));
   };
-  std::vector<Beside> order;
-  for (std::size_t before = SIZE_MAX; order.size() < added.size() && order.size() != before;) {
-    before = order.size();
-    for (std::size_t s = 0; s < points.size(); ++s) {
-      const std::size_t own = grid.order[s];
-      if (placed[own]) continue;
-      if (auto of = beside(own, lists.of(s)); !of.empty()) order.push_back({own - n, std::move(of)});
-    }
-    for (std::size_t k = before; k < order.size(); ++k) placed[n + order[k].added] = true;
+  for (std::size_t before = SIZE_MAX; put.order.size() < added.size() && put.order.size() != before;) {
+    before = put.order.size();
+    for (std::size_t s = 0; s < points.size(); ++s)
+      if (const std::size_t own = grid.order[s]; !placed[own]) find_beside(own, lists.of(s));
+    for (std::size_t k = before; k < put.order.size(); ++k) placed[n + put.order[k].added] = true;
   }
   for (std::size_t k = 0; k < added.size(); ++k)
-    if (!placed[n + k]) order.push_back({k, {}});
-  return order;
+    if (!placed[n + k]) put.order.push_back({k, 0, 0});
+  return put;
 }
 
 /// Puts particles beside others that are in place already.
@@ -247,7 +258,8 @@ void build_carried(const CarriedRegions& carried, const Execution& execution, Re
     if (carried.former[i] != FormerLists::k_none) now[carried.former[i]] = {static_cast<std::uint32_t>(i), 1};
   for (std::size_t r = now.size(); r-- > 1;)
     if (now[r - 1].count > 0 && now[r - 1].first + 1 == now[r].first) now[r - 1].count += now[r].count;
-  const FormerLists former{shape.regions, carried.former, now, carried.news};
+  copy_lists(shape.regions, scratch.former);
+  const FormerLists former{scratch.former, carried.former, now, carried.news, shape.weight.span()};
   build_regions(execution, scratch, shape, &former);
   for (std::size_t j = 0; j < shape.region_weight.size(); ++j) {
     const std::size_t row = shape.first_row(j);
@@ -301,7 +313,7 @@ void rest_anew(const VectorColumn& positions, std::size_t begin, std::span<const
 void append_to_reference(const VectorColumn& positions, std::size_t begin, std::span<const Vec3> added,
                          const Execution& execution, CarriedRegions& carried, ShapeMatching& shape) {
   const std::size_t n = shape.reference.size();
-  const std::vector<Beside> order = put_beside(positions, begin, added, execution, shape);
+  const PutBeside beside = put_beside(positions, begin, added, execution, shape);
   Eigen::Vector3d middle(0, 0, 0);
   for (std::size_t i = 0; i < n; ++i)
     middle += positions.get(begin + i).cast<double>() / static_cast<double>(n);
@@ -317,7 +329,9 @@ void append_to_reference(const VectorColumn& positions, std::size_t begin, std::
     if (shape.flows) away = stretch.stretch.inverse() * away;
     return Vec3(rest + away);
   };
-  for (const auto& [k, of] : order) {
+  for (const Beside& one : beside.order) {
+    const std::size_t k = one.added;
+    const std::span<const std::uint32_t> of = beside.beside(one);
     CarriedStretch stretch{};
     if (shape.flows && !of.empty()) stretch.stretch = carried.stretches[of[0]].stretch;
     Eigen::Vector4f rotation = of.empty() ? whole : carried.rotations[of[0]];

@@ -61,6 +61,8 @@ struct Search {
   float news_reach;  ///< of what came, rounding included [m]
   int reach[2];
   std::vector<PillarBounds> bounds;
+  bool in_order = false;             ///< all former points are still there, one behind the other as before
+  std::vector<std::uint8_t> broken;  ///< per row, of former ones in order: a run of its list is two now
 
   Search(const PillarOrder& order, float radius, const Execution& execution, const FormerLists* known)
       : pillars(order),
@@ -76,6 +78,7 @@ struct Search {
       reach[k] =
           static_cast<int>(std::min(static_cast<float>(order.dims[k]), radius * order.inverse_width + 2.0f));
     }
+    if (former) find_broken();
     parallel_for(execution.threads, bounds.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t c = begin; c < end; ++c)
         for (std::size_t k = 0; k < 2; ++k) {
@@ -147,41 +150,71 @@ struct Search {
     scratch.runs += count;
   }
 
+  /// What came between two rows broke the runs of those lists that have both. A point is in the lists of
+  /// those that are in its own, so two lists name them all.
+  void find_broken() {
+    const std::span<const Run> now = former->now;
+    in_order = std::ranges::all_of(now, [](const Run& run) { return run.count > 0; }) &&
+               std::ranges::is_sorted(now, {}, &Run::first);
+    if (!in_order) return;
+    broken.assign(former->former.size(), 0);
+    std::vector<std::uint32_t> has_first(now.size(), 0);
+    for (std::uint32_t r = 0; r + 1 < now.size(); ++r) {
+      if (now[r].count > 1) continue;
+      const auto visit = [&](std::uint32_t list, const auto& each) {
+        former->lists.for_each_whole_run(list, [&](std::uint32_t first, std::uint32_t count) {
+          for (std::uint32_t k = first; k < first + count; ++k) each(k);
+        });
+      };
+      visit(r, [&](std::uint32_t k) { has_first[k] = r + 1; });
+      visit(r + 1, [&](std::uint32_t k) {
+        if (has_first[k] == r + 1) broken[now[k].first] = 1;
+      });
+    }
+  }
+
+  /// Whether the former list of a row has its runs still, in their order and apart from each other. members:
+  /// becomes how many rows there are in it.
+  bool keeps_runs(std::uint32_t row, std::uint32_t& members) const {
+    if (in_order) {
+      members = static_cast<std::uint32_t>(std::lround(1 / former->weight[former->former[row]]));
+      return broken[row] == 0;
+    }
+    bool same = true;
+    std::uint32_t behind = 0;  // the last run and the row that would be part of it
+    members = 0;
+    former->lists.for_each_whole_run(former->former[row], [&](std::uint32_t first, std::uint32_t count) {
+      const Run& moved = former->now[first];
+      same = same && moved.count >= count && (members == 0 || behind < moved.first);
+      behind = moved.first + count;
+      members += count;
+    });
+    return same;
+  }
+
   /// Appends the former list of a row: those of it that are still there, by their rows. Returns how many.
   std::uint32_t take_former(std::uint32_t row, Scratch& scratch, Kept& kept) const {
     const TableLists& lists = former->lists;
-    const std::uint32_t list = former->former[row], rows = static_cast<std::uint32_t>(lists.rows);
-    const RunLengths& lengths = lists.lengths;
-    const std::uint32_t* const entries = lists.entries.data() + lists.begin[list];
-    Run* const runs = scratch.room(lists.count[list] * lengths.length[lengths.count - 1]);
+    const std::uint32_t list = former->former[row];
+    Run* const runs = scratch.room(lists.count[list] * lists.lengths.length[lists.lengths.count - 1]);
     std::uint32_t count = 0, members = 0;
-    const auto behind = [&] { return count > 0 ? runs[count - 1].first + runs[count - 1].count : 0; };
-    bool ascending = true, whole = true, same = true;
-    for (std::uint32_t k = 0; k < lists.count[list];) {
-      std::uint32_t r = entries[k] % rows, end = r;
-      for (; k < lists.count[list] && entries[k] % rows == end; ++k) end += lengths.length[entries[k] / rows];
-      const Run& moved = former->now[r];
-      if (moved.count >= end - r && (count == 0 || behind() < moved.first)) {
-        runs[count++] = {moved.first, end - r};
-        members += end - r;
-        continue;
-      }
-      same = false;
-      while (r < end) {
-        const Run now{former->now[r].first, std::min(former->now[r].count, end - r)};
+    bool ascending = true, whole = true;
+    lists.for_each_whole_run(list, [&](std::uint32_t first, std::uint32_t rows) {
+      for (std::uint32_t r = first; r < first + rows;) {
+        const Run now{former->now[r].first, std::min(former->now[r].count, first + rows - r)};
         r += std::max(now.count, 1u);
         members += now.count;
         whole = whole && now.count > 0;
-        if (count > 0 && behind() == now.first) {
+        if (count > 0 && runs[count - 1].first + runs[count - 1].count == now.first) {
           runs[count - 1].count += now.count;
         } else if (now.count > 0) {
           ascending = ascending && (count == 0 || runs[count - 1].first < now.first);
           runs[count++] = now;
         }
       }
-    }
+    });
     scratch.runs += ascending ? count : put_in_order({runs, count});
-    kept = same ? Kept::runs : whole ? Kept::points : Kept::none;
+    kept = whole ? Kept::points : Kept::none;
     return members;
   }
 
@@ -198,7 +231,10 @@ struct Search {
         const std::size_t from = scratch.runs;
         const std::uint32_t row = pillars.order[s];
         if (former && !is_near(pillars.sorted.get(s), former->news, news_reach)) {
-          lists.members[row] = take_former(row, scratch, lists.kept[row]);
+          if (keeps_runs(row, lists.members[row]))
+            lists.kept[row] = Kept::runs;
+          else
+            lists.members[row] = take_former(row, scratch, lists.kept[row]);
         } else {
           if (former) lists.kept[row] = Kept::none;
           // Of a pillar every other point at the most begins a run.

@@ -16,7 +16,8 @@ namespace mallow {
 
 struct TableLists;
 
-/// What a list has of its former one: not the same points, or those, or those in the same runs.
+/// What a list has of its former one: not the same points, or those, or those in the same runs. Then it is
+/// nowhere else, with the rows of now: what has a hundred thousand such lists and some new ones writes those.
 enum class Kept : std::uint8_t { none, points, runs };
 
 /// Per row a list of rows as runs, ascending and apart from each other.
@@ -25,7 +26,7 @@ struct RunLists {
   Column<std::uint32_t> count;    ///< per row: runs
   Column<std::uint32_t> members;  ///< per row: rows in its runs
   Column<Run> runs;               ///< the lists, with unused space between blocks
-  Column<Kept> kept;              ///< per row: of its former list; empty where none was known
+  Column<Kept> kept;  ///< per row: of its former list; empty where none was known; of kept runs none is here
 
   std::span<const Run> of(std::size_t row) const { return {runs.data() + begin[row], count[row]}; }
   std::size_t bytes() const {
@@ -42,7 +43,8 @@ struct FormerLists {
   /// Per former row: the rows that it and those behind it are, as far as they still follow each other; none
   /// if it went.
   std::span<const Run> now;
-  Aabb news;  ///< around all that came
+  Aabb news;                      ///< around all that came
+  std::span<const float> weight;  ///< by former row: 1 over how many points are in its list
 };
 
 /// Per point the points within a radius of it, itself included, by their rows: a row is what a point was

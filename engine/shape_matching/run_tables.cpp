@@ -56,17 +56,36 @@ void for_each_part(std::uint32_t count, const Body& body) {
   body(count);
 }
 
-Histogram count_runs(const RunLists& lists, std::span<const std::uint32_t> owners, std::size_t n,
-                     const Threads& threads, TableLists& coded) {
+/// Where the runs of lists are.
+struct Source {
+  const RunLists& lists;
+  std::span<const std::uint32_t> owners;
+  const FormerLists* former;  ///< null: all are in `lists`
+
+  bool is_kept(std::size_t j) const { return former && lists.kept[j] == Kept::runs; }
+  /// Calls visit(first row, how many) for the runs of a list.
+  template <class Visit>
+  void for_each_run(std::size_t j, const Visit& visit) const {
+    if (is_kept(j))
+      return former->lists.for_each_whole_run(
+          former->former[j],
+          [&](std::uint32_t first, std::uint32_t count) { visit(former->now[first].first, count); });
+    for (const Run& run : lists.of(owners.empty() ? j : owners[j])) visit(run.first, run.count);
+  }
+};
+
+void add_run(std::uint32_t count, Histogram& runs) {
+  for_each_part(count, [&](std::uint32_t part) { ++runs[part]; });
+  runs[0] += count;
+}
+
+Histogram count_all_runs(const Source& source, std::size_t n, const Threads& threads, TableLists& coded) {
   return parallel_reduce(
       threads, n, coded.partial_runs, Histogram{},
       [&](std::size_t begin, std::size_t end) {
         Histogram runs{};
         for (std::size_t j = begin; j < end; ++j)
-          for (const Run& run : lists.of(owners.empty() ? j : owners[j])) {
-            for_each_part(run.count, [&](std::uint32_t part) { ++runs[part]; });
-            runs[0] += run.count;
-          }
+          source.for_each_run(j, [&](std::uint32_t, std::uint32_t count) { add_run(count, runs); });
         return runs;
       },
       [](Histogram a, const Histogram& b) {
@@ -74,6 +93,83 @@ Histogram count_runs(const RunLists& lists, std::span<const std::uint32_t> owner
         return a;
       });
 }
+
+/// From those of former lists, less those that are no more, and those that are new.
+Histogram count_other_runs(const Source& source, std::size_t n) {
+  const FormerLists& former = *source.former;
+  Histogram gone{}, came{}, runs = former.lists.runs;
+  for (std::size_t r = 0; r < former.now.size(); ++r)
+    if (former.now[r].count == 0 || !source.is_kept(former.now[r].first))
+      former.lists.for_each_whole_run(r, [&](std::uint32_t, std::uint32_t count) { add_run(count, gone); });
+  for (std::size_t j = 0; j < n; ++j)
+    if (!source.is_kept(j))
+      source.for_each_run(j, [&](std::uint32_t, std::uint32_t count) { add_run(count, came); });
+  for (std::size_t k = 0; k < runs.size(); ++k) runs[k] = runs[k] - gone[k] + came[k];
+  return runs;
+}
+
+Histogram count_runs(const Source& source, std::size_t n, const Threads& threads, TableLists& coded) {
+  const auto kept = source.former ? std::ranges::count(source.lists.kept, Kept::runs) : 0;
+  return 2 * static_cast<std::size_t>(kept) > n ? count_other_runs(source, n)
+                                                : count_all_runs(source, n, threads, coded);
+}
+
+bool are_same(const RunLengths& a, const RunLengths& b) {
+  return std::equal(a.length, a.length + a.count, b.length, b.length + b.count);
+}
+
+/// Writes lists as entries of a table of `rows` rows.
+class Encoder {
+ public:
+  Encoder(const Source& source, std::size_t rows, const RunLengths& lengths)
+      : source_(source),
+        lengths_(lengths),
+        pieces_(lengths),
+        all_(static_cast<std::uint32_t>(rows)),
+        copies_(source.former && are_same(lengths, source.former->lists.lengths)) {}
+
+  std::uint32_t entries(std::size_t j) const {
+    if (copies_ && source_.is_kept(j)) return source_.former->lists.count[source_.former->former[j]];
+    std::uint32_t count = 0;
+    source_.for_each_run(j, [&](std::uint32_t, std::uint32_t run) {
+      for_each_part(run, [&](std::uint32_t part) { count += pieces_.count[part]; });
+    });
+    return count;
+  }
+
+  /// Returns the place behind.
+  std::uint32_t* write(std::size_t j, std::uint32_t* next) const {
+    if (copies_ && source_.is_kept(j)) return copy(j, next);
+    source_.for_each_run(j, [&](std::uint32_t row, std::uint32_t run) {
+      for_each_part(run, [&](std::uint32_t part) {
+        while (part > 0) {
+          const std::uint32_t l = pieces_.longest[part];
+          *next++ = l * all_ + row;
+          row += lengths_.length[l];
+          part -= lengths_.length[l];
+        }
+      });
+    });
+    return next;
+  }
+
+ private:
+  /// Entry by entry, as its runs are as they were.
+  std::uint32_t* copy(std::size_t j, std::uint32_t* next) const {
+    const FormerLists& former = *source_.former;
+    const std::uint32_t list = former.former[j], rows = static_cast<std::uint32_t>(former.lists.rows);
+    const std::uint32_t* const entries = former.lists.entries.data() + former.lists.begin[list];
+    for (std::uint32_t k = 0; k < former.lists.count[list]; ++k)
+      *next++ = entries[k] / rows * all_ + former.now[entries[k] % rows].first;
+    return next;
+  }
+
+  const Source& source_;
+  const RunLengths lengths_;
+  const Pieces pieces_;
+  const std::uint32_t all_;
+  const bool copies_;
+};
 
 }  // namespace
 
@@ -100,26 +196,20 @@ RunLengths choose_lengths(const Histogram& runs, std::size_t rows) {
 }
 
 void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::size_t rows,
-            const Threads& threads, TableLists& coded) {
+            const Threads& threads, TableLists& coded, const FormerLists* former) {
   const std::size_t n = owners.empty() ? lists.count.size() : owners.size();
-  const Histogram runs = count_runs(lists, owners, n, threads, coded);
-  coded.members = runs[0];
-  coded.lengths = choose_lengths(runs, rows);
-  const Pieces pieces(coded.lengths);
-  const auto all = static_cast<std::uint32_t>(rows);
+  const Source source{lists, owners, former};
+  coded.runs = count_runs(source, n, threads, coded);
+  coded.members = coded.runs[0];
+  coded.lengths = choose_lengths(coded.runs, rows);
+  const Encoder encoder(source, rows, coded.lengths);
   coded.rows = rows;
   coded.begin.resize_unset(n);
   coded.count.resize_unset(n);
   coded.block_begin.resize((n + k_block - 1) / k_block);
   parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
     std::uint32_t sum = 0;
-    for (std::size_t j = begin; j < end; ++j) {
-      std::uint32_t count = 0;
-      for (const Run& run : lists.of(owners.empty() ? j : owners[j]))
-        for_each_part(run.count, [&](std::uint32_t part) { count += pieces.count[part]; });
-      coded.count[j] = count;
-      sum += count;
-    }
+    for (std::size_t j = begin; j < end; ++j) sum += coded.count[j] = encoder.entries(j);
     coded.block_begin[begin / k_block] = sum;
   });
   std::size_t total = 0;
@@ -135,22 +225,28 @@ void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::s
   coded.entries.resize_unset(total + k_prefetch + 4);
   std::fill(coded.entries.begin() + total, coded.entries.end(), 0u);
   parallel_for(threads, n, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t next = coded.block_begin[begin / k_block];
+    std::uint32_t* const entries = coded.entries.data();
+    std::uint32_t* next = entries + coded.block_begin[begin / k_block];
     for (std::size_t j = begin; j < end; ++j) {
-      coded.begin[j] = next;
-      for (const Run& run : lists.of(owners.empty() ? j : owners[j])) {
-        std::uint32_t row = run.first;
-        for_each_part(run.count, [&](std::uint32_t part) {
-          while (part > 0) {
-            const std::uint32_t l = pieces.longest[part];
-            coded.entries[next++] = l * all + row;
-            row += coded.lengths.length[l];
-            part -= coded.lengths.length[l];
-          }
-        });
-      }
+      coded.begin[j] = static_cast<std::uint32_t>(next - entries);
+      next = encoder.write(j, next);
     }
   });
+}
+
+void copy_lists(const TableLists& from, TableLists& to) {
+  const auto copy = [](const Column<std::uint32_t>& column, Column<std::uint32_t>& other) {
+    other.resize_unset(column.size());
+    std::ranges::copy(column, other.begin());
+  };
+  copy(from.begin, to.begin);
+  copy(from.count, to.count);
+  copy(from.entries, to.entries);
+  to.total = from.total;
+  to.lengths = from.lengths;
+  to.rows = from.rows;
+  to.members = from.members;
+  to.runs = from.runs;
 }
 
 std::vector<std::uint32_t> decode(const TableLists& coded, std::size_t list) {

@@ -39,9 +39,10 @@ struct TableLists {
   RunLengths lengths;
   std::size_t rows = 0;     ///< of the table
   std::size_t members = 0;  ///< rows in all lists
+  using Histogram = std::array<std::uint64_t, k_longest_run + 1>;
+  Histogram runs{};  ///< how many runs of n rows the lists have, of longer ones their parts; at 0 `members`
 
   // Scratch.
-  using Histogram = std::array<std::uint64_t, k_longest_run + 1>;
   std::vector<Histogram> partial_runs;
   std::vector<std::uint32_t> block_begin;
 
@@ -52,15 +53,30 @@ struct TableLists {
     const std::uint32_t* const own = entries.data() + begin[list];
     for (std::uint32_t k = 0; k < count[list]; ++k) visit(own[k] % n, lengths.length[own[k] / n]);
   }
+  /// The same with whole runs, of however many entries.
+  template <class Visit>
+  void for_each_whole_run(std::size_t list, const Visit& visit) const {
+    const auto n = static_cast<std::uint32_t>(rows);
+    const std::uint32_t* const own = entries.data() + begin[list];
+    for (std::uint32_t k = 0; k < count[list];) {
+      const std::uint32_t first = own[k] % n;
+      std::uint32_t end = first;
+      for (; k < count[list] && own[k] % n == end; ++k) end += lengths.length[own[k] / n];
+      visit(first, end - first);
+    }
+  }
   std::size_t bytes() const { return begin.bytes() + count.bytes() + entries.bytes(); }
 };
 
 /// Chooses the lengths of a table of `rows` rows that make lists cheapest, table included. runs[n]: how many
 /// runs of n rows the lists have; longer ones count as several.
 RunLengths choose_lengths(const TableLists::Histogram& runs, std::size_t rows);
-/// The lists of `owners`, or all where there are none, for a table of `rows` rows.
+/// The lists of `owners`, or all where there are none, for a table of `rows` rows. former: what find_runs()
+/// was given, of other lists than `coded`; without owners.
 void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::size_t rows,
-            const Threads& threads, TableLists& coded);
+            const Threads& threads, TableLists& coded, const FormerLists* former = nullptr);
+/// All but scratch.
+void copy_lists(const TableLists& from, TableLists& to);
 /// The rows of a list.
 std::vector<std::uint32_t> decode(const TableLists& coded, std::size_t list);
 

@@ -107,9 +107,17 @@ void add_layer(const Emitter& emitter, std::span<const Vec> points, std::uint64_
   }
 }
 
+/// By which its start, stop, keyframes and keys of the speed go [s].
+double own_time(const Simulation::State& s, const EmitterState& emitter) {
+  return s.time - emitter.late;
+}
+
+bool has_stopped(const Simulation::State& s, const EmitterState& emitter) {
+  return emitter.settings.stop && own_time(s, emitter) >= *emitter.settings.stop;
+}
+
 bool flows(const Simulation::State& s, const EmitterState& emitter) {
-  return s.time >= emitter.settings.start.value_or(0) &&
-         !(s.time >= emitter.settings.stop.value_or(s.time + 1));
+  return own_time(s, emitter) >= emitter.settings.start.value_or(0) && !has_stopped(s, emitter);
 }
 
 /// A strand that is not enabled stands where it is, and so does its nozzle.
@@ -174,13 +182,15 @@ void cut_off(Simulation::State& s, EmitterState& emitter) {
 
 void flow_out(Simulation::State& s, EmitterState& emitter) {
   if (!is_enabled(s, emitter)) return;
-  if (s.time >= emitter.settings.stop.value_or(s.time + 1)) return cut_off(s, emitter);
+  if (has_stopped(s, emitter)) return cut_off(s, emitter);
   BodyState& body = s.body(emitter.body);
   const Emitter& settings = emitter.settings;
-  const double speed = flows(s, emitter) ? static_cast<double>(settings.speed.at(s.time)) : 0;
+  const double time = own_time(s, emitter);
+  const double speed = flows(s, emitter) ? static_cast<double>(settings.speed.at(time)) : 0;
   const Vec3 velocity = velocity_of(settings, settings.pose, speed);
-  if (!velocity.isZero(0) || (!settings.keyframes.empty() && are_due(s, settings.keyframes)))
-    wake_island(s, body);
+  const bool is_led =
+      !settings.keyframes.empty() && are_due(settings.keyframes, time, static_cast<double>(s.longest_step()));
+  if (is_led || !velocity.isZero(0)) wake_island(s, body);
   free_layers(s, emitter);
   if (emitter.held.size() > held_layers(settings, body.shape.region_radius) ||
       body.size() >= static_cast<std::size_t>(settings.most_particles))
@@ -260,13 +270,14 @@ void drive_emitters(Simulation::State& s, double end, double time_step) {
     Pose there = settings.pose;
     Vec3 spin{0, 0, 0};
     if (!settings.keyframes.empty()) {
-      there = pose_at(settings.keyframes, end);
+      there = pose_at(settings.keyframes, end - emitter.late);
       const Twist twist = twist_between(settings.pose, there, time_step);
       settings.velocity = twist.velocity;
       spin = twist.angular_velocity;
     }
     // In the middle of the step: exact, but for the steps that keys of the speed are in.
-    emitter.speed = flows(s, emitter) ? static_cast<double>(settings.speed.at(end - 0.5 * time_step)) : 0;
+    const double middle = end - emitter.late - 0.5 * time_step;
+    emitter.speed = flows(s, emitter) ? static_cast<double>(settings.speed.at(middle)) : 0;
     PinState& pin = s.pin(emitter.pin);
     pin.velocity = velocity_of(settings, there, emitter.speed);
     s.pin_motions[slot_of(emitter.pin)] = {
@@ -278,13 +289,16 @@ void drive_emitters(Simulation::State& s, double end, double time_step) {
 
 void move_emitters(Simulation::State& s, double end, double time_step) {
   for (EmitterState& emitter : s.emitters) {
-    if (!is_enabled(s, emitter)) continue;
     Emitter& settings = emitter.settings;
+    if (!is_enabled(s, emitter)) {
+      emitter.late += time_step;
+      continue;
+    }
     emitter.offset += time_step * emitter.speed;
     if (settings.keyframes.empty())
       settings.pose.translation += time_step * settings.velocity.cast<double>();
     else
-      settings.pose = pose_at(settings.keyframes, end);
+      settings.pose = pose_at(settings.keyframes, end - emitter.late);
   }
 }
 
@@ -292,6 +306,9 @@ EmitterId Simulation::add_emitter(const Emitter& settings, MaterialId material, 
   state_->refuse_in_callback();
   State& s = *state_;
   check_emitter(s, settings);
+  Checks checks;
+  check_room_for_pin(s, checks);
+  checks.finish();
   EmitterState emitter{.id = EmitterId{s.emitter_count}, .settings = settings};
   if (!settings.keyframes.empty()) {
     emitter.settings.pose = pose_at(settings.keyframes, s.time);
@@ -341,6 +358,10 @@ void Simulation::set_flow(EmitterId id, const Schedule& speed, const Vec3& veloc
   settings.velocity = velocity;
   settings.keyframes.clear();
   check_emitter(*state_, settings);
+  // Keys of the new speed go by the time of now, and so does all else from now on.
+  if (settings.start) *settings.start += emitter.late;
+  if (settings.stop) *settings.stop += emitter.late;
+  emitter.late = 0;
   emitter.settings = settings;
 }
 

@@ -1,13 +1,11 @@
 // Settings that nobody means: of how matter flows, how thick it is, and how its volume is kept.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
-#include "colliders/pose.h"
+#include "colliders/ways.h"
 #include "config/gravity_units.h"
 #include "config/validation.h"
-#include "core/bounds.h"
 #include "shape_matching/plastic.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
@@ -25,55 +23,6 @@ constexpr int k_many_iterations = 20;
 
 /// Mean compression that nobody means to leave.
 constexpr float k_loose_tolerance = 0.05f;
-
-/// What is so much longer than it is thick, and moves across its thickness, is meant to cut.
-constexpr float k_flat = 4;
-/// Share of a way that may be along the thickness of what cuts.
-constexpr double k_edgewise = 0.5;
-
-bool is_driven(const Collider& collider) {
-  return !collider.keyframes.empty() || !collider.velocity.isZero(0);
-}
-
-/// Sides of the box around a shape, in its frame [m]; not finite where it is hollow, as nothing is cut then.
-Vec3 sides_of(const Collider& collider) {
-  Aabb box = empty_box();
-  bool is_hollow = false;
-  visit_parts(collider, [&](const auto& shape) {
-    if constexpr (requires { shape.inside; }) is_hollow |= shape.inside;
-    box = box_around(box, bounds(shape));
-  });
-  if (is_hollow) return Vec3::Constant(std::numeric_limits<float>::infinity());
-  return box.max - box.min;
-}
-
-/// Calls visit(way) with the straight parts of the way of a collider, in its own frame.
-template <class Visit>
-void visit_ways(const Collider& collider, const Visit& visit) {
-  const auto own = [](const Pose& pose, const Eigen::Vector3d& way) {
-    return Eigen::Vector3d(rotation_of(pose).transpose() * way);
-  };
-  if (collider.keyframes.empty()) visit(own(collider.pose, collider.velocity.cast<double>()));
-  for (std::size_t k = 1; k < collider.keyframes.size(); ++k) {
-    const Pose &from = collider.keyframes[k - 1].pose, &to = collider.keyframes[k].pose;
-    visit(own(from, to.translation - from.translation));
-  }
-}
-
-/// Of a collider that moves edgewise somewhere on its way [m]; infinite where it does not, or is as thick as
-/// it is long.
-float blade_thickness(const Collider& collider) {
-  constexpr float k_none = std::numeric_limits<float>::infinity();
-  if (!is_driven(collider)) return k_none;
-  const Vec3 sides = sides_of(collider);
-  if (!sides.allFinite()) return k_none;
-  float thickness = k_none;
-  visit_ways(collider, [&](const Eigen::Vector3d& way) {
-    for (int axis = 0; axis < 3; ++axis)
-      if (std::abs(way[axis]) < k_edgewise * way.norm()) thickness = std::min(thickness, sides[axis]);
-  });
-  return k_flat * thickness <= sides.maxCoeff() ? thickness : k_none;
-}
 
 class MatterWarnings {
  public:
@@ -94,6 +43,8 @@ class MatterWarnings {
   }
 
  private:
+  const char* unit(const char* name) const { return unit_of(state_.config.gravity, name); }
+
   /// Where particles have their own, a high one may be what holds the others.
   void look_at_yield(const BodyState& body) {
     const Material& material = body.material->settings;
@@ -163,7 +114,7 @@ class MatterWarnings {
           body,
           "splits where it is torn, and what is elastic is not by what moves through it: its shape gives "
           "way to more than update_threshold alone, ",
-          body.material->update_threshold, has_free_units(state_.config.gravity) ? "" : " m/s2",
+          body.material->update_threshold, unit(" m/s2"),
           " in the mean; give material.plastic_yield, so that it flows and is cut where a blade works");
   }
 
@@ -175,12 +126,11 @@ class MatterWarnings {
     for (std::size_t c = 0; c < state_.colliders.size(); ++c) {
       const float thickness = blade_thickness(state_.colliders[c]);
       if (!(thickness + body.spacing <= gap)) continue;
-      list_.add(body, "collider ", c, " is ", thickness,
-                " m thick across its way, too thin to cut: with a "
-                "spacing it opens a gap of ",
-                thickness + body.spacing, " m, and matter tears beyond ", gap,
-                " m, (1 + tear_strain) times the radius of its regions; make it thicker than ",
-                gap - body.spacing, " m, or give a smaller tear_strain or spacing");
+      list_.add(body, "collider ", c, " is ", thickness, unit(" m"),
+                " thick across its way, too thin to cut: with a spacing it opens a gap of ",
+                thickness + body.spacing, unit(" m"), ", and matter tears beyond ", gap, unit(" m"),
+                ", (1 + tear_strain) times the radius of its regions; make it thicker than ",
+                gap - body.spacing, unit(" m"), ", or give a smaller tear_strain or spacing");
     }
   }
 

@@ -405,6 +405,11 @@ void Simulation::remove_collider(ColliderId id) {
   s.collider_slots.place(0, s.collider_ids);
 }
 
+void check_room_for_pin(const Simulation::State& s, Checks& checks) {
+  if (s.pins.size() == k_max_pins && s.pin_slots.free.empty())
+    checks.problem("pin", "at most " + std::to_string(k_max_pins) + " pins are possible");
+}
+
 PinId Simulation::pin(const Aabb& region, const Vec3& velocity) {
   return pin(ids_in(*state_, region, "pin.box"), velocity);
 }
@@ -419,8 +424,7 @@ PinId Simulation::pin(std::span<const ParticleId> ids, const Vec3& velocity) {
     checks.problem("pin", why_unknown(s.store, id));
     break;
   }
-  if (s.pins.size() == k_max_pins && s.pin_slots.free.empty())
-    checks.problem("pin", "at most " + std::to_string(k_max_pins) + " pins are possible");
+  check_room_for_pin(s, checks);
   check_speed(s, "pin.velocity", velocity.cast<double>().norm(), checks);
   checks.finish();
   const std::uint64_t id = s.pin_slots.take();

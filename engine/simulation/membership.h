@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/checks.h"
 #include "shape_matching/reshape.h"
 #include "simulation/state.h"
 
@@ -32,6 +33,8 @@ void number_bodies(Simulation::State& state);
 void forget_bodies(Simulation::State& state, std::span<BodyState* const> gone);
 /// As Simulation::remove_particles(); ids: different, and there.
 void erase_particles(Simulation::State& state, std::span<const ParticleId> ids);
+/// Where there can be no pin more.
+void check_room_for_pin(const Simulation::State& state, Checks& checks);
 /// As Simulation::unpin().
 void release_pin(Simulation::State& state, PinId pin);
 /// Particles answer to a pin.

@@ -119,8 +119,8 @@ void check_speeds(const Simulation::State& state);
 void drive_emitters(Simulation::State& state, double end, double time_step);
 /// Emitters as that step has moved them.
 void move_emitters(Simulation::State& state, double end, double time_step);
-/// Whether keyframes move what goes through them in the step that begins now.
-bool are_due(const Simulation::State& state, std::span<const PoseKeyframe> keyframes);
+/// Whether keyframes move what goes through them in a step that begins at `time` [s].
+bool are_due(std::span<const PoseKeyframe> keyframes, double time, double longest_step);
 
 /// A body and those that fell asleep with it are awake.
 void wake_island(Simulation::State& state, BodyState& body);

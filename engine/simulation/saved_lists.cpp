@@ -232,7 +232,7 @@ template <class Archive, class State>
 void pass_emitters(Archive& archive, State& state) {
   archive(state.emitter_count);
   archive(state.sink_count);
-  pass_list(archive, state.emitters, 64, [&](auto& emitter) {
+  pass_list(archive, state.emitters, 72, [&](auto& emitter) {
     pass_id(archive, emitter.id);
     pass_id(archive, emitter.body);
     pass_id(archive, emitter.pin);
@@ -242,6 +242,7 @@ void pass_emitters(Archive& archive, State& state) {
     pass_keyframes(archive, emitter.settings.keyframes);
     archive(emitter.layers);
     archive(emitter.offset);
+    archive(emitter.late);
     pass_list(archive, emitter.held, 8, [&](auto& layer) {
       pass_list(archive, layer, sizeof(ParticleId), [&](auto& id) { archive(id); });
     });
@@ -264,6 +265,8 @@ void unpack_emitters(const SavedState& saved, Simulation::State& state) {
       check_poses("emitter", emitter.settings.pose, emitter.settings.keyframes, checks);
       if (!std::isfinite(emitter.offset) || emitter.held.size() > emitter.layers)
         archive.fail("an emitter has more layers than there have been, or is nowhere");
+      if (!(std::isfinite(emitter.late) && emitter.late >= 0))
+        archive.fail("the clock of an emitter is ahead, or no number");
     }
     checks.finish();
   });

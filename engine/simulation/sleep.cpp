@@ -49,7 +49,7 @@ namespace {
 bool is_moving(const Simulation::State& state, const Collider& collider) {
   if (!collider.surface_velocity.isZero(0)) return true;
   if (collider.keyframes.empty()) return !collider.velocity.isZero(0) || !collider.angular_velocity.isZero(0);
-  return are_due(state, collider.keyframes);
+  return are_due(collider.keyframes, state.time, static_cast<double>(state.longest_step()));
 }
 
 /// Whether a collider may touch what is in a box.
@@ -130,9 +130,8 @@ void list_islands(Simulation::State& state) {
 
 }  // namespace
 
-bool are_due(const Simulation::State& state, std::span<const PoseKeyframe> keyframes) {
-  return keyframes.back().time > state.time &&
-         keyframes.front().time < state.time + static_cast<double>(state.longest_step());
+bool are_due(std::span<const PoseKeyframe> keyframes, double time, double longest_step) {
+  return keyframes.back().time > time && keyframes.front().time < time + longest_step;
 }
 
 void wake_island(Simulation::State& state, BodyState& body) {

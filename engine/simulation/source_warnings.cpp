@@ -4,6 +4,8 @@
 #include <numbers>
 
 #include "colliders/pose.h"
+#include "colliders/ways.h"
+#include "config/gravity_units.h"
 #include "simulation/settings.h"
 #include "simulation/state.h"
 #include "simulation/warning_list.h"
@@ -13,6 +15,9 @@ namespace {
 
 /// Nobody means a share of the spacing that is as small as this.
 constexpr float k_rounding_depth = 0.01f;
+
+/// Spacings that nothing is meant to go in a step: 27 m/s at 5 mm.
+constexpr double k_far_step = 10;
 
 /// A layer of an emitter has this area to this share.
 constexpr double k_same_area = 0.15;
@@ -31,6 +36,7 @@ class SourceWarnings {
       look_at_modulus(body);
       look_at_parts(body);
     }
+    for (std::size_t c = 0; c < state_.colliders.size(); ++c) look_at_speed(c);
     look_at_formulation();
     look_at_arithmetic();
     return list_.take();
@@ -93,6 +99,21 @@ class SourceWarnings {
       list_.add("sink ", number, ": all ", free, " particles that are not held are ",
                 sink.outside ? "outside" : "inside", " its box at the start, and are removed at once",
                 sink.outside ? "; give a larger box" : "; with outside = true it takes what leaves the box");
+  }
+
+  /// A turn in degrees a second, or a way in millimetres: what it meets is torn away in one step.
+  void look_at_speed(std::size_t number) {
+    const double speed = greatest_corner_speed(state_.colliders[number]);
+    const double way = speed * static_cast<double>(state_.longest_step());
+    const double spacing = static_cast<double>(state_.scale.spacing);
+    if (spacing == 0 || way <= k_far_step * spacing) return;
+    const char* const unit = unit_of(state_.config.gravity, " m/s");
+    list_.add("collider ", number, ": a part of it moves at ", speed, unit, ", ", std::round(way / spacing),
+              " spacings in a step of ", state_.longest_step(), " s, and what it meets is flung away; ",
+              state_.colliders[number].angular_velocity.isZero(0)
+                  ? "give it a longer way in time, or a shorter way"
+                  : "angular_velocity is in rad/s, and a turn a second is 6.283",
+              "; or give a shorter solver.time_step");
   }
 
   void look_at_modulus(const BodyState& body) {

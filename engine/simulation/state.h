@@ -146,9 +146,10 @@ struct EmitterState {
   Emitter settings;
   BodyId body{};
   PinId pin{};
-  std::uint64_t layers = 0;                       ///< that there have been
-  double offset = 0;                              ///< how far the first of them has come [m]
-  double speed = 0;                               ///< of the strand in the step under way [m/s]
+  std::uint64_t layers = 0;  ///< that there have been
+  double offset = 0;         ///< how far the first of them has come [m]
+  double speed = 0;          ///< of the strand in the step under way [m/s]
+  double late = 0;           ///< how long its strand was not enabled: its own clock stood still [s]
   std::deque<std::vector<ParticleId>> held = {};  ///< the last of them, the next to leave first
 };
 

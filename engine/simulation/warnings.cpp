@@ -100,8 +100,7 @@ class Warnings {
     list_.add(body, words...);
   }
 
-  /// What stands behind a number, in units of SI; nothing where a scene has its own.
-  const char* unit(const char* name) const { return has_free_units(state_.config.gravity) ? "" : name; }
+  const char* unit(const char* name) const { return unit_of(state_.config.gravity, name); }
 
   void look_at_threshold(const BodyState& body) {
     if (!body.material->settings.update_threshold) return;

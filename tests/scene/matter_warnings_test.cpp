@@ -85,6 +85,39 @@ TEST_F(matter_warnings, name_a_blade_that_is_too_thin_to_cut_and_nothing_that_is
   EXPECT_FALSE(warns(of("sphere = { center = [0, 0, 2], radius = 0.05 }\n" + down), thin)) << "a ball";
 }
 
+TEST_F(matter_warnings, name_a_blade_that_turns_and_is_too_thin_to_cut) {
+  const auto is_thin = [&](const std::string& collider) {
+    return warns(warnings_of(read(jelly("alpha = 0.3\nplastic_yield = 0.1", "[[collider]]\n" + collider))),
+                 "collider 0 is 0.1 m thick across its way, too thin to cut");
+  };
+  const std::string knife = "box = { min = [-0.05, -2, 1], max = [0.05, 2, 3] }\n";
+  EXPECT_TRUE(is_thin(knife + "angular_velocity = [2.0, 0.0, 0.0]\n")) << "about the axis across it: a saw";
+  EXPECT_TRUE(is_thin(knife + "keyframes = [{ time = 0 }, { time = 1, rotate = [90, 0, 0] }]\n"));
+  EXPECT_TRUE(is_thin(knife + "translate = [1.0, 0.0, 0.0]\nrotate = [0.0, 30.0, 70.0]\n"
+                              "velocity = [0.0, 0.0, -0.01]\nangular_velocity = [0.64, 1.63, -0.97]\n"))
+      << "the same axis, turned with it";
+  EXPECT_FALSE(is_thin(knife + "angular_velocity = [0.0, 0.0, 2.0]\n")) << "a paddle pushes";
+  EXPECT_FALSE(is_thin("box = { min = [-0.05, 0, 1], max = [0.05, 2, 3] }\nangular_velocity = [0, 0, 2.0]\n"))
+      << "so does a door, though near its hinges it turns edgewise";
+  EXPECT_FALSE(
+      is_thin("box = { min = [-0.05, -0.05, 1], max = [0.05, 0.05, 3] }\n"
+              "angular_velocity = [0.0, 0.0, 2.0]\n"))
+      << "a rod about itself";
+}
+
+TEST_F(matter_warnings, have_no_metres_where_units_are_free) {
+  const auto of = [&](const char* gravity) {
+    return warnings_of(read(falling("1.0", "2.1", gravity, "frame_time = 0.2\n") +
+                                "[[collider]]\nbox = { min = [-0.5, -20, 10], max = [0.5, 20, 30] }\n"
+                                "velocity = [0.0, 0.0, -1.0]\n",
+                            {"material[0].plastic_yield=0.1"}));
+  };
+  EXPECT_TRUE(warns(of("-0.3"),
+                    "collider 0 is 1 thick across its way, too thin to cut: with a spacing it "
+                    "opens a gap of 2, and matter tears beyond 3.15, (1"));
+  EXPECT_TRUE(warns(of("-9.81"), "collider 0 is 1 m thick across"));
+}
+
 TEST_F(matter_warnings, name_splits_of_what_is_not_torn_or_does_not_stay_apart) {
   const auto of = [&](const std::string& material, const std::string& body, const std::string& more = "") {
     std::string text = jelly(material, more);

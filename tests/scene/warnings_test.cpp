@@ -61,6 +61,55 @@ TEST_F(scene_warnings, name_keyframes_that_are_half_a_turn_or_more_apart) {
   EXPECT_FALSE(warns(turned_by("179"), "shorter way round"));
 }
 
+TEST_F(scene_warnings, name_turns_that_frames_do_not_show_and_colliders_that_fling_what_they_meet) {
+  const std::string paddle = "[[collider]]\nbox = { min = [-0.1, -1, -3], max = [0.1, 1, -2] }\n";
+  const auto of = [&](const std::string& collider) {
+    return warnings_of(read(jelly("alpha = 0.3", collider)));
+  };
+  const std::string frames = "frames show no more than half a turn", flung = "what it meets is flung away";
+  EXPECT_TRUE(warns(of(paddle + "angular_velocity = [0.0, 0.0, 200.0]\n"),
+                    "collider[0]: turns by 382 degrees from one frame to the next, and frames show no more "
+                    "than half a turn, nor which way; angular_velocity is in rad/s, and 200 degrees a second "
+                    "are 3.49066; let it"));
+  EXPECT_TRUE(warns(of(paddle + "angular_velocity = [0.0, 0.0, 200.0]\n"),
+                    "collider 0: a part of it moves at 200.998 m/s, 17 spacings in a step of"));
+  EXPECT_FALSE(warns(of(paddle + "angular_velocity = [0.0, 0.0, 90.0]\n"), frames)) << "172 degrees";
+  EXPECT_FALSE(warns(of(paddle + "angular_velocity = [0.0, 0.0, 90.0]\n"), flung)) << "7 spacings";
+  EXPECT_TRUE(
+      warns(of(paddle + "keyframes = [{ time = 0 }, { time = 0.03, rotate = [0, 0, 170] }]\n"), frames));
+  EXPECT_FALSE(warns(of("[[collider]]\ncylinder = { start = [0, 0, -3], end = [0, 0, -2], radius = 0.1 }\n"
+                        "angular_velocity = [0.0, 0.0, 200.0]\n"),
+                     frames))
+      << "nobody sees a roller turn";
+  EXPECT_TRUE(warns(of(paddle + "velocity = [0.0, 0.0, -2000.0]\n"), "moves at 2000 m/s, "));
+  EXPECT_FALSE(warns(of(paddle + "velocity = [0.0, 0.0, -20.0]\n"), flung));
+}
+
+TEST_F(scene_warnings, name_a_collider_that_comes_into_the_mouth_of_a_nozzle) {
+  const auto of = [&](const std::string& emitter, const std::string& collider) {
+    return warns(warnings_of(read(
+                     jelly("alpha = 0.3", "[[emitter]]\nmaterial = \"blob\"\nradius = 0.3\nspacing = 0.1\n" +
+                                              emitter + "[[collider]]\n" + collider))),
+                 " s collider[0] stands in its mouth");
+  };
+  const std::string still = "translate = [5.0, 0.0, 5.0]\n";
+  const std::string wall = "box = { min = [7, -1, 4], max = [8, 1, 6] }\n",
+                    comes = "velocity = [-4.0, 0.0, 0.0]\n";
+  EXPECT_TRUE(of(still, wall + comes));
+  EXPECT_TRUE(of(still, wall + "keyframes = [{ time = 0 }, { time = 1, translate = [-2, 0, 0] }]\n"));
+  EXPECT_TRUE(of(still + "velocity = [2.0, 0.0, 0.0]\n", wall)) << "or the nozzle to it";
+  EXPECT_TRUE(
+      of("keyframes = [{ time = 0, translate = [5, 0, 5] }, { time = 0.5, translate = [7, 0, 5] }]\n", wall));
+  EXPECT_FALSE(of(still, wall));
+  EXPECT_FALSE(of(still, wall + "velocity = [-1.0, 0.0, 0.0]\n")) << "not within the run of a second";
+  EXPECT_FALSE(of(still + "stop = 0.3\n", wall + comes)) << "it has stopped by then";
+  EXPECT_FALSE(of(still + "speed = [[0.0, 1.0], [0.3, 0.0]]\n", wall + comes));
+  EXPECT_FALSE(of(still,
+                  "box = { min = [-9, -9, 4], max = [9, 9, 6], inside = true }\n"
+                  "velocity = [-1.0, 0.0, 0.0]\n"))
+      << "it is in the box";
+}
+
 TEST_F(scene_warnings, name_bodies_that_merge_with_nobody) {
   const std::string other =
       "[[material]]\nname = \"other\"\nalpha = 1.0\nrest_density = 1000.0\n[[body]]\n"

@@ -292,6 +292,58 @@ TEST(emitter, whose_strand_is_not_enabled_stands_still_and_goes_on_as_if_nothing
   }
 }
 
+TEST(emitter, with_keyframes_goes_on_from_where_it_stood_when_its_strand_is_enabled_again) {
+  // 6 m of way in the 6 s for which it is not enabled: in one step they would be 40 m/s.
+  const auto leave = [](Simulation& s) {
+    Emitter emitter = nozzle(0);
+    emitter.start = 1;
+    emitter.stop = 14;
+    emitter.speed = {{2, 0.5f}, {12, 1.5f}};
+    emitter.keyframes = {{1, {{0, 0, 0}, {1, 0, 0, 0}}}, {13, {{12, 0, 2}, {0.9, 0.3, 0, 0.1}}}};
+    return s.add_emitter(emitter, s.add_material({.alpha = 0.3f}));
+  };
+  Simulation s(solver(0)), always(solver(0));
+  const EmitterId nozzle = leave(s), led = leave(always);
+  s.add_body(sample(Lattice{.count = {3, 3, 3}, .corner = {90, 0, 0}}), Material{});
+  s.advance(3);
+  always.advance(3);
+  const Pose pose = s.emitter(nozzle).pose;
+  s.enable(s.body(nozzle), false);
+  s.advance(6);
+  EXPECT_EQ(s.emitter(nozzle).pose.translation, pose.translation);
+  s = Simulation::restore(s.save());
+  s.enable(s.body(nozzle), true);
+  for (int k = 0; k < 20; ++k) {
+    s.advance(0.5);
+    always.advance(0.5);
+    const Emitter &own = s.emitter(nozzle), &other = always.emitter(led);
+    ASSERT_LT((own.pose.translation - other.pose.translation).norm(), 1e-5) << always.time();
+    ASSERT_LT((own.velocity - other.velocity).norm(), 1e-4f) << always.time();
+  }
+  const BodyMotion motion = s.motion(s.body(nozzle)), expected = always.motion(always.body(led));
+  EXPECT_EQ(motion.mass, expected.mass) << "it has stopped as long after it started";
+  EXPECT_LT((motion.center_of_mass - expected.center_of_mass).norm(), 1e-2);
+}
+
+TEST(emitter, that_was_not_enabled_takes_a_new_flow_by_the_time_of_now) {
+  Simulation s(solver(0));
+  Emitter emitter = nozzle(0);
+  emitter.stop = 6;
+  const EmitterId id = s.add_emitter(emitter, s.add_material({}));
+  s.add_body(sample(Lattice{.count = {3, 3, 3}, .corner = {90, 0, 0}}), Material{});
+  s.advance(1);
+  s.enable(s.body(id), false);
+  s.advance(4);
+  s.enable(s.body(id), true);
+  s.set_flow(id, {{5, 0}, {7, 1}});
+  const double low = static_cast<double>(s.bounds(s.body(id)).max.z());
+  s.advance(2);
+  EXPECT_NEAR(static_cast<double>(s.bounds(s.body(id)).max.z()), low - 1, 1e-4);
+  EXPECT_EQ(s.emitter(id).stop, 10) << "and stops after the 6 s that it was enabled";
+  s.advance(3.2);
+  EXPECT_TRUE(s.held(id).empty());
+}
+
 TEST(sink, leaves_what_is_not_enabled) {
   Simulation s(solver(0));
   const BodyId body =

@@ -22,12 +22,16 @@ Body cube(float x) {
   return sample(Lattice{.count = {4, 4, 4}, .corner = {x, 0, 1}, .jitter = 0});
 }
 
-/// A cube that is there, one that was, a warm one, and a fluid; a floor; two nozzles of which one is gone.
+/// A cube that is there, one that was, and a fluid; a floor, two nozzles, two sinks and two pins, of each of
+/// which one more was there.
 struct Crowd {
   Simulation s{{.support_radius = 2.1f, .gravity = {0, 0, -0.3f}, .threads = 1}};
   BodyId there, gone, fluid;
-  ColliderId floor;
+  ColliderId floor, gone_wall;
   EmitterId nozzle, gone_nozzle;
+  PinId held, let_go;
+  SinkId gone_sink;
+  ParticleId gone_particle;
 
   Crowd() {
     there = s.add_body(cube(0), Material{.alpha = 0.3f}, "there");
@@ -38,11 +42,20 @@ struct Crowd {
     nozzle = s.add_emitter(place(0), jelly);
     gone_nozzle = s.add_emitter(place(20), jelly);
     floor = s.add_collider({.shape = Plane{}});
+    gone_wall = s.add_collider({.shape = Plane{.normal = {0, 1, 0}, .offset = -90}});
+    gone_sink = s.add_sink({{0, 0, -90}, {1, 1, -80}});
+    held = s.pin(std::vector<ParticleId>{first()});
+    let_go = s.pin(std::vector<ParticleId>{s.ids()[1]});
     for (int k = 0; k < 5; ++k) s.step();
+    gone_particle = s.ids()[s.rows(gone).begin];
     s.remove_body(gone);
     s.remove_emitter(gone_nozzle);
+    s.remove_collider(gone_wall);
+    s.remove_sink(gone_sink);
+    s.unpin(let_go);
     s.step();
   }
+  ParticleId first() const { return s.ids()[0]; }
 };
 
 struct Call {
@@ -75,6 +88,92 @@ std::vector<Call> calls_with_bodies() {
   add_stale(calls, "heat", [](Simulation& s, BodyId id) { s.heat(id); });
   add_stale(calls, "set_velocity", [](Simulation& s, BodyId id) { s.set_velocity(id, Vec3{0, 0, 1}); });
   add_stale(calls, "rotations", [](Simulation& s, BodyId id) { s.rotations(id); });
+  add_stale(calls, "rest_positions", [](Simulation& s, BodyId id) { s.rest_positions(id); });
+  add_stale(calls, "rows", [](Simulation& s, BodyId id) { s.rows(id); });
+  add_stale(calls, "material", [](Simulation& s, BodyId id) { s.material(id); });
+  add_stale(calls, "remove_body", [](Simulation& s, BodyId id) { s.remove_body(id); });
+  add_stale(calls, "extend_body", [](Simulation& s, BodyId id) { s.extend_body(id, cube(60)); });
+  add_stale(calls, "split", [](Simulation& s, BodyId id) { s.split(id); });
+  add_stale(calls, "set_position", [](Simulation& s, BodyId id) { s.set_position(id, {0, 0, 9}); });
+  add_stale(calls, "add_impulse", [](Simulation& s, BodyId id) { s.add_impulse(id, {0, 0, 1}); });
+  add_stale(calls, "report_contacts", [](Simulation& s, BodyId id) { s.report_contacts(id, 1.0); });
+  return calls;
+}
+
+/// A call with another id that named something, and with one that never did.
+template <class Id>
+void add_gone(std::vector<Call>& calls, const char* name, Id Crowd::*gone, const char* says,
+              const std::function<void(Simulation&, Id)>& make) {
+  calls.push_back({name, [make, gone](Crowd& crowd) { make(crowd.s, crowd.*gone); }, says});
+  calls.push_back({name, [make](Crowd& crowd) { make(crowd.s, Id{77}); }, "there is no "});
+}
+
+std::vector<Call> calls_with_other_ids() {
+  std::vector<Call> calls;
+  const auto wall = [&](const char* name, const std::function<void(Simulation&, ColliderId)>& make) {
+    add_gone(calls, name, &Crowd::gone_wall, "collider 1 was removed", make);
+  };
+  wall("collider", [](Simulation& s, ColliderId id) { s.collider(id); });
+  wall("load", [](Simulation& s, ColliderId id) { s.load(id); });
+  wall("set_collider", [](Simulation& s, ColliderId id) { s.set_collider(id, {}); });
+  wall("remove_collider", [](Simulation& s, ColliderId id) { s.remove_collider(id); });
+  wall("set_temperature", [](Simulation& s, ColliderId id) { s.set_temperature(id, Schedule(300)); });
+  wall("set_velocity", [](Simulation& s, ColliderId id) { s.set_velocity(id, {0, 0, 1}); });
+  wall("set_twist", [](Simulation& s, ColliderId id) { s.set_twist(id, {0, 0, 1}, {0, 0, 1}); });
+  wall("set_pose", [](Simulation& s, ColliderId id) { s.set_pose(id, {}); });
+  const auto nozzle = [&](const char* name, const std::function<void(Simulation&, EmitterId)>& make) {
+    add_gone(calls, name, &Crowd::gone_nozzle, "there is no emitter 1, or no longer", make);
+  };
+  nozzle("body", [](Simulation& s, EmitterId id) { s.body(id); });
+  nozzle("emitter", [](Simulation& s, EmitterId id) { s.emitter(id); });
+  nozzle("held", [](Simulation& s, EmitterId id) { s.held(id); });
+  nozzle("set_flow", [](Simulation& s, EmitterId id) { s.set_flow(id, 1.0f); });
+  nozzle("remove_emitter", [](Simulation& s, EmitterId id) { s.remove_emitter(id); });
+  const auto pin = [&](const char* name, const std::function<void(Simulation&, PinId)>& make) {
+    add_gone(calls, name, &Crowd::let_go, "pin 3 was removed", make);
+  };
+  pin("unpin", [](Simulation& s, PinId id) { s.unpin(id); });
+  pin("set_velocity", [](Simulation& s, PinId id) { s.set_velocity(id, {0, 0, 1}); });
+  pin("move_pin", [](Simulation& s, PinId id) { s.move_pin(id, {0, 0, 1}, 1); });
+  add_gone<SinkId>(calls, "remove_sink", &Crowd::gone_sink, "there is no sink 0, or no longer",
+                   [](Simulation& s, SinkId id) { s.remove_sink(id); });
+  const auto particle = [&](const char* name, const std::function<void(Simulation&, ParticleId)>& make) {
+    calls.push_back({name, [make](Crowd& crowd) { make(crowd.s, crowd.gone_particle); }, " was removed"});
+    calls.push_back({name, [make](Crowd& crowd) { make(crowd.s, ParticleId{1u << 20}); }, "there is no"});
+  };
+  particle("row", [](Simulation& s, ParticleId id) { s.row(id); });
+  particle("alpha", [](Simulation& s, ParticleId id) { s.alpha(id); });
+  particle("rotation", [](Simulation& s, ParticleId id) { s.rotation(id); });
+  particle("rest_position", [](Simulation& s, ParticleId id) { s.rest_position(id); });
+  const auto particles = [&](const char* name,
+                             const std::function<void(Simulation&, std::span<const ParticleId>)>& make) {
+    particle(name, [make](Simulation& s, ParticleId id) {
+      make(s, std::vector<ParticleId>{s.ids()[0], id});  // the first of them is there
+    });
+  };
+  particles("remove_particles",
+            [](Simulation& s, std::span<const ParticleId> ids) { s.remove_particles(ids); });
+  particles("pin", [](Simulation& s, std::span<const ParticleId> ids) { s.pin(ids); });
+  particles("set_alpha", [](Simulation& s, std::span<const ParticleId> ids) { s.set_alpha(ids, 0.5f); });
+  particles("set_stiffness", [](Simulation& s, std::span<const ParticleId> ids) { s.set_stiffness(ids, 1); });
+  particles("set_velocity", [](Simulation& s, std::span<const ParticleId> ids) {
+    s.set_velocity(ids, {0, 0, 1});
+  });
+  calls.push_back({"set_temperature",
+                   [](Crowd& crowd) {
+                     const ParticleId gone[] = {crowd.gone_particle};
+                     crowd.s.set_temperature(gone, 300);
+                   },
+                   " was removed"});
+  const auto matter = [&](const char* name, const std::function<void(Simulation&, MaterialId)>& make) {
+    calls.push_back(
+        {name, [make](Crowd& crowd) { make(crowd.s, MaterialId{99}); }, "there is no material 99"});
+  };
+  matter("add_body", [](Simulation& s, MaterialId id) { s.add_body(cube(60), id); });
+  matter("add_emitter", [](Simulation& s, MaterialId id) { s.add_emitter({.radius = 2.0f}, id); });
+  matter("set_material", [](Simulation& s, MaterialId id) { s.set_material(id, {}); });
+  matter("material_settings", [](Simulation& s, MaterialId id) { s.material_settings(id); });
+  matter("set_alpha", [](Simulation& s, MaterialId id) { s.set_alpha(id, 0.5f); });
   return calls;
 }
 
@@ -171,21 +270,121 @@ std::vector<Call> calls_with_numbers() {
          crowd.s.set_stiffness(first, -1);
        },
        "stiffness"},
-      {"material_settings", [](Crowd& crowd) { crowd.s.material_settings(MaterialId{99}); }, "99"},
-      {"alpha", [](Crowd& crowd) { crowd.s.alpha(ParticleId{1u << 20}); }, "particle"},
-      {"rest_position", [](Crowd& crowd) { crowd.s.rest_position(ParticleId{1u << 20}); }, "particle"},
+      {"set_alpha",
+       [](Crowd& crowd) {
+         const ParticleId first[] = {crowd.first()};
+         crowd.s.set_alpha(first, 1.5f);
+       },
+       "alpha"},
+      {"set_alpha", [](Crowd& crowd) { crowd.s.set_alpha(crowd.s.material(crowd.there), -1); }, "alpha"},
       {"move_pin",
        [](Crowd& crowd) {
-         const ParticleId first[] = {crowd.s.ids()[0]};
-         const PinId pin = crowd.s.pin(first);
-         try {
-           crowd.s.move_pin(pin, {0, k_nan, 0}, 1);
-         } catch (...) {
-           crowd.s.unpin(pin);
-           throw;
-         }
+         crowd.s.move_pin(crowd.held, {0, k_nan, 0}, 1);
        },
-       "pin"},
+       "pin.way"},
+      {"move_pin",
+       [](Crowd& crowd) {
+         crowd.s.move_pin(crowd.held, {0, 1, 0}, 0);
+       },
+       "pin.seconds"},
+      {"move_pin",
+       [](Crowd& crowd) {
+         crowd.s.move_pin(crowd.held, {0, 1e6f, 0}, 1e-3);
+       },
+       "pin.way: "},
+      {"set_velocity",
+       [](Crowd& crowd) {
+         crowd.s.set_velocity(crowd.held, {0, k_nan, 0});
+       },
+       "pin.velocity"},
+      {"set_velocity",
+       [](Crowd& crowd) {
+         crowd.s.set_velocity(crowd.floor, {0, k_nan, 0});
+       },
+       "collider.velocity"},
+      {"set_twist",
+       [](Crowd& crowd) {
+         crowd.s.set_twist(crowd.floor, {0, 0, 0}, {0, 0, k_infinity});
+       },
+       "collider.angular_velocity"},
+      {"set_pose",
+       [](Crowd& crowd) {
+         crowd.s.set_pose(crowd.floor, {.rotation = {0, 0, 0, 0}});
+       },
+       "collider.pose.rotation"},
+      {"set_temperature", [](Crowd& crowd) { crowd.s.set_temperature(crowd.floor, Schedule(k_nan)); },
+       "collider.temperature"},
+      {"set_position",
+       [](Crowd& crowd) {
+         crowd.s.set_position(crowd.there, {0, k_nan, 0});
+       },
+       "body.center"},
+      {"set_position",
+       [](Crowd& crowd) {
+         crowd.s.set_position(crowd.there, {0, 1e20f, 0});
+       },
+       "body.center"},
+      {"set_material",
+       [](Crowd& crowd) { crowd.s.set_material(crowd.s.material(crowd.there), {.alpha = 2.0f}); }, "alpha"},
+      {"set_solver",
+       [](Crowd& crowd) {
+         SolverConfig config = crowd.s.config();
+         config.time_step_factor = -1;
+         crowd.s.set_solver(config);
+       },
+       "solver.time_step_factor"},
+      {"set_collider", [](Crowd& crowd) { crowd.s.set_collider(crowd.floor, {.friction = -1}); }, "friction"},
+      {"load", [](Crowd& crowd) { crowd.s.load(crowd.floor); }, "are not measured"},
+      {"add_collider", [](Crowd& crowd) { crowd.s.add_collider({.shape = Sphere{.radius = 0}}); }, "radius"},
+      {"add_material", [](Crowd& crowd) { crowd.s.add_material({.alpha = k_nan}); }, "alpha"},
+      {"add_emitter", [](Crowd& crowd) { crowd.s.add_emitter({}, crowd.s.material(crowd.there)); },
+       "emitter.radius"},
+      {"add_sink",
+       [](Crowd& crowd) {
+         crowd.s.add_sink({{0, 0, 0}, {1, 1, k_infinity}});
+       },
+       "sink.box.max"},
+      {"pin",
+       [](Crowd& crowd) {
+         crowd.s.pin(Aabb{{500, 0, 0}, {501, 1, 1}});
+       },
+       "no particle is between"},
+      {"remove_particles",
+       [](Crowd& crowd) {
+         crowd.s.remove_particles(Aabb{{500, 0, 0}, {501, 1, 1}});
+       },
+       "no particle is between"},
+      {"remove_particles",
+       [](Crowd& crowd) { crowd.s.remove_particles(std::vector<ParticleId>(2, crowd.first())); },
+       "is given twice"},
+      {"add_impulse",
+       [](Crowd& crowd) {
+         crowd.s.add_impulse({1, 1, 2}, 0, {0, 0, 1});
+       },
+       "radius"},
+      {"report_contacts", [](Crowd& crowd) { crowd.s.report_contacts(-1); }, "impulse"},
+      {"raycast",
+       [](Crowd& crowd) {
+         crowd.s.raycast({0, 0, 9}, {0, 0, 0});
+       },
+       "direction: must not be 0"},
+      {"raycast",
+       [](Crowd& crowd) {
+         crowd.s.raycast({0, k_nan, 9}, {0, 0, -1}, -1);
+       },
+       "farthest: must be 0 or above"},
+      {"particles_in",
+       [](Crowd& crowd) {
+         crowd.s.particles_in({0, 0, 0}, 0);
+       },
+       "radius"},
+      {"nearest_particle",
+       [](Crowd& crowd) {
+         crowd.s.nearest_particle({0, k_nan, 0});
+       },
+       "point"},
+      {"step_towards", [](Crowd& crowd) { crowd.s.step_towards(crowd.s.time()); }, "time"},
+      {"advance", [](Crowd& crowd) { crowd.s.advance(-1); }, "seconds"},
       {"rotations", [](Crowd& crowd) { crowd.s.rotations(crowd.fluid); },
        "'fluid', which has no reference shape"},
   };
@@ -207,6 +406,10 @@ void expect_refused(const std::vector<Call>& calls) {
 
 TEST(refusals, of_bodies_that_are_gone_or_never_were_change_nothing) {
   expect_refused(calls_with_bodies());
+}
+
+TEST(refusals, of_other_ids_that_are_gone_or_never_were_change_nothing) {
+  expect_refused(calls_with_other_ids());
 }
 
 TEST(refusals, of_numbers_that_mean_nothing_change_nothing) {

@@ -149,6 +149,11 @@ struct BodyMotion {
 /// A scene in motion: SPH and shape matching blended by alpha [TK]. Results depend on the binary and on what
 /// was added, never on the number of threads. One thread may use an object at a time; different objects are
 /// independent. One that was moved from may only be assigned to or destroyed.
+///
+/// What holds of every call, and is said below where there is more to it: an id is looked up, not searched
+/// for, and where it names nothing, or nothing any more, the call throws ConfigError. So does one that
+/// changes anything from within a force callback. A call that throws ConfigError has changed nothing. One
+/// that names no cost takes a time that does not grow with what there is.
 class MALLOW_EXPORT Simulation {
  public:
   /// Throws ConfigError with every value that is out of range.
@@ -160,52 +165,60 @@ class MALLOW_EXPORT Simulation {
   Simulation& operator=(Simulation&&) noexcept;
 
   /// A material that bodies share; it stays, whoever is made of it. Throws ConfigError with every value that
-  /// is out of range.
+  /// is out of range, or that steps are too long for.
   MaterialId add_material(const Material& material, std::string name = {});
   /// Adds a body; its particles get the next ids. Throws ConfigError, and changes nothing, also where a point
   /// is nearer than a tenth of the spacing to another one of the body or to a particle that is there, or
-  /// where floats cannot tell points apart so far from 0.
+  /// where floats cannot tell points apart so far from 0. Costs a search around its points, and in the next
+  /// step its regions.
   BodyId add_body(const Body& body, MaterialId material, std::string name = {});
   /// Adds a body of a material of its own, which material(BodyId) names: others may be made of it too. It
   /// goes with the last of them, and its id names nobody again.
   BodyId add_body(const Body& body, const Material& material, std::string name = {});
   /// Adds particles to a body, with its spacing: all of it is one piece, with one reference shape. In one
   /// that already moved the others keep where they rest, and a new particle rests beside the one that it is
-  /// put next to, as that is turned and moved. Throws what add_body() throws.
+  /// put next to, as that is turned and moved. Costs some passes over the body, and new lists for what is
+  /// near what came. Throws what add_body() throws.
   void extend_body(BodyId body, const Body& more);
   /// A body is gone, and what leaned on it wakes. Its id and those of its particles name nobody again. No
   /// other body is touched; the cost is that of moving the rows behind it up. Throws ConfigError where there
   /// is none of this id, or no longer.
   void remove_body(BodyId body);
   /// Particles are gone. Those left of their bodies keep where they rest, and hold together by the regions
-  /// that are left; a body without particles is removed. Throws ConfigError, and removes none, where an id is
+  /// that are left; a body without particles is removed. Costs some passes over their bodies, a move of the
+  /// rows behind, and new lists for what was near them. Throws ConfigError, and removes none, where an id is
   /// not one or comes twice.
   void remove_particles(std::span<const ParticleId> ids);
-  /// The same for all that are in a box now. Returns how many; throws ConfigError where there are none.
+  /// The same for all that are in a box now [m]. Looks at every particle. Returns how many; throws
+  /// ConfigError where there are none.
   std::size_t remove_particles(const Aabb& region);
   /// Parts of a body that shape matching no longer holds together become bodies of their own, of the same
   /// material, that rest and move as they did: they touch each other as bodies do. The largest keeps the id,
   /// or the one that an emitter puts new layers behind; the others are named after it, and `split` events
   /// name them. Parts of fewer than four particles stay with it. Returns all of them, the one that keeps the
   /// id first: that alone where the body is in one part now. What it lost before, by an earlier call or as
-  /// Body::splits says, is a body of its own and no part of it any more: the events of then named it. Throws
-  /// ConfigError where there is none of this id.
+  /// Body::splits says, is a body of its own and no part of it any more: the events of then named it. Costs a
+  /// look at all its regions, and new lists where it is in several parts. Throws ConfigError where there is
+  /// none of this id, and what prepare() throws.
   std::vector<BodyId> split(BodyId body);
-  /// An obstacle from the next step on. Throws ConfigError with every value that is out of range.
+  /// An obstacle from the next step on; what sleeps near it wakes. Throws ConfigError with every value that
+  /// is out of range.
   ColliderId add_collider(const Collider& collider);
   /// Another one in its place from the next step on, under the same id: shape, pose, friction and all.
   /// Nothing feels the way from the old pose to the new one; set_pose(), set_twist() and keyframes move it.
   /// Throws what add_collider() throws, and ConfigError where there is none of this id.
   void set_collider(ColliderId id, const Collider& collider);
-  /// It is gone from the next step on. Throws ConfigError where there is none of this id.
+  /// It is gone from the next step on, and what sleeps near it wakes. Throws ConfigError where there is none
+  /// of this id.
   void remove_collider(ColliderId collider);
   /// A nozzle, and a body that is its strand: what it holds behind it is there at once, and is part of the
   /// body in all that is asked of it (volume(), heat(), bounds(), motion()); held() names it, for who wants
-  /// only what has left. Throws what add_body() throws.
+  /// only what has left. Costs what add_body() costs, and every eighth layer what extend_body() costs. Throws
+  /// what add_body() and pin() throw.
   EmitterId add_emitter(const Emitter& emitter, MaterialId material, std::string name = {});
-  /// Its strand.
+  /// Its strand. Throws ConfigError where there is none of this id, or no longer.
   BodyId body(EmitterId emitter) const;
-  /// As it is now, where it has moved.
+  /// As it is now, where it has moved. Throws as body() does.
   const Emitter& emitter(EmitterId emitter) const;
   /// Those that there are, in the order in which they were added.
   std::vector<EmitterId> emitter_ids() const;
@@ -216,24 +229,30 @@ class MALLOW_EXPORT Simulation {
   /// keyframes then. Throws ConfigError, and changes nothing, where one is out of range, or both are faster
   /// than any step carries.
   void set_flow(EmitterId emitter, const Schedule& speed, const Vec3& velocity = {0, 0, 0});
-  /// The nozzle is gone and what it held is free.
+  /// The nozzle is gone and what it held is free. Looks at every particle. Throws ConfigError where there is
+  /// none of this id.
   void remove_emitter(EmitterId emitter);
   /// Particles that come into a box, or out of it, and are not pinned, are removed at the start of every
-  /// step.
+  /// step [m]. Every step looks at every particle for it. Throws ConfigError where a number is not finite, or
+  /// min not below max.
   SinkId add_sink(const Aabb& box, bool outside = false);
   /// Throws ConfigError where there is none of this id.
   void remove_sink(SinkId sink);
   /// How many particles it has taken. Throws as remove_sink() does.
   std::uint64_t drained(SinkId sink) const;
   std::vector<SinkId> sink_ids() const;  ///< of all that there are, as they were added
-  /// Particles that are in `region` now move with `velocity` from now on and answer to nothing else. The
-  /// region may hold none: that is a ConfigError, as nobody means it.
+  /// Particles that are in `region` [m] now move with `velocity` [m/s] from now on and answer to nothing
+  /// else. Looks at every particle. The region may hold none: that is a ConfigError, as nobody means it.
+  /// Throws as the other does.
   PinId pin(const Aabb& region, const Vec3& velocity = {0, 0, 0});
-  /// The same for particles by id. Throws ConfigError where an id is not one.
+  /// The same for particles by id. Throws ConfigError where an id is not one, a number is not finite, no step
+  /// carries them so fast, or there are 65535 pins.
   PinId pin(std::span<const ParticleId> ids, const Vec3& velocity = {0, 0, 0});
-  /// Its particles are free again, as fast as they are. Throws ConfigError where there is none of this id.
+  /// Its particles are free again, as fast as they are. Looks at every particle. Throws ConfigError where
+  /// there is none of this id.
   void unpin(PinId pin);
-  /// An empty function takes the callback away. What it gives an acceleration to does not sleep.
+  /// An empty function takes the callback away. What it gives an acceleration to does not sleep. Costs one
+  /// call a step.
   void set_force(ForceCallback callback);
 
   /// [m/s²]; wakes all that sleeps. What follows from gravity where a config leaves it out stays as the first
@@ -245,12 +264,14 @@ class MALLOW_EXPORT Simulation {
   /// changes nothing, where another setting differs, a value is out of range, or steps would be too long for
   /// a material's springs.
   void set_solver(const SolverConfig& config);
-  /// What all bodies of a material are made of from now on. Reference shapes stay; the regions are built anew
-  /// where their radius or stride changes. Throws ConfigError with every value that is out of range.
+  /// What all bodies of a material are made of from now on. Wakes them. Reference shapes stay; the regions
+  /// are built anew where their radius or stride changes. Throws ConfigError with every value that is out of
+  /// range, or that steps are too long for.
   void set_material(MaterialId material, const Material& settings);
-  /// As set last.
+  /// As set last. Throws ConfigError where there is none of this id.
   const Material& material_settings(MaterialId material) const;
-  /// Alpha of a material alone; particles that have their own keep it.
+  /// Alpha of a material alone, in [0, 1]; particles that have their own keep it. Wakes its bodies. Throws as
+  /// set_material() does.
   void set_alpha(MaterialId material, const AlphaSchedule& alpha);
   /// Alpha of particles from now on, in [0, 1], in place of their material's. All of their bodies keep what
   /// they have now, as if Body::alpha had said it. Throws ConfigError, and changes nothing, where a number is
@@ -261,11 +282,14 @@ class MALLOW_EXPORT Simulation {
   /// Temperature of particles now [K], finite. Throws ConfigError, and changes nothing, where an id is not
   /// one or its body carries no heat.
   void set_temperature(std::span<const ParticleId> ids, float temperature);
-  /// Temperature of a collider from now on, over time [K]; nullopt: no heat passes.
+  /// Temperature of a collider from now on, over time [K]; nullopt: no heat passes. Throws ConfigError where
+  /// a number is not finite, or there is none of this id.
   void set_temperature(ColliderId collider, const std::optional<Schedule>& temperature);
-  /// The velocity of a collider from now on [m/s], finite. It has no keyframes then.
+  /// The velocity of a collider from now on [m/s], finite. It has no keyframes then. Throws as set_twist()
+  /// does.
   void set_velocity(ColliderId collider, const Vec3& velocity);
-  /// [m/s], and [rad/s] about its pose's translation.
+  /// [m/s], and [rad/s] about its pose's translation; no keyframes then. Throws ConfigError where a number is
+  /// not finite, or there is none of this id.
   void set_twist(ColliderId collider, const Vec3& velocity, const Vec3& angular_velocity);
   /// Puts a collider where it then stands still, without keyframes. seconds: 0, it is there at once and moves
   /// nothing on the way; > 0, it takes so long [s] and moves what it meets. Throws ConfigError where a number
@@ -275,9 +299,11 @@ class MALLOW_EXPORT Simulation {
   /// whatever steps led there; in between it moves and turns evenly, so take seconds as short as the motion
   /// asks for.
   void set_pose(ColliderId collider, const Pose& pose, double seconds = 0);
-  /// The velocity of the particles of a pin from now on [m/s], finite; no faster than steps carry.
+  /// The velocity of the particles of a pin from now on [m/s]. Throws ConfigError where a number is not
+  /// finite, no step carries them so fast, or there is none of this id.
   void set_velocity(PinId pin, const Vec3& velocity);
-  /// The particles of a pin go `way` [m] in the next `seconds`, > 0, evenly, and stay there.
+  /// The particles of a pin go `way` [m] in the next `seconds`, > 0, evenly, and stay there. Throws as
+  /// set_velocity() of a pin does.
   void move_pin(PinId pin, const Vec3& way, double seconds);
   /// Of all particles of a body that are not pinned: [m/s], and [rad/s] about its centre of mass, along the
   /// axes of the world. Wakes it; costs a pass over its particles. Throws ConfigError, and changes nothing,
@@ -288,10 +314,10 @@ class MALLOW_EXPORT Simulation {
   /// Of particles that are not pinned [m/s]. Throws ConfigError, and changes nothing, where an id is not one,
   /// and as the other does.
   void set_velocity(std::span<const ParticleId> ids, const Vec3& velocity);
-  /// Moves a body, pinned particles too, so that its centre of mass is there [m]. Where it then overlaps
-  /// another body, contact pushes apart those particles that are near each other; two that stand deep in each
-  /// other may stay so. Throws ConfigError, and changes nothing, also where floats cannot tell its particles
-  /// apart.
+  /// Moves a body, pinned particles too, so that its centre of mass is there [m]; some passes over them.
+  /// Where it then overlaps another body, contact pushes apart those particles that are near each other; two
+  /// that stand deep in each other may stay so. Throws ConfigError, and changes nothing, also where floats
+  /// cannot tell its particles apart.
   void set_position(BodyId body, const Vec3& center_of_mass);
   /// Adds momentum [N s] to the particles of a body that are not pinned, the same to each. Throws as
   /// set_velocity() does.
@@ -301,10 +327,11 @@ class MALLOW_EXPORT Simulation {
   /// set_velocity() does.
   std::size_t add_impulse(const Vec3& center, float radius, const Vec3& impulse);
   /// A body that is not enabled stands where it is, is met by nothing, taken by no sink, and costs nothing.
-  /// The nozzle of a strand stands still with it; one with keyframes is where they say in the step after it
-  /// is enabled again. It is still seen in every view, goes on as fast as it was when it is enabled again,
-  /// and nothing may be added where it overlaps it: enabled again, the two would stand in one place. Throws
-  /// ConfigError where there is none of this id, or no longer.
+  /// The nozzle of a strand stands still with it, and so does its clock: enabled again it goes on from where
+  /// it stood, and its start, stop, keyframes and keys of the speed come later by that. It is still seen in
+  /// every view, goes on as fast as it was when it is enabled again, and nothing may be added where it
+  /// overlaps it: enabled again, the two would stand in one place. Throws ConfigError where there is none of
+  /// this id, or no longer.
   void enable(BodyId body, bool enabled);
   /// As set last; true at first. Throws as enable() does.
   bool is_enabled(BodyId body) const;
@@ -403,11 +430,11 @@ class MALLOW_EXPORT Simulation {
   struct Rows {
     std::size_t begin, end;
   };
-  /// Where the body stands now.
+  /// Where the body stands now. Throws ConfigError where there is none of this id.
   Rows rows(BodyId body) const;
   /// h of the body [m]. Throws ConfigError where there is none of this id, or no longer.
   float spacing(BodyId body) const;
-  /// What the body is made of.
+  /// What the body is made of. Throws ConfigError where there is none of this id.
   MaterialId material(BodyId body) const;
 
   /// The row of a particle in every view. Throws ConfigError where there is none of this id, or no longer.
@@ -437,10 +464,12 @@ class MALLOW_EXPORT Simulation {
 
   /// The first particle that a ray meets, of bodies that are enabled: the ball around it, as large as
   /// surfaces are drawn around it by default. direction: of any length but 0. farthest: [m], may be infinite.
-  /// Looks at the box of every block of particles. Throws ConfigError.
+  /// Looks at every particle for the boxes of their blocks. Throws ConfigError where a number is not finite,
+  /// direction is 0, or farthest below 0.
   std::optional<BodyHit> raycast(const Vec3& origin, const Vec3& direction,
                                  double farthest = std::numeric_limits<double>::infinity()) const;
-  /// The first surface of a collider that a ray meets from where particles may be. As raycast().
+  /// The first surface of a collider that a ray meets from where particles may be. Looks at every collider.
+  /// Throws as raycast() does.
   std::optional<ColliderHit> raycast_colliders(
       const Vec3& origin, const Vec3& direction,
       double farthest = std::numeric_limits<double>::infinity()) const;
@@ -449,7 +478,8 @@ class MALLOW_EXPORT Simulation {
   std::vector<ParticleId> particles_in(const Aabb& box) const;
   /// The same in a ball [m]. Throws ConfigError where a number is not finite, or radius not above 0.
   std::vector<ParticleId> particles_in(const Vec3& center, float radius) const;
-  /// The particle of an enabled body that is nearest to a point [m]. Looks at every particle.
+  /// The particle of an enabled body that is nearest to a point [m]; nullopt where there is none. Looks at
+  /// every particle. Throws ConfigError where a number is not finite.
   std::optional<NearestParticle> nearest_particle(const Vec3& point) const;
   /// The box around the centres of a body's particles [m]. Looks at each of them. Throws ConfigError where
   /// there is none of this id, or no longer.
