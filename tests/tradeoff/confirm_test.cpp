@@ -88,4 +88,35 @@ TEST(tradeoff_confirm, pick_by_error_has_the_limit_between_it_and_what_is_cheape
   EXPECT_LT(picked->error, between);
 }
 
+TEST(tradeoff_confirm, tells_what_to_give_where_the_reference_is_too_far_off) {
+  tradeoff::Study study = timed({{1}, {2}});
+  tradeoff::StudyOptions options = k_options;
+  options.kept = 0.2;
+  const auto why = [&] {
+    return tradeoff::confirm(study, {.most = 0.1}, options, k_never).value().not_judged;
+  };
+  study.reference.error = 0.3;
+  study.reference.order = 1;
+  study.reference.seconds = 5;
+  study.reference.parts_again = false;
+  // Two halvings more, which take 5 s (2 + 4) after 5 s (1 + 1/2 + ...), in half of what is not kept.
+  EXPECT_EQ(why(),
+            "the reference itself is off by about 0.3 h: ask for no less than that, or give about --budget "
+            "100s");
+  study.reference.seconds = 4.5;
+  EXPECT_TRUE(why().ends_with("about --budget 90s")) << why();
+  study.all_frames = study.frames + 1;
+  EXPECT_TRUE(
+      why().ends_with("or give --set run.frames=" + std::to_string(study.frames) + " and about --budget 90s"))
+      << why();
+  study.reference.order = 0.1;
+  EXPECT_TRUE(why().ends_with(" and more by --budget")) << why();
+  study.chaotic = true;
+  study.reference.late_shape = 0.3;
+  study.last_bit_late.emplace().height = 0.25;
+  EXPECT_NE(why().find("no budget brings it nearer, as the last bit of one position moves shapes by 0.25 h"),
+            std::string::npos)
+      << why();
+}
+
 }  // namespace mallow::confirm_test

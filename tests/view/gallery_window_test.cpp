@@ -33,20 +33,27 @@ TEST(view_gallery, takes_pictures_of_scenes_and_keeps_them) {
 
 class view_every_scene : public testing::TestWithParam<std::string> {};
 
-/// 120 take half an hour for all scenes; a few show that each opens, steps and is drawn.
+/// 120 take half an hour for all scenes (tests/view/campaign); a few show that each opens, steps and is
+/// drawn.
 std::string frames_to_play() {
   const char* const frames = std::getenv("MALLOW_VIEW_FRAMES");
   return frames ? frames : "5";
 }
+int seconds_to_play() {
+  const char* const seconds = std::getenv("MALLOW_VIEW_SECONDS");
+  return seconds ? std::atoi(seconds) : 280;
+}
 
 TEST_P(view_every_scene, plays) {
   if (const std::string why = test::why_no_window(); !why.empty()) GTEST_SKIP() << why;
-  const Played played = play({(k_scenes / GetParam()).string(), "--width", "320", "--height", "240"},
-                             "ready\nkey =\nframes " + frames_to_play() + "\nstatus\nclose\n");
+  const Played played =
+      play({(k_scenes / GetParam()).string(), "--width", "320", "--height", "240"},
+           "ready\nkey =\nframes " + frames_to_play() + "\nstatus\nclose\n", seconds_to_play());
   if (played.exit_code == 2 && played.out.find("meshes") != std::string::npos)
     GTEST_SKIP() << "its mesh is not there: tools/fetch_meshes";
   EXPECT_EQ(played.exit_code, 0) << played.out;
   EXPECT_NE(played.out.find("failed 0"), std::string::npos) << played.out;
+  RecordProperty("status_line", played.out.substr(std::min(played.out.size(), played.out.find("status "))));
 }
 
 std::vector<std::string> scene_names() {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 
@@ -246,6 +247,11 @@ TEST(view_session, the_thread_hands_over_frames_takes_commands_and_ends_while_it
   EXPECT_TRUE(wait_for([](const Frame& frame) {
     return !frame.positions.empty() && frame.values.size() == frame.positions.size();
   }));
+  thread.send([](Session& session) { session.show(Drawn::particles, Shown::thread); });
+  EXPECT_TRUE(wait_for([](const Frame& frame) {
+    return frame.shown == Shown::thread && std::ranges::count(frame.values, 0.0f) == 256 &&
+           std::ranges::count(frame.values, 1.0f) == 256;
+  })) << "of 512 particles and two threads";
   thread.send([](Session& session) { session.reset(); });
   thread.send([](Session& session) { session.set_paused(true); });
   EXPECT_TRUE(wait_for([](const Frame& frame) { return frame.paused && frame.stats.steps < 5; }));

@@ -20,15 +20,15 @@ fs::path scratch() {
   return folder;
 }
 
-Played play(const std::vector<std::string>& arguments, const std::string& script) {
+Played play(const std::vector<std::string>& arguments, const std::string& script, int seconds) {
   const fs::path file = scratch() / "script.txt";
   std::ofstream(file) << script;
   // What xvfb-run ends with is not always what the viewer did: it may fail to clean up behind one that ended
   // at once.
   const fs::path run = scratch() / "run.sh", code = scratch() / "exit_code";
   fs::remove(code);
-  std::string command =
-      std::string("timeout 280 ") + MALLOW_VIEW + " --script " + program::shell_word(file.string());
+  std::string command = "timeout " + std::to_string(seconds) + ' ' + MALLOW_VIEW + " --script " +
+                        program::shell_word(file.string());
   for (const std::string& argument : arguments) command += " '" + argument + "'";
   std::ofstream(run) << command << "\necho $? > " << program::shell_word(code.string()) << "\n";
   const std::string line = "cd " + program::shell_word(scratch().string()) +

@@ -15,8 +15,9 @@ struct Played {
 
 /// Why no window can be opened here; empty where one can.
 std::string why_no_window();
-/// Runs the viewer in a screen of its own. script: lines, see view/script.h.
-Played play(const std::vector<std::string>& arguments, const std::string& script);
+/// Runs the viewer in a screen of its own. script: lines, see view/script.h. It is ended after so many
+/// seconds, with exit code 124.
+Played play(const std::vector<std::string>& arguments, const std::string& script, int seconds = 280);
 
 struct Picture {
   int width = 0, height = 0;

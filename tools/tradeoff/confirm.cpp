@@ -10,6 +10,8 @@ namespace {
 
 /// Times of one run alone say little beside other programs.
 constexpr std::size_t k_timed_again = 3;
+/// Order of convergence below which nothing is foretold of shorter steps.
+constexpr double k_least_order = 0.2;
 
 std::string milliseconds(double seconds) {
   return number(1e3 * seconds) + " ms";
@@ -52,16 +54,37 @@ std::vector<std::string> passed_over(const Study& study, const Limit& limit, con
   return texts;
 }
 
-/// Why an error cannot be judged by this study.
-std::string not_judged(const Study& study, const Limit& limit) {
+/// The budget that halves the steps until the reference is near enough, by the order that halvings had so far
+/// [s]; each takes as long as all before it.
+std::optional<double> budget_needed(const Study& study, double most, double kept) {
+  const Reference& reference = study.reference;
+  const double order = reference.order.value_or(0);
+  if (study.chaotic || reference.parts_again || order < k_least_order) return std::nullopt;
+  const double halvings = std::ceil(std::log2(study.reference_error() / most) / order);
+  return std::exp2(halvings + 1) * reference.seconds / (k_reference_share * (1 - kept));
+}
+
+/// What to do about a reference that is too far off itself.
+std::string way_out(const Study& study, double most, double kept) {
+  if (study.chaotic && study.last_bit_late && study.last_bit_late->shape() > most)
+    return "; no budget brings it nearer, as the last bit of one position moves shapes by " +
+           number(study.last_bit_late->shape()) + " h: ask for more than that, or judge less run.frames";
+  const std::string or_give = ": ask for no less than that, or give ";
+  // More budget would be spent on more frames first.
+  const std::string frames =
+      stretch(study).empty() ? "" : "--set run.frames=" + std::to_string(study.frames) + " and ";
+  const std::optional<double> needed = budget_needed(study, most, kept);
+  return or_give + frames + (needed ? "about " + budget_option(*needed) : "more by --budget");
+}
+
+/// Why an error cannot be judged by this study. kept: as in its options.
+std::string not_judged(const Study& study, const Limit& limit, double kept) {
   if (limit.is_time) return "";
   if (study.reference.differences.empty())
     return "no halving of the steps fitted into the budget: give more by --budget";
   if (study.reference_error() <= limit.most) return "";
-  return "the reference itself is off by about " + number(study.reference_error()) +
-         " h: ask for no less than that, or give " +
-         // More budget would be spent on more frames first.
-         (stretch(study).empty() ? "more by --budget" : "less run.frames, or far more by --budget");
+  return "the reference itself is off by about " + number(study.reference_error()) + " h" +
+         way_out(study, limit.most, kept);
 }
 
 }  // namespace
@@ -69,7 +92,7 @@ std::string not_judged(const Study& study, const Limit& limit) {
 std::optional<Picked> confirm(Study& study, const Limit& limit, const StudyOptions& options,
                               double deadline) {
   std::vector<Trade> trades = study.trades();
-  if (std::string why = not_judged(study, limit); !why.empty()) {
+  if (std::string why = not_judged(study, limit, options.kept); !why.empty()) {
     const std::optional<Pick> pick = limit.pick(trades);
     if (!pick) return std::nullopt;
     return Picked{

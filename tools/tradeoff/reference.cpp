@@ -54,6 +54,7 @@ Reference find_reference(const ReferenceSearch& search, Runner& runner) {
     Motion motion = run_finest(factor);
     cost = wall_clock() - started;
     if (!motion.failure.empty() || motion.moments.size() != before.moments.size()) break;
+    reference.seconds = cost;
     reference.factors.push_back(factor);
     reference.differences.push_back(motion_error(before, motion).rms);
     reference.late_shape = motion_error(before, motion, k_late).shape();

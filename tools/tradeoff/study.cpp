@@ -15,10 +15,9 @@
 namespace mallow::tradeoff {
 namespace {
 
-constexpr double k_reference_share = 0.5;  ///< of the budget
-constexpr double k_first_share = 0.06;     ///< that the scene as it is may take, once it is built
-constexpr int k_handful = 4;               ///< frames that are worth to be judged by
-constexpr double k_handful_share = 0.1;    ///< that they may take
+constexpr double k_first_share = 0.06;   ///< that the scene as it is may take, once it is built
+constexpr int k_handful = 4;             ///< frames that are worth to be judged by
+constexpr double k_handful_share = 0.1;  ///< that they may take
 /// Of the frames that the budget carries, where an error is to be held that needs a reference in shorter
 /// steps.
 constexpr double k_judged_share = 0.4;
@@ -150,11 +149,10 @@ class Maker {
     const double frame = step * steps_of_frame_;
     const double needed = std::max(fewest * frame / k_handful_share, k_fewest_builds * (building_ + frame)) /
                           (1 - options_.kept);
-    const double digit = std::pow(10, std::floor(std::log10(needed)) - 1);
-    return program::RunFailure(
-        "the budget is too small: a frame takes about " + number(frame, 2) + " s, and building the scene " +
-        number(building_, 2) + " s; to be judged by its first " + std::to_string(fewest) +
-        " frames this scene needs about --budget " + number(digit * std::ceil(needed / digit), 6) + "s");
+    return program::RunFailure("the budget is too small: a frame takes about " + number(frame, 2) +
+                               " s, and building the scene " + number(building_, 2) +
+                               " s; to be judged by its first " + std::to_string(fewest) +
+                               " frames this scene needs about " + budget_option(needed));
   }
 
   void add_row(const Setting& setting, Motion motion, std::optional<double> surface) {

@@ -14,6 +14,7 @@ namespace mallow::tradeoff {
 
 /// Share of the moments that late errors pass over: they are of the last quarter.
 constexpr double k_late = 0.75;
+constexpr double k_reference_share = 0.5;  ///< of the budget, that the search for a reference may take
 
 /// What a setting has to hold.
 struct Limit {
@@ -67,6 +68,7 @@ struct Reference {
   std::vector<double> differences;  ///< RMS between successive ones [h]
   std::optional<double> order;
   double error = 0;          ///< what it may be off itself, by its order [h]
+  double seconds = 0;        ///< wall time of the run in the shortest steps [s]
   double late_shape = 0;     ///< by how much the last halving moved shapes in the last quarter [h]
   bool converged = false;    ///< false: the budget's half ended it, or
   bool parts_again = false;  ///< the last halving moved particles farther than the one before

@@ -1,6 +1,7 @@
 #include "tradeoff/tables.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -82,6 +83,11 @@ std::string number(double value, int digits) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
+}
+
+std::string budget_option(double seconds) {
+  const double digit = std::pow(10, std::floor(std::log10(seconds)) - 1);
+  return "--budget " + number(digit * std::ceil(seconds / digit), 6) + "s";
 }
 
 std::vector<std::size_t> by_cost(const Study& study) {

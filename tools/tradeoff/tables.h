@@ -21,5 +21,7 @@ std::string to_json(const Study& study, const std::optional<Picked>& picked = {}
 std::vector<std::size_t> by_cost(const Study& study);
 /// "%.3g" and the like.
 std::string number(double value, int digits = 3);
+/// "--budget 90s": two digits, rounded up.
+std::string budget_option(double seconds);
 
 }  // namespace mallow::tradeoff

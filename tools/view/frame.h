@@ -18,12 +18,16 @@
 namespace mallow::view {
 
 /// What particles are coloured by.
-enum class Shown : std::uint8_t { appearance, density, speed, strain, temperature, alpha, body };
+enum class Shown : std::uint8_t { appearance, density, speed, strain, temperature, alpha, body, thread };
 /// "speed" and the like, by number.
-inline constexpr std::array<const char*, 7> k_shown_names = {"appearance",  "density", "speed", "strain",
-                                                             "temperature", "alpha",   "body"};
+inline constexpr std::array<const char*, 8> k_shown_names = {"appearance",  "density", "speed", "strain",
+                                                             "temperature", "alpha",   "body",  "thread"};
 /// With their units, for the legend.
-inline constexpr std::array<const char*, 7> k_shown_units = {"", "kg/m³", "m/s", "", "K", "", ""};
+inline constexpr std::array<const char*, 8> k_shown_units = {"", "kg/m³", "m/s", "", "K", "", "", ""};
+/// Whether values are numbers of something, each with a colour of its own; below 0 is grey.
+constexpr bool are_numbers(Shown shown) {
+  return shown == Shown::body || shown == Shown::thread;
+}
 
 /// Which of the two is drawn.
 enum class Drawn : std::uint8_t { surface, particles };
@@ -50,7 +54,7 @@ struct FrameStats {
   double surface_seconds = 0;  ///< to draw the surface, the same [s]
   double save_seconds = 0;     ///< to save a state to go back to [s]
   std::size_t particles = 0, bodies = 0, awake = 0;
-  int threads = 0, most_threads = 0;  ///< that the simulation has, and may have
+  int threads = 0, most_threads = 0;          ///< that the simulation has, and may have
   std::size_t moments = 0, moment_bytes = 0;  ///< to go back to
   double oldest = 0, newest = 0;              ///< of them [s]
   int rung = 0;                               ///< see frame_governor.h

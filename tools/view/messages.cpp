@@ -79,6 +79,9 @@ void draw_legend(const Frame& frame, const ViewState& state) {
     ImGui::Text("no %s here", k_shown_names[number]);
   } else if (state.shown == Shown::body) {
     ImGui::Text("a colour for each body");
+  } else if (state.shown == Shown::thread) {
+    ImGui::Text("a colour for each thread: what it begins a step with, of %d threads", frame.stats.threads);
+    ImGui::Text("grey: asleep");
   } else {
     ImGui::Text("%s %s", k_shown_names[number], k_shown_units[number]);
     const ImVec2 start = ImGui::GetCursorScreenPos();

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "simulation/thread_shares.h"
+
 namespace mallow::view {
 namespace {
 
@@ -116,6 +118,11 @@ void ParticleValues::find(const Simulation& simulation, Shown shown, std::vector
         std::fill(values.begin() + static_cast<std::ptrdiff_t>(rows.begin),
                   values.begin() + static_cast<std::ptrdiff_t>(rows.end), static_cast<float>(slot_of(body)));
       }
+      break;
+    }
+    case Shown::thread: {
+      const std::vector<int> shares = thread_shares(simulation);
+      values.assign(shares.begin(), shares.end());
       break;
     }
   }

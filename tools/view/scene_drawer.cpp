@@ -154,7 +154,7 @@ void SceneDrawer::take_particles(const Frame& frame) {
   glEnableVertexAttribArray(2);
   glVertexAttribIPointer(2, 1, GL_UNSIGNED_INT, 0, nullptr);
   const bool has_values = frame.values.size() == frame.positions.size();
-  shown_ = !has_values ? 0 : frame.shown == Shown::body ? 2 : 1;
+  shown_ = !has_values ? 0 : are_numbers(frame.shown) ? 2 : 1;
   value_range_ = frame.value_range;
   if (has_values) {
     point_values_.fill<float>(GL_ARRAY_BUFFER, frame.values);

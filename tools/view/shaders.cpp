@@ -143,7 +143,7 @@ uniform mat4 projection_view;
 uniform float pixels;           // of a length of 1 at a distance of 1
 uniform sampler2D palette;
 uniform vec2 value_range;
-uniform int shown;              // 0: appearances; 1: values; 2: numbers of bodies
+uniform int shown;              // 0: appearances; 1: values; 2: numbers, those below 0 of nothing
 out vec3 center;
 flat out vec4 look;
 flat out float radius;
@@ -160,6 +160,7 @@ void main() {
   radius = texelFetch(palette, at + ivec2(1, 0), 0).r;
   if (shown == 1) look = vec4(color_of((value - value_range.x) / (value_range.y - value_range.x)), 1.0);
   if (shown == 2) look = vec4(0.5 + 0.4 * cos(6.2832 * (0.618034 * value + vec3(0.0, 0.33, 0.67))), 1.0);
+  if (shown == 2 && value < 0.0) look = vec4(vec3(0.3), 1.0);
   center = position;
   gl_Position = projection_view * vec4(position, 1.0);
   gl_PointSize = max(1.0, 2.0 * radius * pixels / gl_Position.w);

@@ -7,6 +7,13 @@
 /// Included before all of pybind11, which says what a function was called with by printing it: an array
 /// filled the screen. Only the begin of that stays, and the types that a function takes are called as users
 /// call them.
+///
+/// A macro, as pybind11 2.10 has no place for it: where no overload fits, its dispatcher makes the
+/// message and sets the error itself. Exception translators are asked only for what C++ throws, and type
+/// casters only say yes or no. What else would do: a last overload of every function that takes anything and
+/// raises, which all doc strings and stubs would show; or a wrapper of Python's around every method, which
+/// calls would pay for. CMake includes this first in every source of the module, so that all of them have the
+/// same dispatcher.
 namespace mallow::python {
 
 inline void set_error(PyObject* type, const char* message) {
