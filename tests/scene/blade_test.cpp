@@ -1,8 +1,10 @@
-// The scenes blade.toml and filled_shell.toml of data/scenes: colliders that cut what flows.
+// The scenes blade.toml, pastry_wheel.toml and filled_shell.toml of data/scenes: colliders that cut what
+// flows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <vector>
@@ -74,6 +76,25 @@ TEST(mesh_blade, cuts_the_lump_of_its_scene_in_three) {
   EXPECT_EQ(told.torn, 2);
   EXPECT_EQ(told.merged, 0);
   EXPECT_EQ(told.parts, 3u);
+}
+
+TEST(pastry_wheel, turns_as_it_rolls_and_cuts_the_sheet_of_its_scene_in_two) {
+  const Scene scene = scene_of("pastry_wheel.toml");
+  Simulation s = build(scene, 2);
+  EXPECT_TRUE(warnings(scene, s.info()).empty());
+  const std::vector<Vec3> start = s.positions_by_id();
+  const Eigen::Vector4d first = s.colliders()[0].pose.rotation;
+  const Told told = run(s, 0.7);
+  EXPECT_NEAR(std::abs(first.dot(s.colliders()[0].pose.rotation)), std::cos(1.745), 1e-3) << "by 200 degrees";
+  EXPECT_EQ(told.torn, 0) << "it is half way";
+  const Told end = run(s, scene.run.frames * *scene.run.frame_time);
+  EXPECT_EQ(end.torn, 1);
+  EXPECT_EQ(end.merged, 0);
+  EXPECT_EQ(end.parts, 2u);
+  std::size_t stayed = 0;
+  const std::vector<Vec3> x = s.positions_by_id();
+  for (std::size_t i = 0; i < start.size(); ++i) stayed += start[i].y() * x[i].y() > 0;
+  EXPECT_GT(static_cast<double>(stayed), 0.97 * static_cast<double>(start.size())) << "each half on its side";
 }
 
 /// What of a half of the praline is shell and filling, and where along y.
