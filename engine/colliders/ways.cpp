@@ -85,10 +85,12 @@ float blade_thickness(const Collider& collider) {
   float thickness = k_none;
   visit_ways(collider, box, [&](const Ways& ways) {
     const double most = fastest_of(ways);
-    for (const Eigen::Vector3d& way : ways)
+    for (const Eigen::Vector3d& way : ways) {
+      const double speed = way.norm();
       for (int axis = 0; axis < 3; ++axis)
-        if (way.norm() >= k_fast * most && std::abs(way[axis]) < k_edgewise * way.norm())
+        if (speed >= k_fast * most && std::abs(way[axis]) < k_edgewise * speed)
           thickness = std::min(thickness, sides[axis]);
+    }
   });
   return k_flat * thickness <= sides.maxCoeff() ? thickness : k_none;
 }

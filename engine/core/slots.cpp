@@ -1,13 +1,6 @@
 #include "core/slots.h"
 
-#include <numeric>
-
 namespace mallow {
-
-std::uint64_t Slots::given() const {
-  const auto slots = static_cast<std::uint64_t>(index.size() - free.size());
-  return std::accumulate(generation.begin(), generation.end(), slots);  // each was given back so often
-}
 
 std::uint64_t Slots::take() {
   if (free.empty()) {
@@ -24,6 +17,7 @@ void Slots::give_back(std::uint64_t id) {
   const std::uint32_t slot = slot_of(id);
   if (generation.empty()) generation.resize(index.size());
   ++generation[slot];
+  ++given_back;
   index[slot] = k_free;
   free.push_back(slot);
 }

@@ -19,10 +19,11 @@ struct Slots {
   Column<std::uint32_t> index;       ///< of whom each slot is; k_free where it is nobody's
   Column<std::uint32_t> generation;  ///< of each slot; empty until somebody is removed
   std::vector<std::uint32_t> free;   ///< slots that are nobody's; the last one is given away next
+  std::uint64_t given_back = 0;      ///< the sum of all generations
 
   std::size_t size() const { return index.size(); }
   /// How many ids there have been.
-  std::uint64_t given() const;
+  std::uint64_t given() const { return index.size() - free.size() + given_back; }
   std::size_t bytes() const {
     return index.bytes() + generation.bytes() + free.capacity() * sizeof(std::uint32_t);
   }

@@ -20,6 +20,8 @@ constexpr float k_half_turn = 180;
 constexpr double k_looks = 4, k_most_looks = 4000;
 /// Nobody means a share of the spacing that is as small as this.
 constexpr float k_rounding_depth = 0.01f;
+/// Of its length, how far beside the place where it turns the axis of what is round may be.
+constexpr float k_through = 1e-4f;
 /// Places on the rim of a mouth that are looked at, beside its middle.
 constexpr int k_rim = 8;
 
@@ -39,16 +41,30 @@ void look_at_turns(const std::string& what, std::span<const SceneKeyframe> keys,
   }
 }
 
-/// Round about its axis, along which it is taken to turn: nobody sees how fast.
+/// Round about an axis through where it turns, which it is taken to turn about: nobody sees how fast.
 bool is_round(const Collider& collider) {
-  return std::holds_alternative<Sphere>(collider.shape) || std::holds_alternative<Capsule>(collider.shape) ||
-         std::holds_alternative<Cylinder>(collider.shape) || std::holds_alternative<Cone>(collider.shape);
+  return std::visit(
+      [](const auto& shape) {
+        if constexpr (requires {
+                        shape.center;
+                        shape.radius;
+                      })
+          return shape.center.isZero(0);
+        else if constexpr (requires {
+                             shape.start;
+                             shape.end;
+                           })
+          return shape.start.cross(shape.end).norm() <= k_through * (shape.end - shape.start).squaredNorm();
+        else
+          return false;
+      },
+      collider.shape);
 }
 
-/// As fast as it ever turns [rad/s].
-double fastest_turn(const Collider& collider) {
+/// As fast as it ever turns before the run ends [rad/s].
+double fastest_turn(const Collider& collider, double seconds) {
   double most = collider.keyframes.empty() ? static_cast<double>(collider.angular_velocity.norm()) : 0;
-  for (std::size_t k = 1; k < collider.keyframes.size(); ++k) {
+  for (std::size_t k = 1; k < collider.keyframes.size() && collider.keyframes[k - 1].time < seconds; ++k) {
     const PoseKeyframe &from = collider.keyframes[k - 1], &to = collider.keyframes[k];
     const Twist twist = twist_between(from.pose, to.pose, to.time - from.time);
     most = std::max(most, static_cast<double>(twist.angular_velocity.norm()));
@@ -57,17 +73,17 @@ double fastest_turn(const Collider& collider) {
 }
 
 /// What turns by half a turn and more from one frame to the next: 200 degrees a second as 200 rad/s.
-void look_at_frames(const SceneCollider& collider, std::size_t number, double frame,
+void look_at_frames(const SceneCollider& collider, std::size_t number, double seconds, double frame,
                     std::vector<std::string>& all) {
-  const double rate = fastest_turn(collider), degrees = rate * frame * 180 / std::numbers::pi;
+  const double rate = fastest_turn(collider, seconds), degrees = rate * frame * 180 / std::numbers::pi;
   if (is_round(collider) || degrees < static_cast<double>(k_half_turn)) return;
-  std::ostringstream text;
-  text << "collider[" << number << "]: turns by " << std::round(degrees) << " degrees from one frame to the "
-       << "next, and frames show no more than half a turn, nor which way; ";
+  std::ostringstream unit, text;
   if (collider.keyframes.empty())
-    text << "angular_velocity is in rad/s, and " << rate << " degrees a second are "
+    unit << "angular_velocity is in rad/s, and " << rate << " degrees a second are "
          << rate * std::numbers::pi / 180 << "; ";
-  text << "let it turn slower, or give a shorter frame_time";
+  text << "collider[" << number << "]: turns by " << std::round(degrees)
+       << " degrees from one frame to the next, and frames show no more than half a turn, nor which way; "
+       << unit.str() << "let it turn slower, or give a shorter frame_time";
   all.push_back(text.str());
 }
 
@@ -78,11 +94,8 @@ Pose pose_of(const SceneEmitter& emitter, double time) {
   return pose;
 }
 
-/// Where it stands then, to be asked for distances.
-Collider collider_at(const Collider& collider, double time) {
-  Collider there = collider;
-  there.pose = collider.keyframes.empty() ? pose_after(collider, time) : pose_at(collider.keyframes, time);
-  return there;
+Pose pose_of(const Collider& collider, double time) {
+  return collider.keyframes.empty() ? pose_after(collider, time) : pose_at(collider.keyframes, time);
 }
 
 /// Places in the mouth of an emitter, in its frame: its middle and its rim, or its points.
@@ -116,12 +129,17 @@ bool stands_in(const Collider& collider, const SceneEmitter& emitter, std::span<
 std::optional<double> first_met(const Collider& collider, const SceneEmitter& emitter, double seconds,
                                 double frame) {
   const std::vector<Eigen::Vector3d> mouth = mouth_of(emitter);
-  if (stands_in(collider_at(collider, 0), emitter, mouth, 0)) return std::nullopt;
+  Collider there = collider;
+  there.keyframes.clear();
+  const auto is_met = [&](double time) {
+    there.pose = pose_of(collider, time);
+    return stands_in(there, emitter, mouth, time);
+  };
+  if (is_met(0)) return std::nullopt;
   const double begin = emitter.start.value_or(0), end = std::min(seconds, emitter.stop.value_or(seconds));
   const double step = std::max(frame / k_looks, (end - begin) / k_most_looks);
   for (double time = begin; time < end; time += step)
-    if (emitter.speed.at(time) > 0 && stands_in(collider_at(collider, time), emitter, mouth, time))
-      return time;
+    if (emitter.speed.at(time) > 0 && is_met(time)) return time;
   return std::nullopt;
 }
 
@@ -148,7 +166,7 @@ std::vector<std::string> motion_warnings(const Scene& scene, double seconds, dou
   std::vector<std::string> all;
   for (std::size_t c = 0; c < scene.colliders.size(); ++c) {
     look_at_turns("collider[" + std::to_string(c) + "]", scene.colliders[c].scene_keyframes, all);
-    look_at_frames(scene.colliders[c], c, frame, all);
+    look_at_frames(scene.colliders[c], c, seconds, frame, all);
   }
   for (std::size_t e = 0; e < scene.emitters.size(); ++e) {
     look_at_turns("emitter[" + std::to_string(e) + "]", scene.emitters[e].scene_keyframes, all);

@@ -258,9 +258,10 @@ void build_carried(const CarriedRegions& carried, const Execution& execution, Re
     if (carried.former[i] != FormerLists::k_none) now[carried.former[i]] = {static_cast<std::uint32_t>(i), 1};
   for (std::size_t r = now.size(); r-- > 1;)
     if (now[r - 1].count > 0 && now[r - 1].first + 1 == now[r].first) now[r - 1].count += now[r].count;
-  copy_lists(shape.regions, scratch.former);
+  const bool known = shape.region_stride == 1 && carried.news.min.x() != -HUGE_VALF;
+  if (known) copy_lists(shape.regions, scratch.former);
   const FormerLists former{scratch.former, carried.former, now, carried.news, shape.weight.span()};
-  build_regions(execution, scratch, shape, &former);
+  build_regions(execution, scratch, shape, known ? &former : nullptr);
   for (std::size_t j = 0; j < shape.region_weight.size(); ++j) {
     const std::size_t row = shape.first_row(j);
     for (std::size_t k = 0; k < 4; ++k)

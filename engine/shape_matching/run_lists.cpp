@@ -279,7 +279,8 @@ void find_runs(const PillarOrder& pillars, float radius, const Execution& execut
   lists.members.resize_unset(n);
   lists.kept.resize_unset(former ? n : 0);
   const Search search(pillars, radius, execution, former);
-  if (lists.runs.size() < n) lists.runs.resize_unset(estimate_runs(search, execution.threads, lists));
+  if (!former && lists.runs.size() < n)
+    lists.runs.resize_unset(estimate_runs(search, execution.threads, lists));
   for (;;) {
     std::atomic<std::size_t> used = 0;
     parallel_for(execution.threads, n, [&](std::size_t begin, std::size_t end) {

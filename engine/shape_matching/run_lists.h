@@ -16,8 +16,8 @@ namespace mallow {
 
 struct TableLists;
 
-/// What a list has of its former one: not the same points, or those, or those in the same runs. Then it is
-/// nowhere else, with the rows of now: what has a hundred thousand such lists and some new ones writes those.
+/// What a list has of its former one: not the same points, or those, or those in the same runs. A list that
+/// keeps its runs is not written to `runs`: it is read from the former lists, with the rows of now.
 enum class Kept : std::uint8_t { none, points, runs };
 
 /// Per row a list of rows as runs, ascending and apart from each other.

@@ -72,7 +72,7 @@ struct TableLists {
 /// runs of n rows the lists have; longer ones count as several.
 RunLengths choose_lengths(const TableLists::Histogram& runs, std::size_t rows);
 /// The lists of `owners`, or all where there are none, for a table of `rows` rows. former: what find_runs()
-/// was given, of other lists than `coded`; without owners.
+/// was given, of other lists than `coded`, which is overwritten while they are read; without owners.
 void encode(const RunLists& lists, std::span<const std::uint32_t> owners, std::size_t rows,
             const Threads& threads, TableLists& coded, const FormerLists* former = nullptr);
 /// All but scratch.

@@ -42,7 +42,7 @@ std::string too_fine(const Aabb& bounds, double spacing, const std::string& what
   std::ostringstream text;
   text << spacing << " is not allowed: the shape is " << width << " m wide, " << width / spacing
        << " spacings, and " << what
-       << "; give a spacing that suits its width, or the width that it is meant to have: size = "
+       << "; give a spacing that suits its width, or the width that it is meant to have, "
        << k_centimetre * width << " where it is in centimetres";
   return text.str();
 }

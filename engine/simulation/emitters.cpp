@@ -291,7 +291,7 @@ void move_emitters(Simulation::State& s, double end, double time_step) {
   for (EmitterState& emitter : s.emitters) {
     Emitter& settings = emitter.settings;
     if (!is_enabled(s, emitter)) {
-      emitter.late += time_step;
+      emitter.late += end - s.time;
       continue;
     }
     emitter.offset += time_step * emitter.speed;

@@ -146,7 +146,6 @@ void give_names(Simulation::State& s, BodyId id, BodyId to) {
 void take_over(BodyState& body, const BodyState& from) {
   if (from.hit_impulse)
     body.hit_impulse = std::min(*from.hit_impulse, body.hit_impulse.value_or(*from.hit_impulse));
-  if (from.whole == body.whole) body.last_part = std::max(body.last_part, from.last_part);
   body.judged_external = std::max(body.judged_external, from.judged_external);
   body.recent_external.clear();
   body.slow_time = 0;

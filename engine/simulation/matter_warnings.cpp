@@ -1,6 +1,7 @@
 // Settings that nobody means: of how matter flows, how thick it is, and how its volume is kept.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 #include "colliders/ways.h"
@@ -29,6 +30,7 @@ class MatterWarnings {
   explicit MatterWarnings(const Simulation::State& state) : state_(state) {}
 
   std::vector<std::string> list() && {
+    std::ranges::transform(state_.colliders, std::back_inserter(thickness_), blade_thickness);
     for (const BodyState& body : state_.bodies) {
       look_at_yield(body);
       look_at_standing_still(body);
@@ -124,7 +126,7 @@ class MatterWarnings {
     if (!flows(material) || !body.keeps_reference()) return;
     const float gap = (1 + material.tear_strain) * body.shape.region_radius;
     for (std::size_t c = 0; c < state_.colliders.size(); ++c) {
-      const float thickness = blade_thickness(state_.colliders[c]);
+      const float thickness = thickness_[c];
       if (!(thickness + body.spacing <= gap)) continue;
       list_.add(body, "collider ", c, " is ", thickness, unit(" m"),
                 " thick across its way, too thin to cut: with a spacing it opens a gap of ",
@@ -169,6 +171,7 @@ class MatterWarnings {
   }
 
   const Simulation::State& state_;
+  std::vector<float> thickness_;  ///< of each collider, as a blade [m]
   WarningList list_;
 };
 

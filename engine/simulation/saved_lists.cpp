@@ -1,5 +1,6 @@
 // The lists of a saved state: what there is, all but its rows.
 #include <algorithm>
+#include <numeric>
 #include <type_traits>
 
 #include "colliders/collider_archive.h"
@@ -23,6 +24,7 @@ void unpack_slots(const SavedState& saved, const char* name, std::span<const std
   unpack(saved, name, [&](UnpackingArchive& archive) {
     pass_list(archive, slots.free, sizeof(std::uint32_t), [&](std::uint32_t& slot) { archive(slot); });
     unpack_column(archive, slots.generation);
+    slots.given_back = std::accumulate(slots.generation.begin(), slots.generation.end(), std::uint64_t{0});
     const std::size_t count = ids.size() + slots.free.size();
     if (!slots.generation.empty() && slots.generation.size() != count)
       archive.fail("there must be a generation for each slot, or none");

@@ -215,7 +215,7 @@ MaterialState checked_material(const Simulation::State& s, const Material& mater
   checks.finish();
   check_stiffness(s.config, material, {}, checks);
   checks.finish();
-  if (name.empty()) name = "material " + std::to_string(s.material_slots.size());
+  if (name.empty()) name = "material " + std::to_string(s.material_slots.given());
   return {.name = std::move(name), .settings = material};
 }
 
@@ -258,9 +258,18 @@ void prepare(Simulation::State& s) {
     return;
   }
   const bool is_first = s.scale.spacing == 0;
-  resolve_settings(s);
-  check_elasticities(s);
-  check_memory(s);
+  const SolverConfig given = s.config;
+  try {
+    resolve_settings(s);
+    check_elasticities(s);
+    check_memory(s);
+  } catch (const ConfigError&) {
+    if (is_first) {  // whoever mends it may mean another scale
+      s.config = given;
+      s.scale = {.spacing = 0};
+    }
+    throw;
+  }
 
   s.sph.kept.forget();
   s.placed.forget();

@@ -108,10 +108,11 @@ class SourceWarnings {
     const double spacing = static_cast<double>(state_.scale.spacing);
     if (spacing == 0 || way <= k_far_step * spacing) return;
     const char* const unit = unit_of(state_.config.gravity, " m/s");
+    const bool keyed = !state_.colliders[number].keyframes.empty();  // which drive angular_velocity
     list_.add("collider ", number, ": a part of it moves at ", speed, unit, ", ", std::round(way / spacing),
               " spacings in a step of ", state_.longest_step(), " s, and what it meets is flung away; ",
-              state_.colliders[number].angular_velocity.isZero(0)
-                  ? "give it a longer way in time, or a shorter way"
+              keyed || state_.colliders[number].angular_velocity.isZero(0)
+                  ? "let it take longer for its way, or lead it a shorter one"
                   : "angular_velocity is in rad/s, and a turn a second is 6.283",
               "; or give a shorter solver.time_step");
   }

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <map>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 
 #include "shape_matching/parts.h"
 #include "shape_matching/reshape.h"
@@ -77,32 +79,40 @@ const std::string& whole_of(const BodyState& body) {
 /// comes again as long as one of them is there, also where the part that had it has merged or is gone.
 class PartNames {
  public:
-  PartNames(Simulation::State& s, const BodyState& body) : s_(s), whole_(whole_of(body)) {
-    const std::string begin = whole_ + k_part;
-    for (const BodyState& other : s.bodies) {
-      if (whole_of(other) == whole_) last_ = std::max(last_, other.last_part);
-      // Somebody may have called a body so.
-      std::uint32_t number = 0;
-      if (other.name.starts_with(begin))
-        std::from_chars(other.name.data() + begin.size(), other.name.data() + other.name.size(), number);
-      last_ = std::max(last_, number);
-    }
-  }
-  void name(BodyState& part) {
-    part.whole = whole_;
-    part.name = whole_ + k_part + std::to_string(++last_);
+  explicit PartNames(Simulation::State& s) : s_(s) {}
+
+  void name(const BodyState& torn, BodyState& part) {
+    if (last_.empty()) look_at_all();
+    part.whole = whole_of(torn);
+    part.name = part.whole + std::string(k_part) + std::to_string(++last_[part.whole]);
   }
   /// Once all parts are among the bodies.
   void keep() const {
-    for (BodyState& other : s_.bodies)
-      if (whole_of(other) == whole_) other.last_part = last_;
+    if (last_.empty()) return;
+    for (BodyState& body : s_.bodies) body.last_part = last_.at(whole_of(body));
   }
 
  private:
-  static constexpr const char* k_part = ", part ";
+  static constexpr std::string_view k_part = ", part ";
+
+  void look_at_all() {
+    for (const BodyState& body : s_.bodies) {
+      raise(whole_of(body), body.last_part);
+      // Somebody may have called a body so.
+      const std::size_t place = body.name.rfind(k_part);
+      if (place == body.name.npos) continue;
+      std::uint32_t number = 0;
+      std::from_chars(body.name.data() + place + k_part.size(), body.name.data() + body.name.size(), number);
+      raise(body.name.substr(0, place), number);
+    }
+  }
+  void raise(const std::string& whole, std::uint32_t number) {
+    std::uint32_t& last = last_[whole];
+    last = std::max(last, number);
+  }
+
   Simulation::State& s_;
-  std::string whole_;
-  std::uint32_t last_ = 1;
+  std::unordered_map<std::string, std::uint32_t> last_;  ///< number of each whole; empty until asked for
 };
 
 /// Rows of a body in the order of its pieces.
@@ -112,9 +122,7 @@ void sort_rows(Simulation::State& s, const BodyState& body, const std::vector<Pl
   s.store.permute(body.begin, order, s.execution.threads);
 }
 
-}  // namespace
-
-std::vector<BodyId> split_body(Simulation::State& s, BodyState& body) {
+std::vector<BodyId> split_body(Simulation::State& s, BodyState& body, PartNames& names) {
   if (!body.shape.built) return {body.id};
   find_parts(body.shape, s.parts_before);
   if (s.parts_before.count < 2) return {body.id};
@@ -136,11 +144,10 @@ std::vector<BodyId> split_body(Simulation::State& s, BodyState& body) {
 
   std::vector<BodyId> ids = {body.id};
   std::size_t place = s.place_of(body), end = body.end;
-  PartNames names(s, body);
   for (std::size_t k = 1; k < pieces.size(); ++k) {
     BodyState part = body_like(body);
     part.id = BodyId{s.body_slots.take()};
-    names.name(part);
+    names.name(body, part);
     part.begin = end;
     part.end = end += pieces[k].size();
     part.shape = std::move(shapes[k - 1].shape);
@@ -151,9 +158,17 @@ std::vector<BodyId> split_body(Simulation::State& s, BodyState& body) {
     s.body_names.add(part);
     s.bodies.insert(++place, std::move(part));
   }
-  names.keep();
   number_bodies(s);
   s.rows_changed();
+  return ids;
+}
+
+}  // namespace
+
+std::vector<BodyId> split_body(Simulation::State& s, BodyState& body) {
+  PartNames names(s);
+  std::vector<BodyId> ids = split_body(s, body, names);
+  names.keep();
   return ids;
 }
 
@@ -161,7 +176,9 @@ void split_torn(Simulation::State& s) {
   std::vector<BodyState*> torn;
   for (BodyState& body : s.bodies)
     if (body.splits && body.apart && body.moves()) torn.push_back(&body);
-  for (BodyState* body : torn) split_body(s, *body);
+  PartNames names(s);
+  for (BodyState* body : torn) split_body(s, *body, names);
+  names.keep();
   if (!torn.empty()) prepare(s);
 }
 

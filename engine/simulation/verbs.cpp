@@ -285,6 +285,7 @@ bool Simulation::is_enabled(BodyId id) const {
 }
 
 void Simulation::set_user_data(BodyId id, std::uint64_t data) {
+  state_->refuse_in_callback();
   state_->body(id).user_data = data;
 }
 std::uint64_t Simulation::user_data(BodyId id) const {

@@ -4,7 +4,7 @@ import re
 
 CALL = re.compile(r"\b(?:ConfigError|IoError|StepError|RunFailure|BusyError|(?:py::)?(?:type|value)_error"
                   r"|\w*(?:checks?|problems?|warnings?|list|notes)\w*\.(?:add|push_back|emplace_back)|problem|fail|refuse|bad)\s*[({]")
-STREAM = re.compile(r"\btext <<")
+STREAM = re.compile(r'\btext <<(?:"(?:[^"\\]|\\.)*"|[^";])*')
 PARTS = re.compile(r'"((?:[^"\\]|\\.)*)"')
 # What fails only where a file was damaged on purpose, or a programmer of the engine erred.
 FOLDERS = ("engine", "tools")
@@ -44,13 +44,13 @@ def messages(source):
             joined = re.sub(r'"[ \t]*\n\s*"', "", text)
             for match in [*CALL.finditer(joined), *STREAM.finditer(joined)]:
                 if match[0].startswith("text"):
-                    code = joined[match.start():joined.index(";", match.end())]
+                    code = match[0]
                 else:
                     code = joined[match.end():end_of(joined, match.end())]
                     if re.search(r"[({]\s*$", code):
                         continue
                 text_of = said(code)
-                if re.search(r"[a-z]{2,} [a-z]", text_of):
+                if re.search(r"[a-z]{2,} [a-z]", text_of) and not text_of.startswith(";"):  # which goes on with one
                     found.append((str(file.relative_to(source)), joined.count("\n", 0, match.start()) + 1, text_of))
     return found
 

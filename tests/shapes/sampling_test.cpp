@@ -215,12 +215,12 @@ TEST(sampling, too_many_points_are_counted_and_refused) {
   EXPECT_NE(problem.find(" and 113"), std::string::npos) << problem;
 }
 
-TEST(sampling, a_spacing_far_too_fine_names_the_width_of_the_shape_and_size) {
+TEST(sampling, a_spacing_far_too_fine_names_the_width_of_the_shape_and_that_of_centimetres) {
   EXPECT_EQ(
       problem_of([] { sample(sphere_shape(Vec3::Zero(), 8.5f), {.spacing = 0.005f}); }),
       "spacing: 0.005 is not allowed: the shape is 17 m wide, 3400 spacings, and its bounds would hold more "
       "than 1e+09 lattice points; give a spacing that suits its width, or the width that it is meant to "
-      "have (size)");
+      "have, 0.17 where it is in centimetres");
 }
 
 TEST(sampling, a_count_that_symmetry_forbids_names_the_nearest) {

@@ -263,6 +263,24 @@ TEST(radius, of_thousands_of_spacings_is_refused_before_anything_is_allocated) {
   EXPECT_NE(refusal(small).find("solver.memory_limit"), std::string::npos) << refusal(small);
 }
 
+TEST(defaults, are_settled_by_the_first_prepare_that_does_not_throw) {
+  const auto settled_by = [](Simulation& s, float spacing) {
+    s.add_body(cube(5, spacing), {.alpha = 0.5f});
+    s.prepare();
+    return s.config();
+  };
+  Simulation s({.gravity = {0, 0, -9.81f}, .memory_limit = 1e-6f}), other({.gravity = {0, 0, -9.81f}});
+  const BodyId coarse = s.add_body(cube(5, 1), {.alpha = 0.5f});
+  EXPECT_THROW(s.prepare(), ConfigError);
+  s.remove_body(coarse);
+  SolverConfig more = s.config();
+  more.memory_limit = 1;
+  s.set_solver(more);
+  const SolverConfig config = settled_by(s, 0.1f), expected = settled_by(other, 0.1f);
+  EXPECT_EQ(config.support_radius, expected.support_radius);
+  EXPECT_EQ(config.time_step, expected.time_step);
+}
+
 bool warns(const SimulationInfo& info, const std::string& words) {
   return std::any_of(info.warnings.begin(), info.warnings.end(),
                      [&](const std::string& text) { return text.find(words) != std::string::npos; });

@@ -40,9 +40,9 @@ TEST(tradeoff_knobs, lines_to_paste_lead_to_the_setting) {
       EXPECT_EQ(tradeoff::lines_to_paste(before, setting.scene), "[solver]\ntime_step_factor = 2.0\n");
     }
     if (setting.name == "region_stride x 2") {
-      EXPECT_EQ(tradeoff::lines_to_paste(before, setting.scene),
-                "# below the [[material]] that is number 1 in the file, \"" + before.materials.front().name +
-                    "\":\nregion_stride = 2\n");
+      EXPECT_EQ(tradeoff::lines_to_paste(before, setting.scene), "# below the [[material]] that is named \"" +
+                                                                     before.materials.front().name +
+                                                                     "\":\nregion_stride = 2\n");
     }
     EXPECT_NE(tradeoff::lines_to_paste(before, setting.scene), "") << setting.name;
   }

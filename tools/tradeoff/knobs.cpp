@@ -202,11 +202,11 @@ std::string heading(const Scene& scene, const std::string& where) {
   if (bracket == where.npos) return "[" + where + "]\n";
   const std::string table = where.substr(0, bracket);
   const std::size_t index = std::stoul(where.substr(bracket + 1));
-  const std::string name = table == "material" && index < scene.materials.size()
-                               ? ", \"" + scene.materials[index].name + "\""
-                               : "";
-  return "# below the [[" + table + "]] that is number " + std::to_string(index + 1) + " in the file" + name +
-         ":\n";
+  // A scene may have left out some that nobody is made of.
+  const std::string which = table == "material" && index < scene.materials.size()
+                                ? "named \"" + scene.materials[index].name + '"'
+                                : "number " + std::to_string(index + 1) + " in the file";
+  return "# below the [[" + table + "]] that is " + which + ":\n";
 }
 
 }  // namespace

@@ -150,10 +150,11 @@ struct BodyMotion {
 /// was added, never on the number of threads. One thread may use an object at a time; different objects are
 /// independent. One that was moved from may only be assigned to or destroyed.
 ///
-/// What holds of every call, and is said below where there is more to it: an id is looked up, not searched
-/// for, and where it names nothing, or nothing any more, the call throws ConfigError. So does one that
-/// changes anything from within a force callback. A call that throws ConfigError has changed nothing. One
-/// that names no cost takes a time that does not grow with what there is.
+/// What holds of every call, and is said below where there is more to it: the id of a body, a material, a
+/// collider, a pin or a particle is looked up, not searched for, and an id that names nothing, or nothing any
+/// more, makes the call throw ConfigError. So does one that changes anything from within a force callback. A
+/// call that throws ConfigError has changed nothing. One that names no cost takes a time that does not grow
+/// with what there is, beyond emitters and sinks.
 class MALLOW_EXPORT Simulation {
  public:
   /// Throws ConfigError with every value that is out of range.
@@ -299,8 +300,8 @@ class MALLOW_EXPORT Simulation {
   /// whatever steps led there; in between it moves and turns evenly, so take seconds as short as the motion
   /// asks for.
   void set_pose(ColliderId collider, const Pose& pose, double seconds = 0);
-  /// The velocity of the particles of a pin from now on [m/s]. Throws ConfigError where a number is not
-  /// finite, no step carries them so fast, or there is none of this id.
+  /// The velocity of the particles of a pin from now on [m/s]. Looks at every particle. Throws ConfigError
+  /// where a number is not finite, no step carries them so fast, or there is none of this id.
   void set_velocity(PinId pin, const Vec3& velocity);
   /// The particles of a pin go `way` [m] in the next `seconds`, > 0, evenly, and stay there. Throws as
   /// set_velocity() of a pin does.
@@ -502,8 +503,8 @@ class MALLOW_EXPORT Simulation {
   /// double, as slow as energy(), and throws as that does.
   double volume(BodyId body) const;
 
-  /// In how many parts a body is now; in one where no shapes are matched. What prepare() would do is done
-  /// first, as energy() does it, and throws what that throws, or as bounds() does.
+  /// In how many parts a body is now; in one where no shapes are matched. Looks at all its regions. What
+  /// prepare() would do is done first, as energy() does it, and throws what that throws, or as bounds() does.
   BodyParts parts(BodyId body) const;
 
   /// 64 bits of positions and velocities in id order, time and step: equal states have equal hashes.
