@@ -26,7 +26,7 @@ class cli_farm : public CliTest {
   }
   /// Once so many files are there; false where that does not come.
   static bool kill_all_at(std::size_t files, const fs::path& folder, Slots& slots) {
-    for (int k = 0; k < 100'000; ++k) {
+    for (int k = 0; k < 1'000'000; ++k) {
       if (names_in(folder).size() >= files) {
         for (auto& slot : slots) slot->send(SIGKILL);
         for (auto& slot : slots) EXPECT_EQ(slot->wait().exit_code, -1) << "it was still at work";

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -68,9 +69,13 @@ TEST_F(cli_kill, at_random_moments_leaves_a_run_that_goes_on_to_the_same_bytes) 
     arguments.insert(arguments.end(), what.begin(), what.end());
     return arguments;
   };
-  const Clock::time_point started = Clock::now();
-  ASSERT_EQ(run_mallow(begin(at("whole"))).exit_code, 0);
-  const double longest = std::chrono::duration<double>(Clock::now() - started).count();
+  // The least of several: kills that come long after the end of a run are none.
+  double longest = 1e9;
+  for (const char* folder : {"whole", "again", "once_more"}) {
+    const Clock::time_point started = Clock::now();
+    ASSERT_EQ(run_mallow(begin(at(folder))).exit_code, 0);
+    longest = std::min(longest, std::chrono::duration<double>(Clock::now() - started).count());
+  }
   const nlohmann::json expected = read_json(at("whole/report.json"));
 
   const std::string out = at("out");

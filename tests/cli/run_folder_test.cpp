@@ -188,7 +188,7 @@ TEST_F(cli_run_folder, of_a_run_that_was_ended_says_so) {
 /// A run that waits for its scene, with its handlers in place.
 bool waits_with_handlers(Running& running) {
   const std::string status = "/proc/" + std::to_string(running.process()) + "/status";
-  for (int k = 0; k < 10000 && running.alive(); ++k) {
+  for (int k = 0; k < 100'000 && running.alive(); ++k) {
     const std::string text = read_text(status);
     const std::size_t at = text.find("SigCgt:");
     if (at != text.npos && (std::stoull(text.substr(at + 8), nullptr, 16) >> (SIGTERM - 1) & 1) != 0)

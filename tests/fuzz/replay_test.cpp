@@ -6,6 +6,7 @@
 #include <iterator>
 #include <vector>
 
+#include "files/file_fixture.h"
 #include "fuzz/checkpoints.h"
 #include "fuzz/formats.h"
 
@@ -36,19 +37,16 @@ class replay : public testing::TestWithParam<Format> {};
 
 TEST_P(replay, reads_every_seed) {
   Input input(GetParam());
+  const TemporaryFolder temporary;
   fs::path seeds = fs::path(MALLOW_FUZZ_DIR) / "seeds";
-  const bool made = !fs::exists(seeds / GetParam().name);
-  if (made) {
-    // The two tests that make them run beside each other.
-    seeds = fs::path(testing::TempDir()) / (std::string("mallow_seeds_of_") + GetParam().name);
-    fs::remove_all(seeds);
+  if (!fs::exists(seeds / GetParam().name)) {
+    seeds = temporary.path();
     write_checkpoint_seeds(seeds);
   }
   const auto files = files_below(seeds / GetParam().name);
   EXPECT_GE(files.size(), 1u);
   for (const fs::path& file : files)
     EXPECT_EQ(input.read(content_of(file)), Verdict::read) << file << ": " << input.message();
-  if (made) fs::remove_all(seeds);
 }
 
 TEST_P(replay, reads_or_refuses_by_name_what_was_a_finding) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "files/file_fixture.h"
 #include "mallow/scene.h"
 #include "program/body_appearances.h"
 #include "program/cache.h"
@@ -37,7 +38,8 @@ TEST(run_loop, leaves_a_checkpoint_of_the_last_whole_step_where_one_fails) {
   const Scene scene = parse_scene(k_scene, "scene.toml");
   const RunPlan plan{
       .frames = 9, .steps = {}, .surface = false, .images = false, .threads = 1, .checkpoints = {}};
-  const fs::path folder = fs::temp_directory_path() / "mallow-run-loop-failure-test";
+  const TemporaryFolder temporary;
+  const fs::path folder = temporary / "run";
   std::uint64_t hash = 0;
   {
     Simulation simulation = build(scene, 1);
@@ -57,13 +59,13 @@ TEST(run_loop, leaves_a_checkpoint_of_the_last_whole_step_where_one_fails) {
   EXPECT_EQ(saved.report.frames, 2);
   EXPECT_EQ(saved.report.steps, 5);
   EXPECT_EQ(saved.simulation.state_hash(), hash);
-  fs::remove_all(folder);
 }
 
 TEST(run_loop, keeps_what_a_body_looked_like_in_frames_before_another_had_its_slot) {
   const Scene scene = parse_scene(k_scene, "scene.toml");
   Simulation simulation = build(scene, 1);
-  const fs::path folder = fs::temp_directory_path() / "mallow-run-loop-test";
+  const TemporaryFolder temporary;
+  const fs::path folder = temporary / "run";
   const Cache cache = Cache::create(folder, true);
   RunReport report;
   report.frame_time = 0.1;
@@ -97,7 +99,6 @@ TEST(run_loop, keeps_what_a_body_looked_like_in_frames_before_another_had_its_sl
       EXPECT_EQ(looks[slot_of(red)].color, *scene.materials[material].color) << frame;
       EXPECT_EQ(looks[slot_of(blue)].color, *scene.materials[1].color) << frame;
     }
-  fs::remove_all(folder);
 }
 
 }  // namespace run_loop_test

@@ -188,9 +188,10 @@ class Fuzzer:
         background = threading.Thread(target=self.disturb, args=(stop,))
         background.start()
         watched = 0
-        while time.monotonic() < stop:
+        most = 250 * seconds  # as many as two cores take: a faster machine shall not come where nobody was
+        while time.monotonic() < stop and self.calls < most:
             if self.calls >= watched:
-                faulthandler.dump_traceback_later(60, exit=True)
+                faulthandler.dump_traceback_later(300, exit=True)
                 watched = self.calls + 200
             pick = self.random.random()
             if pick < 0.2:

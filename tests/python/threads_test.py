@@ -12,23 +12,27 @@ from support import cube
 
 class Threads(unittest.TestCase):
     def test_others_run_during_a_step(self):
-        simulation = cube(20)
+        simulation = cube(30)
         simulation.prepare()
-        counted = 0
-        done = threading.Event()
+        steps = counted = 0
+        ended = threading.Event()
 
         def run():
-            for _ in range(20):
+            nonlocal steps
+            while not ended.is_set():
                 simulation.step()
-            done.set()
+                steps += 1
 
         thread = threading.Thread(target=run)
         thread.start()
-        while not done.is_set():
+        stop, enough = time.monotonic() + 60, False
+        while not enough and time.monotonic() < stop:
             counted += 1
             time.sleep(0.0005)
+            enough = steps >= 20 and counted > 20 + 2 * steps
+        ended.set()
         thread.join()
-        self.assertGreater(counted, 20)
+        self.assertTrue(enough, f"{counted} naps during {steps} steps")
 
     def test_a_simulation_in_two_threads_is_refused(self):
         simulation, surfacer = cube(16), mallow.Surfacer()
@@ -36,12 +40,12 @@ class Threads(unittest.TestCase):
 
         def wait(particles, accelerations):
             inside.set()
-            leave.wait(10)
+            leave.wait(60)
 
         simulation.set_force(wait)
         thread = threading.Thread(target=simulation.step)
         thread.start()
-        inside.wait(10)
+        inside.wait(60)
         uses = (simulation.step, lambda: simulation.positions, lambda: simulation.time, simulation.save,
                 lambda: surfacer.draw(simulation), lambda: simulation.set_force(None),
                 lambda: simulation.add_collider(mallow.Collider()))

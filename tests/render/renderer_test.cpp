@@ -13,6 +13,7 @@
 #include <numbers>
 #include <string>
 
+#include "files/file_fixture.h"
 #include "mallow/errors.h"
 #include "mallow/files.h"
 #include "render/hdr.h"
@@ -497,7 +498,8 @@ TEST(environment, lights_as_well_where_it_is_as_bright_as_numbers_go) {
 TEST(png, reads_back_equal) {
   Image image{37, 19, {}};
   for (std::size_t i = 0; i < 3u * 37 * 19; ++i) image.rgb.push_back(static_cast<std::uint8_t>(i * i / 7));
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "mallow_render_test.png";
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "image.png";
   write_png(file, image);
 
   png_image read{};
@@ -509,7 +511,6 @@ TEST(png, reads_back_equal) {
   std::vector<std::uint8_t> bytes(PNG_IMAGE_SIZE(read));
   ASSERT_NE(png_image_finish_read(&read, nullptr, bytes.data(), 0, nullptr), 0) << read.message;
   EXPECT_EQ(bytes, image.rgb);
-  std::filesystem::remove(file);
 }
 
 TEST(png, a_folder_that_is_not_there_is_an_io_error) {

@@ -1,4 +1,4 @@
-#include <chrono>
+#include <ctime>
 
 #include "files/text_reader.h"
 #include "scene/scene_fixture.h"
@@ -381,7 +381,7 @@ TEST_F(bad_scene, has_at_most_100_million_particles) {
 
 /// Each of these once took minutes, or gigabytes, or both.
 TEST_F(bad_scene, costs_little_however_much_is_wrong) {
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();
   const std::string solver = "[solver]\nsupport_radius = 2.0\n";
   const std::string box = "box = { count = [2, 2, 2], spacing = 1.0 }\n";
   std::string unknown = solver;
@@ -396,7 +396,7 @@ TEST_F(bad_scene, costs_little_however_much_is_wrong) {
   before += solver + "[[material]]\nname = \"jelly\"\n";
   for (int i = 0; i < 10'000; ++i) before += "[[body]]\nmaterial = \"x\"\n" + box;
   EXPECT_EQ(problems(before).size(), 1001u);
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+  EXPECT_LT(std::clock() - begin, 60 * CLOCKS_PER_SEC);
 }
 
 TEST_F(bad_scene, writes_no_control_characters_to_a_terminal) {

@@ -41,7 +41,9 @@ struct Crowd {
 };
 
 Cost cost(const Crowd& crowd, std::size_t across) {
-  Simulation s(SolverConfig{.time_step = 0.15f, .support_radius = 2.1f, .gravity = {0, 0, -0.1f}});
+  // One thread: others would spin, and that is processor time too.
+  Simulation s(
+      SolverConfig{.time_step = 0.15f, .support_radius = 2.1f, .gravity = {0, 0, -0.1f}, .threads = 1});
   const MaterialId material = s.add_material(Material{.alpha = crowd.alpha});
   const std::size_t bodies = across * across * across;
   const auto each = static_cast<double>(bodies);
@@ -64,9 +66,7 @@ Cost cost(const Crowd& crowd, std::size_t across) {
   return cost;
 }
 
-/// The least of two runs.
-Cost least_cost(const Crowd& crowd, std::size_t across) {
-  const Cost a = cost(crowd, across), b = cost(crowd, across);
+Cost least(const Cost& a, const Cost& b) {
   return {std::min(a.adding, b.adding), std::min(a.preparing, b.preparing), std::min(a.stepping, b.stepping),
           std::min(a.telling, b.telling)};
 }
@@ -77,12 +77,38 @@ constexpr double k_most = 3;
 // Less for each than this is not measured: a clock's tick.
 constexpr double k_least = 1e-6;
 
+/// What else runs takes caches and processors away: the least of all tries counts, and there are more of them
+/// where it is too much.
+constexpr int k_tries = 6;
+
+bool holds(double few, double many) {
+  return many <= k_most * std::max(few, k_least);
+}
+
+/// cost(across): of each of so many [s].
+void expect_no_more_for_each(const std::function<double(std::size_t)>& cost, std::size_t across_many) {
+  double few = 1, many = 1;
+  for (int attempt = 0; attempt < k_tries && (attempt == 0 || !holds(few, many)); ++attempt) {
+    few = std::min(few, cost(11));
+    many = std::min(many, cost(across_many));
+  }
+  EXPECT_TRUE(holds(few, many)) << 1e6 * few << " us for each of few, " << 1e6 * many << " of many";
+}
+
 class many_bodies : public testing::TestWithParam<Crowd> {};
 
 TEST_P(many_bodies, cost_what_few_do_for_each) {
-  const Cost few = least_cost(GetParam(), 11), many = least_cost(GetParam(), 22);
+  Cost few{1, 1, 1, 1}, many = few;
+  const auto all_hold = [&] {
+    return holds(few.adding, many.adding) && holds(few.preparing, many.preparing) &&
+           holds(few.stepping, many.stepping) && holds(few.telling, many.telling);
+  };
+  for (int attempt = 0; attempt < k_tries && (attempt < 2 || !all_hold()); ++attempt) {
+    few = least(few, cost(GetParam(), 11));
+    many = least(many, cost(GetParam(), 22));
+  }
   const auto check = [](const char* what, double before, double after) {
-    EXPECT_LE(after, k_most * std::max(before, k_least))
+    EXPECT_TRUE(holds(before, after))
         << what << ": " << 1e6 * before << " us for each of few, " << 1e6 * after << " of many";
   };
   check("adding", few.adding, many.adding);
@@ -120,8 +146,7 @@ double cost_of_waking(std::size_t across) {
 }
 
 TEST(many_bodies_that, sleep_wake_for_what_few_cost_each) {
-  const double few = cost_of_waking(11), many = cost_of_waking(22);
-  EXPECT_LE(many, k_most * std::max(few, k_least));
+  expect_no_more_for_each(cost_of_waking, 22);
 }
 
 /// Processor time of a step, for each of a crowd of bodies that have flowed and may become one [s].
@@ -144,8 +169,7 @@ double cost_of_looking_for_pressed(std::size_t across) {
 }
 
 TEST(many_bodies_that, have_flowed_look_for_each_other_for_what_few_cost_each) {
-  const double few = cost_of_looking_for_pressed(11), many = cost_of_looking_for_pressed(27);
-  EXPECT_LE(many, k_most * std::max(few, k_least));
+  expect_no_more_for_each(cost_of_looking_for_pressed, 27);
 }
 
 /// Processor time of taking most bodies of a crowd that sleeps out, all in one call, for each [s].
@@ -160,8 +184,7 @@ double cost_of_removing(std::size_t across) {
 }
 
 TEST(many_bodies_that, are_removed_together_go_for_what_few_cost_each) {
-  const double few = cost_of_removing(11), many = cost_of_removing(22);
-  EXPECT_LE(many, k_most * std::max(few, k_least));
+  expect_no_more_for_each(cost_of_removing, 22);
 }
 
 TEST(overlap, is_found_among_many_bodies_wherever_they_have_come) {

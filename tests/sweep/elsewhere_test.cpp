@@ -64,17 +64,18 @@ constexpr const char* k_no_parallel = "GNU parallel is not installed (tools/setu
 using sweep_by_parallel = sweep_by;
 TEST_F(sweep_by_parallel, gives_the_table_of_a_serial_one_also_where_a_task_is_killed) {
   if (!has_parallel()) GTEST_SKIP() << k_no_parallel;
-  // The first run of a point that is seen is killed.
-  EXPECT_EQ(
-      shell("(until pkill -KILL -f \"[r]un .*$F/out/points\" && touch killed || [ -e stop ]; do sleep 0.01; "
-            "done) & \"$M\" sweep \"$S\" --out \"$F/out\" --on parallel --jobs 2 --points-per-task 4 "
-            ">log.txt 2>&1; status=$?; "
-            "touch stop; wait; exit $status"),
-      0);
+  // Runs of points that are seen are killed, until a point says that its run failed: a kill may come too
+  // late.
+  EXPECT_EQ(shell("(until { pkill -KILL -f \"[r]un .*$F/out/points\" && touch killed && sleep 0.2 && "
+                  "grep -qs '\"failed\"' out/points/*/point.json; } || [ -e stop ]; do sleep 0.01; "
+                  "done) & \"$M\" sweep \"$S\" --out \"$F/out\" --on parallel --jobs 2 --points-per-task 4 "
+                  ">log.txt 2>&1; status=$?; "
+                  "touch stop; wait; exit $status"),
+            0);
   ASSERT_TRUE(fs::exists(at("killed")));
   const std::string first = read_text(at("out/table.csv"));
   EXPECT_GE(rows_with(first, ",failed,"), 1) << first;
-  EXPECT_LE(rows_with(first, ",failed,"), 2) << first;
+  EXPECT_LE(rows_with(first, ",failed,"), 10) << first;
   EXPECT_EQ(rows_with(first, ",done,") + rows_with(first, ",failed,"), 40) << first;
   EXPECT_EQ(shell("\"$M\" sweep \"$S\" --out \"$F/out\" --on parallel --jobs 2 >log.txt 2>&1"), 0) << log();
   EXPECT_EQ(read_text(at("out/table.csv")), serial());
@@ -137,14 +138,12 @@ TEST_F(sweep_by_parallel, frames_of_tasks_that_are_killed_are_made_by_others_or_
   fs::copy(at("one"), at("many"), fs::copy_options::recursive);
   const std::string options = " --set render.samples=16 --set render.width=160 --set render.height=90 ";
   ASSERT_EQ(shell("\"$M\" render one" + options + ">log.txt 2>&1"), 0) << log();
-  // All tasks that are at it at a moment when two pictures are there.
-  EXPECT_EQ(
-      shell(
-          "(until [ \"$(ls many/images 2>/dev/null | wc -l)\" -ge 2 ] && "
-          "pkill -KILL -f \"[r]ender many .*--share\" && touch killed || [ -e stop ]; do sleep 0.01; done) & "
-          "\"$M\" render many --on parallel --jobs 2" +
-          options + ">log.txt 2>&1; status=$?; touch stop; wait; exit $status"),
-      1);
+  // All tasks that are at it once two pictures are there. Others' tasks have another folder.
+  EXPECT_EQ(shell("(until [ -e stop ]; do [ \"$(ls many/images 2>/dev/null | wc -l)\" -ge 2 ] && "
+                  "pkill -KILL -f \"[r]ender $F/many .*--share\" && touch killed; sleep 0.01; done) & "
+                  "\"$M\" render \"$F/many\" --on parallel --jobs 2" +
+                  options + ">log.txt 2>&1; status=$?; touch stop; wait; exit $status"),
+            1);
   ASSERT_TRUE(fs::exists(at("killed")));
   EXPECT_NE(log().find("frames were not made; the same command goes on with them"), std::string::npos)
       << log();
@@ -164,11 +163,11 @@ TEST_F(sweep_by_slurm, gives_the_table_of_a_serial_one_also_where_a_node_dies) {
  kill -KILL "$(cat "$SLURM_TEST_FOLDER/b.pid")" && touch node_killed
  until pkill -KILL -f "[r]un .*$F/out/points" && touch task_killed || [ -e stop ]; do sleep 0.01; done
  sleep 1; scontrol update nodename=b state=down reason=died) &
-timeout 100 "$M" sweep "$S" --out out --on slurm
+timeout 280 "$M" sweep "$S" --out out --on slurm
 touch stop
 cp out/table.csv first.csv
 wait
-timeout 100 "$M" sweep "$S" --out out --on slurm
+timeout 280 "$M" sweep "$S" --out out --on slurm
 )sh");
   if (status == 77) GTEST_SKIP() << log();
   EXPECT_EQ(status, 0) << log();
@@ -184,9 +183,9 @@ TEST_F(sweep_by_slurm, cancels_its_job_where_it_is_told_to_end_and_minds_what_sb
 "$M" sweep "$S" --out out --on slurm --jobs 1 2>said.txt & sweep=$!
 until ls out/points/*/series.csv >/dev/null 2>&1; do sleep 0.05; done
 kill -INT $sweep; wait $sweep; echo $? >status.txt
-for _ in $(seq 100); do squeue --noheader >queue.txt; [ -s queue.txt ] || break; sleep 0.1; done
+for _ in $(seq 1000); do squeue --noheader >queue.txt; [ -s queue.txt ] || break; sleep 0.1; done
 sed -i 's/frames = 4000/frames = 2/; s/points = 40/points = 4/' "$S"
-timeout 100 "$M" sweep "$S" --out two --on slurm --sbatch=--parsable --sbatch=--cpus-per-task=2
+timeout 280 "$M" sweep "$S" --out two --on slurm --sbatch=--parsable --sbatch=--cpus-per-task=2
 )sh");
   if (status == 77) GTEST_SKIP() << log();
   EXPECT_EQ(status, 0) << log();
@@ -202,8 +201,8 @@ TEST_F(sweep_by_slurm, draws_and_takes_frames_with_the_bits_of_one_process) {
   fs::copy(at("one"), at("many"), fs::copy_options::recursive);
   for (const char* command : {"surface", "render"}) ASSERT_EQ(run_mallow({command, at("one")}).exit_code, 0);
   const int status = with_slurm(R"sh(set -e
-timeout 100 "$M" surface many --on slurm --jobs 3
-timeout 100 "$M" render many --on slurm)sh");
+timeout 280 "$M" surface many --on slurm --jobs 3
+timeout 280 "$M" render many --on slurm)sh");
   if (status == 77) GTEST_SKIP() << log();
   EXPECT_EQ(status, 0) << log();
   EXPECT_NE(log().find("surfaces 12\npictures 12\n"), std::string::npos) << log();

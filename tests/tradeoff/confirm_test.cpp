@@ -16,7 +16,7 @@ Scene scene() {
   return parse_scene(k_swinging, "scene.toml");
 }
 
-const tradeoff::StudyOptions k_options{.budget = 2, .threads = 1, .repeats = 1, .surface = false};
+const tradeoff::StudyOptions k_options{.budget = k_enough, .threads = 1, .repeats = 1, .surface = false};
 
 /// A study whose settings have times that were not measured [s]: what a run more takes is far less.
 tradeoff::Study timed(std::vector<std::vector<double>> seconds) {

@@ -2,6 +2,9 @@
 
 namespace mallow {
 
+/// A budget that is far more than a study takes which ends by itself [s]: it does so on a slow machine too.
+inline constexpr double k_enough = 120;
+
 /// A jelly cube that swings under gravity beside nothing: as smooth as motions are.
 inline constexpr const char* k_swinging = R"(
 [solver]

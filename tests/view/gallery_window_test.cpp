@@ -41,7 +41,7 @@ std::string frames_to_play() {
 }
 int seconds_to_play() {
   const char* const seconds = std::getenv("MALLOW_VIEW_SECONDS");
-  return seconds ? std::atoi(seconds) : 280;
+  return seconds ? std::atoi(seconds) : 600;
 }
 
 TEST_P(view_every_scene, plays) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "files/file_fixture.h"
 #include "mallow/files.h"
 #include "mallow/materials.h"
 #include "program/body_appearances.h"
@@ -117,8 +118,8 @@ TEST(view_played_scene, balls_can_be_thrown_again_after_going_back) {
 }
 
 TEST(view_played_scene, saved_with_a_ball_goes_on_with_pictures) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "mallow_view_ball_test";
-  std::filesystem::remove_all(folder);
+  const TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary / "run";
   Session session = session_of(jelly());
   go(session, 5);
   session.throw_ball(from_above(session), 1);
@@ -139,12 +140,11 @@ TEST(view_played_scene, saved_with_a_ball_goes_on_with_pictures) {
   beside.origin.x() += 0.2f;
   other.throw_ball(beside, 1);
   EXPECT_EQ(other.simulation().body_count(), 3u);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(view_played_scene, saved_beyond_its_end_says_how_it_goes_on) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "mallow_view_long_test";
-  std::filesystem::remove_all(folder);
+  const TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary / "run";
   Scene scene = jelly();
   scene.run.frames = 1;
   Session session = session_of(scene);
@@ -159,7 +159,6 @@ TEST(view_played_scene, saved_beyond_its_end_says_how_it_goes_on) {
   EXPECT_NE(program::nothing_left(saved.plan, saved.report).find("--frames 3"), std::string::npos);
   saved.plan.frames = 3;
   EXPECT_EQ(program::nothing_left(saved.plan, saved.report), "");
-  std::filesystem::remove_all(folder);
 }
 
 TEST(view_played_scene, counts_frames_as_they_are_now_after_going_back) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "files/file_fixture.h"
 #include "view/stepping_thread.h"
 
 namespace mallow {
@@ -209,8 +210,8 @@ TEST(view_session, verbs_do_what_they_say) {
 }
 
 TEST(view_session, a_saved_scene_goes_on_where_it_stood) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "mallow_view_session_test";
-  std::filesystem::remove_all(folder);
+  const TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary / "run";
   Session session = session_of(cube());
   go(session, 33);
   session.save_run(folder.string());
@@ -221,7 +222,6 @@ TEST(view_session, a_saved_scene_goes_on_where_it_stood) {
   go(session, 20);
   go(other, 20);
   EXPECT_EQ(other.simulation().state_hash(), session.simulation().state_hash());
-  std::filesystem::remove_all(folder);
 }
 
 TEST(view_session, the_thread_hands_over_frames_takes_commands_and_ends_while_it_steps) {
@@ -252,8 +252,10 @@ TEST(view_session, the_thread_hands_over_frames_takes_commands_and_ends_while_it
     return frame.shown == Shown::thread && std::ranges::count(frame.values, 0.0f) == 256 &&
            std::ranges::count(frame.values, 1.0f) == 256;
   })) << "of 512 particles and two threads";
-  thread.send([](Session& session) { session.reset(); });
-  thread.send([](Session& session) { session.set_paused(true); });
+  thread.send([](Session& session) {
+    session.reset();
+    session.set_paused(true);  // before it takes a step
+  });
   EXPECT_TRUE(wait_for([](const Frame& frame) { return frame.paused && frame.stats.steps < 5; }));
   thread.send([](Session& session) { session.set_paused(false); });
   EXPECT_GT(woken, 0);

@@ -17,7 +17,7 @@ struct Played {
 std::string why_no_window();
 /// Runs the viewer in a screen of its own. script: lines, see view/script.h. It is ended after so many
 /// seconds, with exit code 124.
-Played play(const std::vector<std::string>& arguments, const std::string& script, int seconds = 280);
+Played play(const std::vector<std::string>& arguments, const std::string& script, int seconds = 600);
 
 struct Picture {
   int width = 0, height = 0;

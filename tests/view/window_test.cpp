@@ -68,8 +68,8 @@ TEST_F(view_window, draws_nearly_the_same_with_one_sample_a_pixel) {
 }
 
 TEST_F(view_window, a_grab_moves_what_it_should) {
-  const std::string fall = "ready\nframes 60\nkey space\npictures 4\nkey space\n";
-  const std::string wait = "frames 40\nkey space\npictures 4\ncenter\nclose\n";
+  const std::string fall = "ready\nframes 60\nkey space\nsettled\nkey space\n";
+  const std::string wait = "frames 40\nkey space\nsettled\ncenter\nclose\n";
   const Played free = play({k_cube}, fall + wait);
   const Played held = play({k_cube}, fall + "move 0.5 0.7\npress 0\nmove 0.5 0.2\n" + wait);
   ASSERT_EQ(free.exit_code, 0) << free.out;
@@ -94,9 +94,9 @@ TEST_F(view_window, is_resized_minimised_and_closed_while_it_steps) {
 TEST_F(view_window, keys_pause_step_go_back_reset_and_save) {
   const Played played =
       play({k_cube},
-           "ready\nframes 20\nkey space\npictures 6\nkey .\npictures 4\nkey backspace\npictures 4\n"
-           "status\nkey r\npictures 6\nstatus\nkey p\npictures 4\nkey k\npictures 4\nkey h\npictures 2\n"
-           "key s\npictures 6\nstatus\nkey c\npictures 2\nkey escape\npictures 2\nclose\n");
+           "ready\nframes 20\nkey space\nsettled\nkey .\nsettled\nkey backspace\nsettled\n"
+           "status\nkey r\nsettled\nstatus\nkey p\nsettled\nkey k\nsettled\nkey h\npictures 2\n"
+           "key s\nsettled\nstatus\nkey c\npictures 2\nkey escape\npictures 2\nclose\n");
   EXPECT_EQ(played.exit_code, 0) << played.out;
   EXPECT_NE(played.out.find("paused 1"), std::string::npos) << played.out;
   EXPECT_NE(played.out.find("time 0 frame 0 steps 0"), std::string::npos) << played.out;
@@ -130,14 +130,14 @@ TEST_F(view_window, a_folder_without_scenes_is_said_and_ends_with_2) {
 }
 
 TEST_F(view_window, marks_show_pins_the_region_of_a_particle_and_contacts) {
-  const std::string click = "move 0.5 0.5\npictures 2\npress 0\nrelease 0\npictures 4\n";
+  const std::string click = "move 0.5 0.5\npictures 2\npress 0\nrelease 0\nsettled\n";
   const Played played =
       play({k_cube},
-           "ready\nkey =\nmark contacts\nframes 110\nkey space\npictures 4\nscreenshot touching.png\nmarks\n"
+           "ready\nkey =\nmark contacts\nframes 110\nkey space\nsettled\nscreenshot touching.png\nmarks\n"
            "mark contacts\nkey 7\n" +
                click + "marks\nkey 6\n" + click +
-               "mark pins\npictures 4\nmarks\nscreenshot pinned.png\n"
-               "mark pins\nmark region\npictures 4\nmarks\nscreenshot bare.png\nclose\n");
+               "mark pins\nsettled\nmarks\nscreenshot pinned.png\n"
+               "mark pins\nmark region\nsettled\nmarks\nscreenshot bare.png\nclose\n");
   ASSERT_EQ(played.exit_code, 0) << played.out;
   const std::regex counts("marks pins (\\d+) region (\\d+) contacts (\\d+)");
   std::vector<std::array<int, 3>> seen;
@@ -159,7 +159,7 @@ TEST_F(view_window, marks_show_pins_the_region_of_a_particle_and_contacts) {
 TEST_F(view_window, a_film_holds_every_frame_of_the_scene_once) {
   const Played played =
       play({k_cube, "--width", "320", "--height", "240"},
-           "ready\nkey space\npictures 4\nkey f\nfilmed 8\npictures 2\nkey f\npictures 2\nclose\n");
+           "ready\nkey space\nsettled\nkey f\nfilmed 8\npictures 2\nkey f\npictures 2\nclose\n");
   ASSERT_EQ(played.exit_code, 0) << played.out;
   if (!program::is_installed("ffmpeg") || !program::is_installed("ffprobe")) {
     EXPECT_TRUE(std::filesystem::exists(scratch() / "view.mp4.frames" / "images")) << "as no ffmpeg is here";
@@ -236,9 +236,9 @@ TEST_F(view_window, a_film_ends_with_its_scene_and_the_next_one_plays) {
   if (!can_look_into_films()) GTEST_SKIP() << "ffmpeg is not installed (Debian: ffmpeg)";
   const Played played =
       play({tiny(), "--width", "320", "--height", "240"},
-           "ready\nkey space\npictures 4\nkey f\nfilmed 9\nkey escape\npictures 3\nopen " + k_cube +
+           "ready\nkey space\nsettled\nkey f\nfilmed 9\nkey escape\npictures 3\nopen " + k_cube +
                "\npictures 3\nready\nframes 1\n"
-               "status\nkey space\npictures 4\nkey f\nfilmed 3\nkey f\npictures 3\njoined\nclose\n");
+               "status\nkey space\nsettled\nkey f\nfilmed 3\nkey f\npictures 3\njoined\nclose\n");
   ASSERT_EQ(played.exit_code, 0) << played.out;
   EXPECT_NE(played.out.find("paused 0"), std::string::npos) << played.out;
   EXPECT_GE(pictures_in(scratch() / "view.mp4"), 9);
@@ -247,8 +247,8 @@ TEST_F(view_window, a_film_ends_with_its_scene_and_the_next_one_plays) {
 
 TEST_F(view_window, what_was_said_last_is_seen) {
   const Played played = play({tiny(), "--paused", "--set", "solver.time_step_factor=0.9"},
-                             "ready\nkey 3\nmove 0.5 0.22\npictures 2\npress 0\nrelease 0\npictures 4\n"
-                             "message\nkey c\npictures 3\nmessage\ncopied\nclose\n");
+                             "ready\nkey 3\nmove 0.5 0.22\npictures 2\npress 0\nrelease 0\nsaid poked\n"
+                             "key c\nsaid copied\ncopied\nclose\n");
   ASSERT_EQ(played.exit_code, 0) << played.out;
   EXPECT_NE(played.out.find("shown poked"), std::string::npos) << played.out;
   EXPECT_NE(played.out.find("shown copied: mallow run"), std::string::npos) << played.out;
@@ -260,8 +260,8 @@ TEST_F(view_window, what_was_said_last_is_seen) {
 TEST_F(view_window, a_scene_that_is_refused_when_built_anew_goes_on_as_it_was) {
   const Played played =
       play({tiny(), "--set", "solver.time_step=0.002"},
-           "ready\nframes 3\nset solver.time_step 1\nrebuild\npictures 8\nmessage\nkey =\nframes 3\nstatus\n"
-           "key s\npictures 6\nset solver.time_step 0\nrebuild\npictures 8\nready\nstatus\nclose\n");
+           "ready\nframes 3\nset solver.time_step 1\nrebuild\nsaid time_step\nkey =\nframes 3\nstatus\n"
+           "key s\nsettled\nset solver.time_step 0\nrebuild\nsettled\nready\nstatus\nclose\n");
   ASSERT_EQ(played.exit_code, 0) << played.out;
   EXPECT_NE(played.out.find("shown "), std::string::npos) << played.out;
   EXPECT_NE(played.out.find("time_step"), std::string::npos) << played.out;
@@ -270,7 +270,7 @@ TEST_F(view_window, a_scene_that_is_refused_when_built_anew_goes_on_as_it_was) {
 
 TEST_F(view_window, the_field_of_view_is_seen_at_once) {
   const Played played = play({k_cube, "--paused", "--width", "320", "--height", "240"},
-                             "ready\npictures 2\nscene narrow.png\nset render.field_of_view 0.6\npictures 4\n"
+                             "ready\npictures 2\nscene narrow.png\nset render.field_of_view 0.6\nsettled\n"
                              "scene wide.png\nclose\n");
   ASSERT_EQ(played.exit_code, 0) << played.out;
   EXPECT_GT(far_off(read_png(scratch() / "narrow.png"), read_png(scratch() / "wide.png"), 16), 0.05);

@@ -70,9 +70,11 @@ void Script::begin(Viewer& viewer, std::vector<std::string> words) {
   const auto number = [&](std::size_t k) { return words[k].empty() ? 0.0f : std::stof(words[k]); };
   Window& window = viewer.window();
   if (what == "frames" || what == "pictures" || what == "ready" || what == "sweep" || what == "thumbnails" ||
-      what == "joined" || what == "filmed") {
+      what == "joined" || what == "filmed" || what == "settled" || what == "said") {
     waiting_ = what;
-    const auto count = static_cast<std::uint64_t>(number(1));
+    said_ = words[1];
+    settles_with_.reset();
+    const auto count = static_cast<std::uint64_t>(what == "said" ? 0.0f : number(1));
     goal_ = count + (what == "frames"   ? static_cast<std::uint64_t>(viewer.frame().stats.frame)
                      : what == "filmed" ? 0
                                         : viewer.pictures());
@@ -171,10 +173,29 @@ bool Script::is_done(Viewer& viewer) {
   if (waiting_ == "frames") return frame.failed || static_cast<std::uint64_t>(frame.stats.frame) >= goal_;
   if (waiting_ == "filmed") return frame.failed || pictures_of(viewer.film()) >= goal_;
   if (waiting_ == "pictures") return viewer.pictures() >= goal_;
+  if (waiting_ == "settled") return is_settled(viewer);
+  if (waiting_ == "said") {
+    const std::string shown = message_shown(frame, viewer.state(), wall_seconds());
+    if (shown.find(said_) == shown.npos) return false;
+    std::printf("shown %s\n", shown.c_str());
+    std::fflush(stdout);
+    return true;
+  }
   if (waiting_ == "joined") return !viewer.joins_films();
   if (waiting_ == "thumbnails") return viewer.gallery().missing() == 0;
   sweep_next(viewer);
   return swept_section_ >= viewer.settings()->sections().size();
+}
+
+/// A command to the session comes behind those that two pictures sent, and names the frame that shows what
+/// they did.
+bool Script::is_settled(Viewer& viewer) {
+  if (viewer.pictures() < goal_ + 2) return false;
+  if (!settles_with_) {
+    settles_with_ = std::make_shared<std::atomic<std::uint64_t>>(0);
+    viewer.send([number = settles_with_](Session& session) { *number = session.next_frame(); });
+  }
+  return *settles_with_ > 0 && viewer.frame().number >= *settles_with_;
 }
 
 /// One place of one slider: low, middle, high, and back to what it was.

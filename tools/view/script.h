@@ -1,8 +1,10 @@
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,8 @@ namespace mallow::view {
 ///   frames N             until N frames of the scene have ended since this line
 ///   filmed N             until the film has N pictures: frames that end before its key is read are in none
 ///   pictures N           until N pictures were drawn
+///   settled              until what was done before is drawn: what the session was told too
+///   said WORD            until the window says it; prints what it says
 ///   ready                until a scene is built and drawn
 ///   screenshot FILE      the window, a PNG; scene FILE: without panels
 ///   key NAME             "space", "r", "." and so on
@@ -49,12 +53,15 @@ class Script {
   void begin(Viewer& viewer, std::vector<std::string> words);
   void begin_other(Viewer& viewer, const std::vector<std::string>& words);
   bool is_done(Viewer& viewer);
+  bool is_settled(Viewer& viewer);
   void sweep_next(Viewer& viewer);
 
   std::deque<std::string> lines_;
   bool may_wait_ = false;
   std::string waiting_;  ///< the command that is not done yet
+  std::string said_;
   std::uint64_t goal_ = 0;
+  std::shared_ptr<std::atomic<std::uint64_t>> settles_with_;  ///< a frame's number; 0: not known yet
   double started_ = 0;
   std::size_t swept_section_ = 0, swept_field_ = 0;
   int swept_place_ = 0;

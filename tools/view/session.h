@@ -51,6 +51,8 @@ class Session {
   bool advance(double wall);
   /// What has changed since the last frame, for whoever asks whether to fill one.
   bool has_changed() const { return changed_; }
+  /// The number of the next one.
+  std::uint64_t next_frame() const { return frames_filled_ + 1; }
   /// A film waits for every frame of the scene to be taken.
   bool waits_for_film() const { return recording_ && finished_; }
   /// Draws the surface and fills all that the window shows.
