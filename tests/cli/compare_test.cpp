@@ -164,5 +164,14 @@ TEST_F(cli_compare, refuses_what_cannot_be_compared) {
   refused(compare("a", "b", {"--csv", at("a/report.json")}), "--csv: would be written over");
 }
 
+TEST_F(cli_compare, reads_reports_that_name_no_materials) {
+  make_runs();
+  nlohmann::json report = read_json(at("a/report.json"));
+  for (nlohmann::json& group : report.at("groups")) group.erase("material");
+  write("a/report.json", report.dump());
+  const Outcome outcome = compare("a", "b");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
 }  // namespace compare_test
 }  // namespace mallow::test

@@ -364,7 +364,11 @@ std::vector<SlotBody> slot_bodies(const nlohmann::ordered_json& report, const st
 
 std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
   std::vector<float> spacings;
-  for (const SlotBody& body : slot_bodies(report, file)) spacings.push_back(body.spacing);
+  try {
+    for (const auto& group : report.at("groups")) spacings.push_back(group.at("spacing").get<float>());
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw IoError({file.string(), 0, 0, "groups", error.what()});
+  }
   return spacings;
 }
 
