@@ -1,5 +1,6 @@
 # Damages files that the importer for Blender reads: each must be read or refused in words. Arguments: the folder of the
 # importer, the folder of a run, one to write into. Exit code 77: there is no numpy.
+import json
 import os
 import random
 import shutil
@@ -63,7 +64,7 @@ with open(surface, "wb") as out:
 
 def open_run():
     found = run_files.Run(copy)
-    for body in range(len(found.names)):
+    for body in found.names:
         found.texture_coordinates(body)
     found.speed(), found.render("eye", [0, 0, 0], 3), found.render("width", 960)
 
@@ -97,5 +98,17 @@ for bad in (b"f 1/7 2/2 3/3", b"f 1/-9 2/2 3/3", b"f 1/99999999999999999999999 2
         assert False, bad
     except (run_files.ImportFailure, ValueError, IndexError, OverflowError):
         pass
+report = os.path.join(copy, "report.json")
+text = open(report).read()
+bodies = [{"name": name, "material": name, "spacing": 1.0} for name in ("now", "other")]
+past = [{"slot": 0, "until": until, "name": name, "material": name, "spacing": 0.5} for until, name in ((2, "first"), (5, "second"))]
+with open(report, "w") as out:
+    json.dump({"groups": bodies, "past_bodies": past}, out)
+found = run_files.Run(copy)
+shown = {frame: [found.names[b] for b in found.bodies_at(frame, np.array([0, 1, 0]))] for frame in (0, 2, 5)}
+assert shown == {0: ["first", "other", "first"], 2: ["second", "other", "second"], 5: ["now", "other", "now"]}, shown
+assert found.spacing(-1) == 0.5 and set(found.looks) == set(found.names)
+with open(report, "w") as out:
+    out.write(text)
 assert read > 100 and refused > 500, (read, refused)
 print(f'{{"read": {read}, "refused": {refused}}}')

@@ -375,5 +375,86 @@ TEST_F(cli_checkpoint, goes_on_after_a_full_disk_was_given_room) {
   ::umount(at("disk").c_str());
 }
 
+TEST_F(cli_checkpoint, run_that_goes_on_knows_a_part_that_came_and_is_gone) {
+  // The first sink cuts the bar, the second takes the part that was split off.
+  write("parts.toml", R"([solver]
+support_radius = 2.1
+gravity = [0.0, 0.0, 0.0]
+[[material]]
+name = "blue"
+[[body]]
+material = "blue"
+splits = true
+box = { count = [3, 3, 18], spacing = 1.0, corner = [20, 0, 0], jitter = 0 }
+velocity = [2.0, 0.0, 0.0]
+[[sink]]
+box = { min = [27.0, -9.0, 6.5], max = [60.0, 9.0, 10.5] }
+[[sink]]
+box = { min = [33.0, -9.0, -9.0], max = [60.0, 9.0, 6.4] }
+[run]
+frames = 20
+frame_time = 0.45
+)");
+  ASSERT_EQ(run_mallow({"run", at("parts.toml"), "--out", at("out"), "--no-images"}).exit_code, 0);
+  const auto groups = [&] {
+    std::vector<std::string> names;
+    const nlohmann::json report = read_json(at("out/report.json"));
+    for (const auto& group : report.at("groups")) names.push_back(group.at("name"));
+    return names;
+  };
+  const std::vector<std::string> all = {"body[0]", "body[0], part 2"};
+  ASSERT_EQ(groups(), all);
+  fs::remove(at("out/report.json"));  // as if it had been killed before it wrote this one
+  write("out/report.json", R"({"groups": [{"name": "body[0]", "material": "blue", "spacing": 1.0}]})");
+  const Outcome longer = resume("out", {"--frames", "22"});
+  ASSERT_EQ(longer.exit_code, 0) << longer.err;
+  EXPECT_EQ(groups(), all);
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"surface", at("out")}, {"export", at("out"), "--surface", "obj"}}) {
+    const Outcome outcome = run_mallow(command);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+}
+
+TEST_F(cli_checkpoint, options_that_the_run_began_with_may_be_said_again_where_quality_turns_them) {
+  std::vector<std::string> options = {
+      "--set", "solver.time_step_factor=0.8", "--set", "surface.voxels=20", "--quality", "accurate"};
+  std::vector<std::string> began = {"--out", at("out"), "--frames", "3"};
+  began.insert(began.end(), options.begin(), options.end());
+  ASSERT_EQ(run(began).exit_code, 0);
+  const auto resume_with = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "run");
+    words.insert(words.end(), {"--resume", at("out")});
+    words.insert(words.end(), options.begin(), options.end());
+    return run_mallow(words);
+  };
+  for (const std::vector<std::string>& scene : {std::vector<std::string>{}, {scene_}}) {
+    const Outcome outcome = resume_with(scene);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err.find("voxels"), std::string::npos) << outcome.err;
+  }
+  // The scene alone need not hold.
+  std::string wrong = read_text(scene_);
+  wrong.replace(wrong.find("voxels = 16"), 11, "voxels = -1");
+  write("cube.toml", wrong);
+  EXPECT_EQ(resume_with({scene_}).exit_code, 0);
+  options[1] = "solver.time_step_factor=0.9";
+  EXPECT_EQ(resume_with({}).exit_code, 2);
+}
+
+TEST_F(cli_checkpoint, run_that_goes_on_takes_pictures_again_where_their_light_is_another) {
+  const auto light = [&](char red) {
+    std::string pixels;
+    for (int k = 0; k < 8; ++k) pixels += {red, char(100), char(100), char(129)};
+    write("sky.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n" + pixels);
+  };
+  light(10);
+  ASSERT_EQ(run({"--out", at("out"), "--set", "render.environment=sky.hdr"}, true).exit_code, 0);
+  const std::string before = read_text(at("out/images/frame_000001.png"));
+  light(120);
+  ASSERT_EQ(resume("out").exit_code, 0);
+  EXPECT_NE(read_text(at("out/images/frame_000001.png")), before);
+}
+
 }  // namespace checkpoint_test
 }  // namespace mallow::test

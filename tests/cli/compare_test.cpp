@@ -164,5 +164,71 @@ TEST_F(cli_compare, refuses_what_cannot_be_compared) {
   refused(compare("a", "b", {"--csv", at("a/report.json")}), "--csv: would be written over");
 }
 
+TEST_F(cli_compare, reads_reports_that_name_no_materials) {
+  make_runs();
+  nlohmann::json report = read_json(at("a/report.json"));
+  for (nlohmann::json& group : report.at("groups")) group.erase("material");
+  write("a/report.json", report.dump());
+  const Outcome outcome = compare("a", "b");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
+/// A fine red cube goes into the first sink; then the second cuts the coarse blue bar, whose part takes the
+/// red slot.
+constexpr const char* k_slots = R"([solver]
+support_radius = 2.1
+gravity = [0.0, 0.0, 0.0]
+[[material]]
+name = "red"
+[[material]]
+name = "blue"
+[[body]]
+material = "red"
+box = { count = [3, 3, 3], spacing = 0.8, corner = [0, 0, 0], jitter = 0 }
+velocity = [-2.0, 0.0, 0.0]
+[[body]]
+material = "blue"
+splits = true
+box = { count = [3, 3, 18], spacing = 1.0, corner = [20, 0, 0], jitter = 0 }
+velocity = [2.0, 0.0, 0.0]
+[[sink]]
+box = { min = [-9.0, -9.0, -9.0], max = [-0.5, 9.0, 9.0] }
+[[sink]]
+box = { min = [27.0, -9.0, 6.5], max = [60.0, 9.0, 10.5] }
+[run]
+frames = 9
+frame_time = 0.45
+[render]
+eye = [20.0, -60.0, 20.0]
+target = [15.0, 0.0, 6.0]
+width = 64
+height = 36
+samples = 1
+)";
+
+TEST_F(cli_compare, a_body_whose_slot_another_one_took_has_its_name_and_spacing_in_frames_that_show_it) {
+  const std::string scene = write("slots.toml", k_slots).string();
+  for (const char* out : {"a", "b"})
+    ASSERT_EQ(run_mallow({"run", scene, "--out", at(out), "--no-images", "--no-surface"}).exit_code, 0);
+  ASSERT_EQ(read_json(at("a/report.json")).at("groups")[0].at("name"), "body[1], part 2");
+  move("b", 1, 3, 0.4f);
+  const Outcome whole = compare("a", "b");
+  EXPECT_NE(whole.out.find("largest distance: 0.5 h in frame 1, particle 3 of body[0]\n"), std::string::npos)
+      << whole.out;
+  const Outcome frame = compare("a/particles/frame_000001.ply", "b/particles/frame_000001.ply");
+  EXPECT_NE(frame.out.find("particle 3 of body[0]\n"), std::string::npos) << frame.out;
+  const nlohmann::json frames = nlohmann::json::parse(compare("a", "b", {"--json"}).out).at("frames");
+  EXPECT_FALSE(frames[1].contains("kinetic_energy")) << "nobody knows the masses of the red body";
+  EXPECT_TRUE(frames[9].contains("kinetic_energy"));
+}
+
+TEST_F(cli_compare, pictures_of_such_a_body_are_the_same_bytes_when_they_are_taken_again) {
+  const std::string scene = write("slots.toml", k_slots).string();
+  ASSERT_EQ(run_mallow({"run", scene, "--out", at("a"), "--no-surface"}).exit_code, 0);
+  const std::string first = read_text(at("a/images/frame_000001.png"));
+  ASSERT_EQ(run_mallow({"render", at("a")}).exit_code, 0);
+  EXPECT_TRUE(read_text(at("a/images/frame_000001.png")) == first) << "balls are as large";
+}
+
 }  // namespace compare_test
 }  // namespace mallow::test

@@ -1,10 +1,18 @@
 #include <fcntl.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <sys/file.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <array>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
+#include <functional>
 #include <thread>
 
 #include "cli/program.h"
@@ -214,6 +222,33 @@ TEST_F(cli_run_folder, is_not_touched_by_a_run_that_is_ended_before_it_began) {
   EXPECT_FALSE(fs::exists(at("new")));
   EXPECT_EQ(read_text(at("old/report.json")), report);
   EXPECT_EQ(run_mallow({"run", "--resume", at("old"), "--frames", "3"}).exit_code, 0);
+}
+
+/// Calls `work` in a thread whose programs find a disk without locks.
+void without_locks(const std::function<void()>& work) {
+  std::thread([&] {
+    std::array<sock_filter, 4> filter = {
+        sock_filter BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+        sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_flock, 0, 1),
+        sock_filter BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOLCK),
+        sock_filter BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
+    const sock_fprog program = {static_cast<unsigned short>(filter.size()), filter.data()};
+    ASSERT_EQ(::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0), 0);
+    ASSERT_EQ(::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program), 0);
+    work();
+  }).join();
+}
+
+TEST_F(cli_run_folder, on_a_disk_without_locks_gets_its_pictures) {
+  without_locks([&] {
+    const Outcome ran = run({"--out", at("out"), "--no-film"}, true);
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_EQ(names_in(at("out/images")).size(), 3u);
+    const Outcome rendered = run_mallow({"render", at("out"), "--no-film"});
+    EXPECT_EQ(rendered.exit_code, 0) << rendered.err;
+    EXPECT_EQ(run_mallow({"render", at("out"), "--no-film", "--share"}).exit_code, 2)
+        << "who shares needs them";
+  });
 }
 
 }  // namespace run_folder_test

@@ -98,7 +98,8 @@ TEST(tradeoff_confirm, tells_what_to_give_where_the_reference_is_too_far_off) {
   study.reference.error = 0.3;
   study.reference.order = 1;
   study.reference.seconds = 5;
-  study.reference.parts_again = false;
+  study.reference.factor = 0.5;
+  study.reference.parts_again = study.reference.converged = false;
   // Two halvings more, which take 5 s (2 + 4) after 5 s (1 + 1/2 + ...), in half of what is not kept.
   EXPECT_EQ(why(),
             "the reference itself is off by about 0.3 h: ask for no less than that, or give about --budget "
@@ -117,6 +118,33 @@ TEST(tradeoff_confirm, tells_what_to_give_where_the_reference_is_too_far_off) {
   EXPECT_NE(why().find("no budget brings it nearer, as the last bit of one position moves shapes by 0.25 h"),
             std::string::npos)
       << why();
+}
+
+TEST(tradeoff_confirm, no_budget_is_named_that_would_change_nothing) {
+  tradeoff::Study study = timed({{1}, {2}});
+  const auto why = [&] {
+    return tradeoff::confirm(study, {.most = 0.1}, k_options, k_never).value().not_judged;
+  };
+  study.reference.error = 0.3;
+  study.reference.order = 1;
+  study.reference.factor = 0.5;
+  study.reference.parts_again = study.reference.converged = false;
+  ASSERT_NE(why().find("or give about --budget "), std::string::npos) << why();
+  study.reference.converged = true;
+  EXPECT_NE(why().find("no budget brings it near enough"), std::string::npos) << why();
+  study.reference.converged = false;
+  study.reference.order = 0.3;  // six halvings more, where there are fewer down to the shortest steps
+  EXPECT_NE(why().find("no budget brings it near enough"), std::string::npos) << why();
+  EXPECT_EQ(why().find("--budget"), std::string::npos) << why();
+}
+
+TEST(tradeoff_confirm, the_reference_is_looked_for_until_it_is_near_enough) {
+  tradeoff::StudyOptions options = k_options;
+  const tradeoff::Study loose = tradeoff::study(scene(), options);
+  ASSERT_TRUE(loose.reference.converged);
+  options.limit = tradeoff::Limit{.most = loose.reference.error};
+  const tradeoff::Study tight = tradeoff::study(scene(), options);
+  EXPECT_LT(tight.reference.factor, loose.reference.factor);
 }
 
 }  // namespace mallow::confirm_test

@@ -71,14 +71,14 @@ std::optional<double> tolerance_of(const std::string& text) {
 /// Both know their spacings, from each other or from the user.
 void settle_spacings(const CompareOptions& options, program::ComparedStates& a, program::ComparedStates& b) {
   if (options.spacing) {
-    std::size_t bodies = std::max(a.spacings().size(), b.spacings().size());
+    std::size_t bodies = std::max<std::size_t>(b.bodies(0).size(), 1);
     for (const std::uint32_t body : a.particles(a.frames().front()).bodies)
       bodies = std::max<std::size_t>(bodies, body + 1);
-    a.set_spacings(std::vector<float>(std::max<std::size_t>(bodies, 1), *options.spacing));
-  } else if (a.spacings().empty()) {
-    a.set_spacings({b.spacings().begin(), b.spacings().end()});
+    a.set_spacing(bodies, *options.spacing);
+  } else if (a.bodies(0).empty()) {
+    a.take_bodies(b);
   }
-  if (a.spacings().empty())
+  if (a.bodies(0).empty())
     throw ConfigError("--spacing", "is needed, as neither " + a.path().string() + " nor " +
                                        b.path().string() + " tells the distance of particles at rest");
 }
@@ -119,7 +119,7 @@ void write_csv(const std::string& file, const Comparison& comparison, const prog
       "frame,time_a [s],time_b [s],same_bits,particles,only_a,only_b,rms [h],largest [h],particle,body,"
       "height [m],kinetic_energy [J],surface_same_bits,surface_rms [h],surface_largest [h]\n";
   for (const program::FrameDifference& frame : comparison.frames) {
-    std::string name = a.body_name(frame.body);
+    std::string name = a.body_name(frame.body, frame.frame);
     std::ranges::replace(name, ',', ' ');
     std::ranges::replace(name, '"', ' ');
     text += std::to_string(frame.frame) + ',' + number(frame.time_a) + ',' + number(frame.time_b) + ',' +
@@ -147,7 +147,7 @@ nlohmann::ordered_json to_json(const program::FrameDifference& frame, const prog
                                  {"rms", frame.rms},
                                  {"largest", frame.largest},
                                  {"particle", frame.particle},
-                                 {"body", a.body_name(frame.body)},
+                                 {"body", a.body_name(frame.body, frame.frame)},
                                  {"height", frame.height}};
   if (frame.kinetic_energy) json["kinetic_energy"] = *frame.kinetic_energy;
   if (frame.surface)
@@ -181,7 +181,8 @@ void print_frame(const program::FrameDifference& frame, const program::ComparedS
     return;
   }
   std::printf("%10.3g %10.3g %10llu %-12s %12.3g ", frame.rms, frame.largest,
-              static_cast<unsigned long long>(frame.particle), a.body_name(frame.body).c_str(), frame.height);
+              static_cast<unsigned long long>(frame.particle), a.body_name(frame.body, frame.frame).c_str(),
+              frame.height);
   if (frame.kinetic_energy)
     std::printf("%12.3g ", *frame.kinetic_energy);
   else
@@ -214,7 +215,7 @@ void print_table(const Comparison& comparison, const program::ComparedStates& a)
     const program::FrameDifference& worst = comparison.worst();
     std::printf("first frame that differs: %d\nlargest distance: %.3g h in frame %d, particle %llu of %s\n",
                 first->frame, worst.largest, worst.frame, static_cast<unsigned long long>(worst.particle),
-                a.body_name(worst.body).c_str());
+                a.body_name(worst.body, worst.frame).c_str());
   }
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "program/body_appearances.h"
 #include "program/film_bounds.h"
 
 namespace mallow::cli {
@@ -47,26 +48,34 @@ class FrameReader {
   std::future<Frame> coming_;
 };
 
+std::vector<program::SlotBody> bodies_at(int frame, const PictureRun& run) {
+  return program::slot_bodies_at(frame, run.bodies, run.past);
+}
+
 /// The camera has what the run shows in view, by up to so many of its frames, whichever pictures are taken.
 program::Stills stills_of(const Scene& scene, const program::Cache& cache, const PictureRun& run) {
   constexpr std::size_t k_looks = 128;
   const std::vector<int> frames = cache.particle_frames();
   const std::size_t looks = scene.render.eye ? 1 : std::min(k_looks, frames.size());
-  program::FilmBounds bounds(run.spacings, scene.emitters);
-  for (std::size_t k = 0; k < looks; ++k)
-    bounds.add(
-        read_particles(cache.particles_file(frames[looks > 1 ? k * (frames.size() - 1) / (looks - 1) : 0])));
-  return {scene, bounds, run.spacings, run.threads};
+  const std::vector<float> spacings = program::spacings_of(run.bodies, run.past);
+  program::FilmBounds bounds(spacings, scene.emitters);
+  for (std::size_t k = 0; k < looks; ++k) {
+    const int frame = frames[looks > 1 ? k * (frames.size() - 1) / (looks - 1) : 0];
+    bounds.add(read_particles(cache.particles_file(frame)), program::spacings_of(bodies_at(frame, run)));
+  }
+  return {scene, bounds, spacings, run.threads};
 }
 
 /// What makes a picture what it is, beside the files that it is taken of.
 std::string job_of(Scene scene, const program::Cache& cache, const PictureRun& run,
-                   const render::Camera& camera) {
+                   const program::Stills& stills) {
+  const render::Camera& camera = stills.camera();
   scene.run.frames = 0;  // a film that gets longer has the same pictures, as long as it is seen from there
   std::ostringstream job;
   job.precision(std::numeric_limits<float>::max_digits10);
   job << print_scene(cache.moved_here(std::move(scene))) << run.frame_time << '\n'
-      << camera.eye.transpose() << ", " << camera.target.transpose() << ", " << camera.field_of_view;
+      << camera.eye.transpose() << ", " << camera.target.transpose() << ", " << camera.field_of_view << '\n'
+      << stills.ball_radius();
   return job.str();
 }
 
@@ -78,12 +87,16 @@ std::vector<int> frames_to_show(const program::Cache& cache) {
 }
 
 PictureTaker::PictureTaker(const Scene& scene, const program::Cache& cache, const PictureRun& run)
-    : cache_(cache),
+    : scene_(scene),
+      cache_(cache),
       run_(run),
       stills_(stills_of(scene, cache, run)),
-      taken_(cache.folder(), "render", job_of(scene, cache, run, stills_.camera()),
-             [&cache](int frame) -> program::SharedFrames::Files {
-               return {{cache.particles_file(frame), cache.surface_file(frame)}, {cache.image_file(frame)}};
+      taken_(cache.folder(), "render", job_of(scene, cache, run, stills_),
+             [&scene, &cache](int frame) -> program::SharedFrames::Files {
+               std::vector<std::filesystem::path> read = {cache.particles_file(frame),
+                                                          cache.surface_file(frame)};
+               if (!scene.render.environment.empty()) read.push_back(program::environment_file(scene));
+               return {std::move(read), {cache.image_file(frame)}};
              }) {
   stills_.set_frame_time(run.frame_time);
   std::filesystem::create_directories(cache.images_folder());
@@ -92,11 +105,15 @@ PictureTaker::PictureTaker(const Scene& scene, const program::Cache& cache, cons
 
 void PictureTaker::write(int number, const ParticleFrame& particles, const Mesh& surface,
                          const FrameClaim& claim, program::BackgroundWriter& files) {
-  stills_.set_appearances(run_.appearances(number));
+  stills_.set_appearances(
+      program::body_appearances(scene_, program::material_names(bodies_at(number, run_))));
   auto picture = std::make_shared<const render::Image>(stills_.take(particles, surface));
   files.add([this, number, picture, claim] {
     render::write_png(cache_.image_file(number), *picture);
-    claim->done();
+    if (claim)
+      claim->done();
+    else
+      taken_.note(number);
   });
 }
 
@@ -120,10 +137,10 @@ std::size_t PictureTaker::take_all(Existing existing, program::StageTimes& secon
   if (existing == Existing::keep) std::erase_if(frames, [&](int frame) { return taken_.is_done(frame); });
   FrameReader reader(cache_, frames);
   program::BackgroundWriter files;
-  for_each_frame(frames, &taken_, false, "rendering", [&](int number, const FrameClaim& claim) {
+  for_each_frame(frames, "rendering", [&](int number) {
     const program::StageTimer timer(seconds, program::Stage::pictures);
     const FrameReader::Frame frame = reader.next();
-    write(number, frame.particles, frame.surface, claim, files);
+    write(number, frame.particles, frame.surface, nullptr, files);
   });
   const program::StageTimer timer(seconds, program::Stage::pictures);
   files.finish();

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <vector>
 
 #include "cli/frame_loop.h"
@@ -17,10 +16,9 @@ namespace mallow::cli {
 
 /// What pictures ask of the run that they are of.
 struct PictureRun {
-  std::vector<float> spacings;  ///< h of each body [m]
-  /// Of each body, by the slot that it has in a frame.
-  std::function<std::vector<Appearance>(int frame)> appearances;
-  double frame_time;  ///< [s]
+  std::vector<program::SlotBody> bodies;  ///< by slot, as the run ended
+  std::vector<program::PastBody> past;    ///< those that had these slots before
+  double frame_time;                      ///< [s]
   int threads;
 };
 
@@ -49,6 +47,7 @@ class PictureTaker {
   void write(int number, const ParticleFrame& particles, const Mesh& surface, const FrameClaim& claim,
              program::BackgroundWriter& files);
 
+  const Scene& scene_;
   const program::Cache& cache_;
   const PictureRun& run_;
   program::Stills stills_;

@@ -13,7 +13,6 @@
 #include "cli/messages.h"
 #include "cli/pictures.h"
 #include "cli/summary.h"
-#include "program/body_appearances.h"
 #include "program/cached_run.h"
 #include "program/failure.h"
 #include "program/film.h"
@@ -32,11 +31,8 @@ struct RenderOptions : program::CachedRunOptions {
 };
 
 PictureRun picture_run(const program::CachedRun& run) {
-  return {.spacings = program::spacings_of(run.bodies),
-          .appearances =
-              [&run](int frame) {
-                return program::body_appearances(run.scene, program::material_names(run.bodies_at(frame)));
-              },
+  return {.bodies = run.bodies,
+          .past = run.past,
           .frame_time = run.report.value("frame_time", 0.0),
           .threads = run.threads};
 }

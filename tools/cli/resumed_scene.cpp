@@ -40,12 +40,15 @@ SceneKeys check_late_options(const program::Cache& cache, const SceneOptions& gi
   std::vector<Problem> problems;
   std::vector<std::string> warnings;
   SceneKeys told;
-  const auto look = [&](const Scene& before, const Scene& after, const std::string& option) {
-    const std::vector<program::SceneChange> of_run = program::scene_changes(began, after);
+  const Scene after = scene_now(cache, given, true, true);
+  std::vector<program::SceneChange> of_run = program::scene_changes(began, after);
+  std::erase_if(of_run, [](const program::SceneChange& change) { return change.key == "run.frames"; });
+  if (of_run.empty()) return told;
+  const auto look = [&](const Scene& before, const std::string& option) {
     std::string refused;
     for (const program::SceneChange& change : program::scene_changes(before, after)) {
       const auto differs = std::ranges::find(of_run, change.key, &program::SceneChange::key);
-      if (differs == of_run.end() || change.key == "run.frames") continue;
+      if (differs == of_run.end()) continue;
       told.insert(change.key);
       const std::string before_and_now =
           change.key + " is " + or_left_out(change.now) + ", was " + or_left_out(differs->before);
@@ -62,10 +65,9 @@ SceneKeys check_late_options(const program::Cache& cache, const SceneOptions& gi
                               refused + "); leave it out, or begin another run: mallow run SCENE " + option +
                               " ... --out OTHER"});
   };
-  const Scene set = scene_now(cache, given, true, false);
-  if (!given.overrides.empty()) look(scene_now(cache, given, false, false), set, "--set");
+  if (!given.overrides.empty()) look(scene_now(cache, given, false, true), "--set");
   if (given.quality)
-    look(set, scene_now(cache, given, true, true), std::string("--quality ") + name(*given.quality));
+    look(scene_now(cache, given, true, false), std::string("--quality ") + name(*given.quality));
   if (!problems.empty()) throw ConfigError(std::move(problems));
   for (const std::string& warning : warnings) print_warning(warning);
   return told;
@@ -104,8 +106,13 @@ Scene take_scene(const program::Cache& cache, const SceneOptions& options, progr
   const bool own = now.file.empty() || std::filesystem::equivalent(now.file, cache.scene_file(), unknown);
   if (own) now.file = cache.scene_file().string();
   now.allow_outside_paths = true;  // what it names is not read: the particles are there
-  // Its scene.toml was turned by its quality already.
-  if (own && now.quality && saved.report.quality == name(*now.quality)) now.quality.reset();
+  // Its scene.toml was turned by its quality already, behind --set.
+  if (own && !saved.report.quality.empty()) {
+    if (now.quality && saved.report.quality == name(*now.quality)) now.quality.reset();
+    std::erase_if(now.overrides, [&](const std::string& setting) {
+      return std::ranges::find(saved.report.overrides, setting) != saved.report.overrides.end();
+    });
+  }
   Scene scene = read_scene(now);
   const SceneKeys told = check_late_options(cache, now, saved.scene);
   take_changes(cache.moved_here(scene), own, now.file, told, saved.scene);

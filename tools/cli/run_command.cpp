@@ -131,9 +131,9 @@ program::CheckpointInterval checkpoint_interval(const RunOptions& options,
 /// What both kinds of runs have: a simulation, and what it says of itself.
 void describe(const Scene& scene, int threads, Simulation& simulation, program::RunReport& report) {
   report.threads = threads;
+  std::vector<BodyInfo> by_slot = std::move(report.info.bodies);
   report.info = simulation.info();
-  std::vector<BodyInfo> by_slot;
-  program::follow_bodies(simulation, by_slot);
+  program::know_bodies(simulation, by_slot);
   report.info.bodies = std::move(by_slot);
   report.appearances = program::body_appearances(scene, program::material_names(report.info.bodies));
   report.frame_time = frame_time(scene, report.info);
@@ -218,12 +218,6 @@ Run resume(const RunOptions& options, int threads) {
   if (const std::string said = program::nothing_left(run.plan, run.report); !said.empty())
     std::fprintf(stderr, "%s\n", said.c_str());
   describe(run.scene, threads, *run.simulation, run.report);
-  const bool any_gone =
-      std::ranges::any_of(run.report.info.bodies, [](const BodyInfo& body) { return body.particles == 0; });
-  if (any_gone || run.report.info.bodies.size() < body_materials(run.scene).size()) {
-    const std::filesystem::path file = run.cache->report_file();
-    program::add_gone_bodies(program::read_report(file), file, run.report.info);
-  }
   run.report.resumed_after.push_back(run.report.steps);
   run.report.stage_seconds[static_cast<std::size_t>(program::Stage::build)] +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
@@ -239,6 +233,24 @@ void write_reports(const RunOptions& options, const Scene& scene, const program:
   write_summary(*cache, scene, document);
 }
 
+enum class RunStop { interrupted, failed, step_failed };
+
+/// What is left of a run that ended in its middle, where that is more than nothing, and what to do with it. A
+/// step that could not be taken cannot be when it is tried again.
+std::string how_to_go_on(const program::Cache* cache, const program::RunReport& report, RunStop stop) {
+  std::error_code unknown;
+  if (!cache || !std::filesystem::exists(cache->checkpoint_file(), unknown)) return {};
+  const std::string left =
+      "\n  " + (report.frames == 0 ? "frame 0 is" : std::to_string(report.frames + 1) + " frames are") +
+      " whole, and a checkpoint is there; ";
+  if (stop == RunStop::step_failed)
+    return left +
+           "--resume would fail in the same step: change what the message names and run the scene anew, or "
+           "restore the checkpoint in a program and change it there";
+  return left + "to go on" + (stop == RunStop::failed ? ", once what is wrong is mended" : "") +
+         ": mallow run --resume " + program::shell_word(cache->folder().string());
+}
+
 /// Motion and what is made of every frame, with progress on stderr and an end at Ctrl-C.
 void simulate(Run& run, const program::Cache* cache) {
   const bool by_steps = run.plan.steps.has_value();
@@ -252,30 +264,10 @@ void simulate(Run& run, const program::Cache* cache) {
   const program::RunEnd end = program::run_frames(run.scene, *run.simulation, run.skins, run.plan, cache,
                                                   run.report, callbacks, run.series ? &*run.series : nullptr);
   if (end == program::RunEnd::complete) return;
-  const std::string said = "interrupted after " + std::to_string(run.report.steps) + " steps; ";
-  throw program::Interrupted(said + (cache ? std::to_string(run.report.frames + 1) +
-                                                 " frames are whole, and a checkpoint is there; "
-                                                 "to go on: mallow run --resume " +
-                                                 program::shell_word(cache->folder().string())
-                                           : "there is nothing to go on from, as --out was not given"),
+  throw program::Interrupted("interrupted after " + std::to_string(run.report.steps) + " steps" +
+                                 (cache ? how_to_go_on(cache, run.report, RunStop::interrupted)
+                                        : "; there is nothing to go on from, as --out was not given"),
                              program::interrupted());
-}
-
-enum class RunStop { interrupted, failed, step_failed };
-
-/// What is left of a run that ended in its middle, where that is more than nothing, and what to do with it. A
-/// step that could not be taken cannot be when it is tried again.
-std::string how_to_go_on(const program::Cache* cache, const program::RunReport& report, RunStop stop) {
-  std::error_code unknown;
-  if (!cache || !std::filesystem::exists(cache->checkpoint_file(), unknown)) return {};
-  const std::string left =
-      "\n  " + std::to_string(report.frames + 1) + " frames are whole, and a checkpoint is there; ";
-  if (stop == RunStop::step_failed)
-    return left +
-           "--resume would fail in the same step: change what the message names and run the scene anew, or "
-           "restore the checkpoint in a program and change it there";
-  return left + "to go on" + (stop == RunStop::failed ? ", once what is wrong is mended" : "") +
-         ": mallow run --resume " + program::shell_word(cache->folder().string());
 }
 
 /// Motion, surfaces, pictures and film; the report says what was done, also when this throws.
@@ -285,13 +277,8 @@ void run_stages(const RunOptions& options, Run& run) {
   if (!options.state_out.empty()) write_state_csv(options.state_out, snapshot(*run.simulation));
   if (!cache || !run.plan.images) return;
   if (!run.scene.render.eye) {
-    std::vector<float> spacings;
-    for (const BodyInfo& body : run.report.info.bodies) spacings.push_back(body.spacing);
-    const auto looks = [&, now = program::slot_bodies(run.report.info.bodies)](int frame) {
-      return program::body_appearances(
-          run.scene, program::material_names(program::slot_bodies_at(frame, now, run.report.past_bodies)));
-    };
-    const PictureRun pictures{spacings, looks, run.report.frame_time, run.plan.threads};
+    const PictureRun pictures{program::slot_bodies(run.report.info.bodies), run.report.past_bodies,
+                              run.report.frame_time, run.plan.threads};
     // A run that was ended while it drew has some already.
     try {
       PictureTaker(run.scene, *cache, pictures)
@@ -321,7 +308,7 @@ void print_result(const Scene& scene, const program::Cache* cache, const program
     print("split_bodies", events.split);
     print("merged_bodies", events.merged_bodies);
   }
-  if (!scene.sinks.empty()) print("drained", report.drained);
+  if (!scene.sinks.empty()) print("drained", report.drained());
   for (std::size_t k = 0; scene.sinks.size() > 1 && k < report.sink_drained.size(); ++k)
     print(program::sink_name(k) + ".drained", report.sink_drained[k]);
   if (cache) std::printf("summary %s\n", cache->summary_file().c_str());

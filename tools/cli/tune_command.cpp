@@ -13,6 +13,7 @@
 #include "program/interrupt.h"
 #include "program/output_files.h"
 #include "tradeoff/confirm.h"
+#include "tradeoff/reference.h"
 #include "tradeoff/runner.h"
 #include "tradeoff/tables.h"
 
@@ -61,17 +62,17 @@ void require_pick(const TuneOptions& options, const tradeoff::Study& study, cons
 }
 
 /// What the user has to know of a pick that holds.
-void warn(const tradeoff::Limit& limit, const tradeoff::Study& study) {
+void warn(const Scene& scene, const tradeoff::Limit& limit, const tradeoff::Study& study) {
   if (!tradeoff::stretch(study).empty())
     std::fprintf(
         stderr,
         "mallow: warning: judged by %s alone, which the budget carries: what comes later may cost and "
         "err more; more --budget, or less run.frames, judges more\n",
         tradeoff::stretch(study).c_str());
-  if (!limit.is_time && study.reference_error() > 0.5 * limit.most)
-    std::fprintf(stderr,
-                 "mallow: warning: the reference itself is off by about %s h: more --budget tells more\n",
-                 tradeoff::number(study.reference_error()).c_str());
+  if (!limit.is_time && study.reference_error() > tradeoff::k_reference_part * limit.most)
+    std::fprintf(stderr, "mallow: warning: the reference itself is off by about %s h%s\n",
+                 tradeoff::number(study.reference_error()).c_str(),
+                 tradeoff::would_go_on(study.reference, scene, 1) ? ": more --budget tells more" : "");
 }
 
 void write(const fs::path& file, const tradeoff::Study& study, const tradeoff::Row& row) {
@@ -93,7 +94,7 @@ void tune(const TuneOptions& options, const Scene& scene, const tradeoff::StudyO
   print(study, *picked, tradeoff::lines_to_paste(scene, row.setting.scene));
   if (!options.out.empty()) write_study(options.out, study, options.study, study_with, deadline, picked);
   require_pick(options, study, *picked);
-  warn(limit, study);
+  warn(scene, limit, study);
   if (!options.write.empty()) write(options.write, study, row);
 }
 

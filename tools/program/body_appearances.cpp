@@ -53,6 +53,15 @@ bool follow_bodies(const Simulation& simulation, std::vector<BodyInfo>& by_slot)
   return true;
 }
 
+void know_bodies(const Simulation& simulation, std::vector<BodyInfo>& by_slot) {
+  std::vector<BodyInfo> now;
+  follow_bodies(simulation, now);
+  if (by_slot.empty()) by_slot = now;
+  for (std::size_t slot = 0; slot < std::min(now.size(), by_slot.size()); ++slot)
+    if (now[slot].name == by_slot[slot].name && now[slot].spacing == by_slot[slot].spacing)
+      by_slot[slot] = now[slot];
+}
+
 void count_particles(const Simulation& simulation, std::vector<BodyInfo>& by_slot) {
   for (BodyInfo& body : by_slot) body.particles = 0;
   for (const BodyId body : simulation.bodies()) {
@@ -75,6 +84,13 @@ std::vector<std::string> material_names(std::span<const SlotBody> bodies) {
 
 std::vector<std::string> material_names(std::span<const BodyInfo> bodies) {
   return material_names(slot_bodies(bodies));
+}
+
+std::vector<float> spacings_of(std::span<const SlotBody> bodies, std::span<const PastBody> past) {
+  std::vector<float> spacings;
+  for (const SlotBody& body : bodies) spacings.push_back(body.spacing);
+  for (const PastBody& body : past) spacings.push_back(body.body.spacing);
+  return spacings;
 }
 
 std::vector<PastBody> past_bodies(std::span<const SlotBody> before, std::span<const SlotBody> after,

@@ -18,11 +18,16 @@ std::vector<Appearance> body_appearances(const Scene& scene, std::span<const std
 /// What is known of each body by its slot: brought up to date where bodies have come since; of those that are
 /// gone, what was known stays. Returns whether any has come.
 bool follow_bodies(const Simulation& simulation, std::vector<BodyInfo>& by_slot);
+/// The same of a run that goes on, of which the names and spacings of its last frame are known: all that is
+/// known of those that are still there. Who came since is told of with the next frame.
+void know_bodies(const Simulation& simulation, std::vector<BodyInfo>& by_slot);
 /// How many particles each has now, of those that are gone none.
 void count_particles(const Simulation& simulation, std::vector<BodyInfo>& by_slot);
 std::vector<SlotBody> slot_bodies(std::span<const BodyInfo> bodies);
 std::vector<std::string> material_names(std::span<const BodyInfo> bodies);
 std::vector<std::string> material_names(std::span<const SlotBody> bodies);
+/// h of each [m], and behind them of those that had the slots before.
+std::vector<float> spacings_of(std::span<const SlotBody> bodies, std::span<const PastBody> past = {});
 
 /// The same before and after bodies have come: those whose slot is another's from this frame on.
 std::vector<PastBody> past_bodies(std::span<const SlotBody> before, std::span<const SlotBody> after,

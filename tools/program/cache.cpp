@@ -27,17 +27,6 @@ constexpr std::size_t k_digits = 6;
   throw IoError({folder.string(), 0, 0, "--out", message});
 }
 
-/// The number in "frame_000012.ply", or -1 where a file is not ours.
-int frame_number(const fs::path& file, const char* ending) {
-  const std::string name = file.filename().string();
-  if (!name.starts_with(k_stem) || file.extension() != std::string(".") + ending) return -1;
-  const std::string digits = file.stem().string().substr(k_stem.size());
-  int frame = -1;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), frame);
-  const bool whole = error == std::errc() && end == digits.data() + digits.size();
-  return whole && digits.size() >= k_digits ? frame : -1;
-}
-
 std::vector<int> frames_in(const fs::path& folder, const char* ending) {
   std::vector<int> frames;
   std::error_code error;
@@ -89,6 +78,16 @@ bool holds_nothing_but_mark(const fs::path& folder) {
 }
 
 }  // namespace
+
+int frame_number(const fs::path& file, const char* ending) {
+  const std::string name = file.filename().string();
+  if (!name.starts_with(k_stem) || file.extension() != std::string(".") + ending) return -1;
+  const std::string digits = file.stem().string().substr(k_stem.size());
+  int frame = -1;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), frame);
+  const bool whole = error == std::errc() && end == digits.data() + digits.size();
+  return whole && digits.size() >= k_digits ? frame : -1;
+}
 
 fs::path frame_name(int frame, const std::string& ending) {
   char name[32];

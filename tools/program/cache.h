@@ -13,6 +13,8 @@ namespace mallow::program {
 
 /// "frame_000012.ply"
 std::filesystem::path frame_name(int frame, const std::string& ending);
+/// The number in "frame_000012.ply", or -1 where a file is not called so.
+int frame_number(const std::filesystem::path& file, const char* ending);
 
 /// A folder that holds a run, so that its parts can be made again apart from each other:
 ///   .mallow-run                 what marks the folder as a run's, and is locked by whoever writes into it

@@ -102,12 +102,6 @@ std::vector<SlotBody> CachedRun::bodies_at(int frame) const {
   return slot_bodies_at(frame, bodies, past);
 }
 
-std::vector<float> spacings_of(std::span<const SlotBody> bodies) {
-  std::vector<float> spacings;
-  for (const SlotBody& body : bodies) spacings.push_back(body.spacing);
-  return spacings;
-}
-
 void close_cached_run(CachedRun& run, const StageTimes& seconds, std::span<const Stage> stages) {
   for (const Stage stage : stages) {
     run.report["stage_seconds"][name(stage)] = seconds[static_cast<std::size_t>(stage)];

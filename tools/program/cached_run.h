@@ -32,9 +32,6 @@ struct CachedRun {
   std::vector<SlotBody> bodies_at(int frame) const;
 };
 
-/// h of each [m].
-std::vector<float> spacings_of(std::span<const SlotBody> bodies);
-
 /// Throws IoError and ConfigError. `section`: the one whose keys may be changed, as the motion is there
 /// already, with "render" also which colliders are visible; empty: none, and the run stays as it is.
 /// Overrides count on top of the section as it was in the run, not as an earlier call left it. No other

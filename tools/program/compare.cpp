@@ -59,7 +59,7 @@ std::optional<double> kinetic_energy(const ParticleFrame& frame, std::span<const
   double sum = 0;
   for (std::size_t i = 0; i < frame.velocities.size(); ++i) {
     const std::uint32_t body = frame.bodies.empty() ? 0 : frame.bodies[i];
-    if (body >= masses.size()) return std::nullopt;
+    if (body >= masses.size() || masses[body] == 0) return std::nullopt;
     sum += 0.5 * masses[body] * frame.velocities[i].cast<double>().squaredNorm();
   }
   return sum;
@@ -92,14 +92,14 @@ std::uint32_t body_of(const ParticleFrame& frame, std::size_t i) {
 }
 
 /// In spacings of A's body. Throws IoError where it has none.
-double distance_of(const ComparedStates& a, const ParticleFrame& in_a, std::size_t i,
-                   const ParticleFrame& in_b, std::size_t j) {
+double distance_of(const ComparedStates& a, std::span<const SlotBody> bodies, const ParticleFrame& in_a,
+                   std::size_t i, const ParticleFrame& in_b, std::size_t j) {
   const std::uint32_t body = body_of(in_a, i);
-  if (body >= a.spacings().size())
+  if (body >= bodies.size())
     throw IoError({a.path().string(), 0, 0, "group",
                    "no spacing is known of body " + std::to_string(body) + "; give one with --spacing"});
   const Eigen::Vector3d way = in_b.positions[j].cast<double>() - in_a.positions[i].cast<double>();
-  const double distance = way.norm() / static_cast<double>(a.spacings()[body]);
+  const double distance = way.norm() / static_cast<double>(bodies[body].spacing);
   if (std::isfinite(distance)) return distance;
   // The same place where no number is one.
   return std::memcmp(&in_a.positions[i], &in_b.positions[j], sizeof(Vec3)) == 0 ? 0 : k_infinity;
@@ -109,20 +109,22 @@ double distance_of(const ComparedStates& a, const ParticleFrame& in_a, std::size
 
 std::vector<double> distances(const ComparedStates& a, const ComparedStates& b, int frame) {
   const ParticleFrame in_a = a.particles(frame), in_b = b.particles(frame);
+  const std::vector<SlotBody> bodies = a.bodies(frame);
   std::vector<double> all(in_b.positions.size(), k_infinity);
-  for_each_pair(in_a, in_b, [&](std::size_t i, std::size_t j) { all[j] = distance_of(a, in_a, i, in_b, j); });
+  for_each_pair(in_a, in_b,
+                [&](std::size_t i, std::size_t j) { all[j] = distance_of(a, bodies, in_a, i, in_b, j); });
   return all;
 }
 
 std::string told_of_other_bodies(const ComparedStates& a, const ComparedStates& b, int first_frame) {
   const ParticleFrame in_a = a.particles(first_frame), in_b = b.particles(first_frame);
   std::string what;
-  const std::size_t bodies = std::min(a.spacings().size(), b.spacings().size());
-  for (std::size_t body = 0; body < bodies && what.empty(); ++body)
-    if (std::abs(a.spacings()[body] - b.spacings()[body]) > 1e-6f * a.spacings()[body])
-      what = "particles of " + a.body_name(static_cast<std::uint32_t>(body)) + " are " +
-             std::to_string(a.spacings()[body]) + " m apart in A and " + std::to_string(b.spacings()[body]) +
-             " m in B";
+  const std::vector<float> apart_a = spacings_of(a.bodies(first_frame)),
+                           apart_b = spacings_of(b.bodies(first_frame));
+  for (std::size_t body = 0; body < std::min(apart_a.size(), apart_b.size()) && what.empty(); ++body)
+    if (std::abs(apart_a[body] - apart_b[body]) > 1e-6f * apart_a[body])
+      what = "particles of " + a.body_name(static_cast<std::uint32_t>(body), first_frame) + " are " +
+             std::to_string(apart_a[body]) + " m apart in A and " + std::to_string(apart_b[body]) + " m in B";
   // Where ids are written, they tell which particles are gone.
   if (what.empty() && in_a.ids.empty() && in_b.ids.empty() && in_a.positions.size() != in_b.positions.size())
     what = "A begins with " + std::to_string(in_a.positions.size()) + " particles and B with " +
@@ -141,12 +143,13 @@ bool FrameDifference::is_beyond(double tolerance) const {
 
 FrameDifference compare_frame(const ComparedStates& a, const ComparedStates& b, int number, int threads) {
   const ParticleFrame in_a = a.particles(number), in_b = b.particles(number);
+  const std::vector<SlotBody> bodies = a.bodies(number);
   FrameDifference difference{.frame = number, .time_a = in_a.time, .time_b = in_b.time};
   difference.same_bits = same_bits(in_a, in_b);
   double squares = 0;
   for_each_pair(in_a, in_b, [&](std::size_t i, std::size_t j) {
     const std::uint32_t body = body_of(in_a, i);
-    const double distance = distance_of(a, in_a, i, in_b, j);
+    const double distance = distance_of(a, bodies, in_a, i, in_b, j);
     ++difference.particles;
     squares += distance * distance;
     if (distance > difference.largest || difference.particles == 1) {
@@ -160,13 +163,13 @@ FrameDifference compare_frame(const ComparedStates& a, const ComparedStates& b, 
   if (difference.particles > 0)
     difference.rms = std::sqrt(squares / static_cast<double>(difference.particles));
   difference.height = height(in_b) - height(in_a);
-  const auto energy_a = kinetic_energy(in_a, a.masses());
-  const auto energy_b = kinetic_energy(in_b, b.masses().empty() ? a.masses() : b.masses());
+  const std::vector<double> masses_a = a.masses(number), masses_b = b.masses(number);
+  const auto energy_a = kinetic_energy(in_a, masses_a);
+  const auto energy_b = kinetic_energy(in_b, masses_b.empty() ? masses_a : masses_b);
   if (energy_a && energy_b) difference.kinetic_energy = *energy_b - *energy_a;
   const std::optional<Mesh> surface_a = a.surface(number), surface_b = b.surface(number);
   if (surface_a && surface_b)
-    difference.surface =
-        distance_of(*surface_a, *surface_b, *std::ranges::min_element(a.spacings()), threads);
+    difference.surface = distance_of(*surface_a, *surface_b, std::ranges::min(spacings_of(bodies)), threads);
   return difference;
 }
 

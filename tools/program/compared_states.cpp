@@ -24,17 +24,24 @@ ComparedStates::ComparedStates(const fs::path& path) : path_(path) {
     return;
   }
   state_ = read_particles(path);
-  // A frame of a run knows its report.
+  // A frame of a run knows its report, and shows who had the slots then.
   const fs::path report = fs::absolute(path).parent_path().parent_path() / "report.json";
-  if (fs::absolute(path).parent_path().filename() == "particles" && fs::exists(report)) read_groups(report);
+  if (fs::absolute(path).parent_path().filename() == "particles" && fs::exists(report)) {
+    read_groups(report);
+    const int frame = std::max(frame_number(path, "ply"), 0);
+    masses_ = masses(frame);
+    bodies_ = bodies(frame);
+    past_.clear();
+  }
 }
 
 void ComparedStates::read_groups(const fs::path& file) {
   const nlohmann::ordered_json report = read_report(file);
-  spacings_ = body_spacings(report, file);
+  past_ = past_bodies(report, file);
   try {
     for (const auto& group : report.at("groups")) {
-      names_.push_back(group.at("name").get<std::string>());
+      bodies_.push_back(
+          {.name = group.at("name").get<std::string>(), .spacing = group.at("spacing").get<float>()});
       // What is gone when a run goes on has none any more.
       masses_.push_back(group.value("particle_mass", 0.0));
     }
@@ -49,13 +56,11 @@ void ComparedStates::read_checkpoint_state() try {
   const SimulationInfo info = simulation.info();
   const std::vector<BodyId> bodies = simulation.bodies();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const std::size_t slot = slot_of(bodies[b]), size = std::max(spacings_.size(), slot + 1);
-    spacings_.resize(size, info.bodies[b].spacing);
+    const std::size_t slot = slot_of(bodies[b]), size = std::max(bodies_.size(), slot + 1);
+    bodies_.resize(size, {.spacing = info.bodies[b].spacing});
     masses_.resize(size, 0);
-    names_.resize(size);
-    spacings_[slot] = info.bodies[b].spacing;
+    bodies_[slot] = {.name = info.bodies[b].name, .spacing = info.bodies[b].spacing};
     masses_[slot] = static_cast<double>(info.bodies[b].particle_mass);
-    names_[slot] = info.bodies[b].name;
   }
 } catch (const IoError& error) {
   throw IoError(
@@ -91,8 +96,29 @@ std::vector<fs::path> ComparedStates::files() const {
   return files;
 }
 
-std::string ComparedStates::body_name(std::uint32_t body) const {
-  return body < names_.size() && !names_[body].empty() ? names_[body] : std::to_string(body);
+void ComparedStates::take_bodies(const ComparedStates& other) {
+  bodies_ = other.bodies_;
+  past_ = other.past_;
+}
+
+void ComparedStates::set_spacing(std::size_t bodies, float spacing) {
+  bodies_.resize(std::max(bodies_.size(), bodies));
+  for (SlotBody& body : bodies_) body.spacing = spacing;
+  for (PastBody& body : past_) body.body.spacing = spacing;
+}
+
+std::vector<double> ComparedStates::masses(int frame) const {
+  std::vector<double> masses = masses_;
+  // Reports do not tell those of bodies that had a slot before.
+  const std::vector<std::uint32_t> numbers = slot_numbers_at(frame, masses.size(), past_);
+  for (std::size_t slot = 0; slot < masses.size(); ++slot)
+    if (numbers[slot] != slot) masses[slot] = 0;
+  return masses;
+}
+
+std::string ComparedStates::body_name(std::uint32_t body, int frame) const {
+  const std::vector<SlotBody> now = bodies(frame);
+  return body < now.size() && !now[body].name.empty() ? now[body].name : std::to_string(body);
 }
 
 }  // namespace mallow::program

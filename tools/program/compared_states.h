@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "mallow/files.h"
 #include "mallow/mesh.h"
 #include "mallow/scene.h"
+#include "program/body_appearances.h"
 #include "program/cache.h"
 
 namespace mallow::program {
@@ -35,13 +35,16 @@ class ComparedStates {
   /// All that is read.
   std::vector<std::filesystem::path> files() const;
 
-  /// h of each body [m], by slot; empty where the file does not tell.
-  std::span<const float> spacings() const { return spacings_; }
-  void set_spacings(std::vector<float> spacings) { spacings_ = std::move(spacings); }
-  /// Of a particle of each body [kg], by slot; empty where the file does not tell.
-  std::span<const double> masses() const { return masses_; }
-  /// Of a body, or its number.
-  std::string body_name(std::uint32_t body) const;
+  /// Who has the slots in a frame; empty where the file does not tell. Of their materials nothing is read.
+  std::vector<SlotBody> bodies(int frame) const { return slot_bodies_at(frame, bodies_, past_); }
+  /// Takes over what another one knows.
+  void take_bodies(const ComparedStates& other);
+  /// So many bodies at least, all of this spacing [m].
+  void set_spacing(std::size_t bodies, float spacing);
+  /// Of a particle of each body [kg], by slot; 0 where the file does not tell.
+  std::vector<double> masses(int frame) const;
+  /// Of the body that has a slot in a frame, or its number.
+  std::string body_name(std::uint32_t body, int frame) const;
 
  private:
   void read_groups(const std::filesystem::path& report);
@@ -50,10 +53,10 @@ class ComparedStates {
   std::filesystem::path path_;
   std::optional<Cache> cache_;
   std::vector<int> frames_;
-  ParticleFrame state_;  ///< the single one
-  std::vector<float> spacings_;
-  std::vector<double> masses_;
-  std::vector<std::string> names_;
+  ParticleFrame state_;           ///< the single one
+  std::vector<SlotBody> bodies_;  ///< at the end
+  std::vector<PastBody> past_;    ///< those that had these slots before
+  std::vector<double> masses_;    ///< of `bodies_`
 };
 
 }  // namespace mallow::program

@@ -40,12 +40,13 @@ render::Image difference_picture(const ComparedStates& a, const ComparedStates& 
   }
   const Scene scene = b.scene();
   const std::vector<Collider> colliders = colliders_at(scene, particles.time);
-  const FilmBounds bounds(a.spacings(), particles, scene.emitters);
+  const std::vector<float> spacings = spacings_of(a.bodies(frame.frame));
+  const FilmBounds bounds(spacings, particles, scene.emitters);
   const render::Camera camera =
       render::frame_camera(bounds.boxes(scene), scene.render, visible_colliders(scene));
   render::Renderer renderer(scene.render, threads);
   const auto looks = palette();
-  const float radius = 0.5f * *std::ranges::min_element(a.spacings());
+  const float radius = 0.5f * std::ranges::min(spacings);
   return renderer.render_points(particles.positions, radius, colors, looks, colliders, camera);
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <type_traits>
 
+#include "program/body_appearances.h"
 #include "program/large_pieces.h"
 
 namespace mallow::program {
@@ -138,24 +139,36 @@ void add_near(const std::vector<Vec3>& drops, Aabb& box) {
 /// Layers that a nozzle holds behind it, at most: as many as regions of the usual radius ask for, and more.
 constexpr double k_most_layers = 24;
 
-/// Whether a place is behind a nozzle, where a strand is that has not left it.
-bool is_held(const SceneEmitter& emitter, double time, const Vec3& x) {
-  if (emitter.stop && time > *emitter.stop) return false;
-  Pose pose = emitter.pose;
-  if (!emitter.keyframes.empty())
-    pose = pose_at(emitter.keyframes, time);
-  else
-    pose.translation += time * emitter.velocity.cast<double>();
-  const Eigen::Quaterniond rotation = Eigen::Quaterniond(pose.rotation).normalized();
-  const Eigen::Vector3d local = rotation.conjugate() * (x.cast<double>() - pose.translation);
-  const double h = static_cast<double>(emitter.spacing);
-  // The nearest layer is half a spacing behind the mouth.
-  if (local.z() > -0.25 * h || local.z() < -k_most_layers * h) return false;
-  float side =
-      emitter.radius.value_or(0.5f * std::max(emitter.width.value_or(0), emitter.height.value_or(0)));
-  for (const Vec3& point : emitter.points) side = std::max(side, point.head<2>().norm());
-  return local.head<2>().cwiseAbs().maxCoeff() <= static_cast<double>(side) + h;
-}
+/// A nozzle as it is at a time.
+class Nozzle {
+ public:
+  Nozzle(const SceneEmitter& emitter, double time) : spacing_(static_cast<double>(emitter.spacing)) {
+    Pose pose = emitter.pose;
+    if (!emitter.keyframes.empty())
+      pose = pose_at(emitter.keyframes, time);
+    else
+      pose.translation += time * emitter.velocity.cast<double>();
+    translation_ = pose.translation;
+    rotation_ = Eigen::Quaterniond(pose.rotation).normalized();
+    float side =
+        emitter.radius.value_or(0.5f * std::max(emitter.width.value_or(0), emitter.height.value_or(0)));
+    for (const Vec3& point : emitter.points) side = std::max(side, point.head<2>().norm());
+    side_ = static_cast<double>(side);
+  }
+
+  /// Whether a place is behind it, where a strand is that has not left it.
+  bool holds(const Vec3& x) const {
+    const Eigen::Vector3d local = rotation_.conjugate() * (x.cast<double>() - translation_);
+    // The nearest layer is half a spacing behind the mouth.
+    if (local.z() > -0.25 * spacing_ || local.z() < -k_most_layers * spacing_) return false;
+    return local.head<2>().cwiseAbs().maxCoeff() <= side_ + spacing_;
+  }
+
+ private:
+  double spacing_, side_;
+  Eigen::Vector3d translation_;
+  Eigen::Quaterniond rotation_;
+};
 
 }  // namespace
 
@@ -171,28 +184,29 @@ void FilmBounds::Reach::add(const Aabb& frame, std::size_t count) {
   particles = std::max(particles, count);
 }
 
-void FilmBounds::add(const ParticleFrame& frame) {
+void FilmBounds::add(const ParticleFrame& frame, std::span<const float> spacings) {
   if (frame.positions.empty()) return;
   last_time_ = std::max(last_time_, frame.time);
-  if (emitters_.empty()) return add_seen(frame);
+  std::vector<Nozzle> nozzles;
+  for (const SceneEmitter& emitter : emitters_)
+    if (!emitter.stop || frame.time <= *emitter.stop) nozzles.emplace_back(emitter, frame.time);
+  if (nozzles.empty()) return add_seen(frame, spacings);
   ParticleFrame seen;
   seen.time = frame.time;
   for (std::size_t i = 0; i < frame.positions.size(); ++i) {
-    const auto holds = [&](const SceneEmitter& emitter) {
-      return is_held(emitter, frame.time, frame.positions[i]);
-    };
-    if (std::ranges::any_of(emitters_, holds)) continue;
+    if (std::ranges::any_of(nozzles, [&](const Nozzle& nozzle) { return nozzle.holds(frame.positions[i]); }))
+      continue;
     seen.positions.push_back(frame.positions[i]);
     seen.bodies.push_back(frame.bodies[i]);
   }
   if (seen.positions.empty())
     held_.push_back(bounds_of(frame.positions));
   else
-    add_seen(seen);
+    add_seen(seen, spacings);
 }
 
 /// All but what nozzles hold, which is something.
-void FilmBounds::add_seen(const ParticleFrame& frame) {
+void FilmBounds::add_seen(const ParticleFrame& frame, std::span<const float> spacings) {
   const std::size_t count = frame.positions.size();
   if (frame.time <= 0) {  // nothing has flown off or come apart yet, however far from each other things begin
     const Aabb box = bounds_of(frame.positions);
@@ -201,7 +215,7 @@ void FilmBounds::add_seen(const ParticleFrame& frame) {
     return;
   }
   all_.add(most_of(frame.positions), count);
-  const std::vector<bool> large = in_large_pieces(frame, spacings_);
+  const std::vector<bool> large = in_large_pieces(frame, spacings);
   std::vector<Vec3> pieces, drops;
   for (std::size_t i = 0; i < count; ++i) (large[i] ? pieces : drops).push_back(frame.positions[i]);
   if (2 * pieces.size() < count) return;  // it has come apart
@@ -247,8 +261,7 @@ Aabb FilmBounds::box(const Scene& scene) const {
 }
 
 Aabb bounds_now(const Scene& scene, Simulation& simulation) {
-  std::vector<float> spacings;
-  for (const BodyInfo& body : simulation.info().bodies) spacings.push_back(body.spacing);
+  const std::vector<float> spacings = spacings_of(slot_bodies(simulation.info().bodies));
   Aabb box = FilmBounds(spacings, snapshot(simulation), scene.emitters).box(scene);
   const Vec3 middle = 0.5f * (box.min + box.max);
   for (const Plane& plane : Room(scene).grounds)

@@ -26,7 +26,9 @@ class FilmBounds {
       : FilmBounds(spacings, emitters) {
     add(only);
   }
-  void add(const ParticleFrame& frame);
+  void add(const ParticleFrame& frame) { add(frame, spacings_); }
+  /// The same of a frame in which the bodies have these spacings.
+  void add(const ParticleFrame& frame, std::span<const float> spacings);
   /// What a frame each reaches, and what is seen beside it: together smaller than one box around all of it.
   /// Something around 0 where no frame had any particles.
   std::vector<Aabb> boxes(const Scene& scene) const;
@@ -41,7 +43,7 @@ class FilmBounds {
     void add(const Aabb& frame, std::size_t count);
   };
   const std::vector<Aabb>& reached() const;
-  void add_seen(const ParticleFrame& frame);
+  void add_seen(const ParticleFrame& frame, std::span<const float> spacings);
 
   std::vector<float> spacings_;
   std::vector<SceneEmitter> emitters_;

@@ -17,8 +17,10 @@ void append(const std::vector<T>& part, std::vector<T>& list) {
 void follow(const Simulation& simulation, Skin& skin) try {
   skin.update(simulation);
 } catch (const ConfigError& error) {
-  throw ConfigError("skin", std::string("cannot follow its body any more (") + error.what() +
-                                "); keep it from what takes its particles away, or go on with --no-surface");
+  const bool is_there = std::ranges::count(simulation.bodies(), skin.body()) > 0;
+  throw ConfigError(is_there ? "skin of " + simulation.name(skin.body()) : "skin",
+                    std::string("cannot follow its body any more (") + error.what() +
+                        "); keep it from what takes its particles away");
 }
 
 }  // namespace

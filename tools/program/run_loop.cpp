@@ -41,9 +41,8 @@ class FrameWriter {
     }
     if (plan.images && scene.render.eye) {  // else the camera waits for what the film will show
       std::filesystem::create_directories(cache.images_folder());
-      std::vector<float> spacings;
-      for (const BodyInfo& body : report.info.bodies) spacings.push_back(body.spacing);
-      stills_.emplace(scene, first, spacings, plan.threads);
+      stills_.emplace(scene, first, spacings_of(slot_bodies(report.info.bodies), report.past_bodies),
+                      plan.threads);
       stills_->set_appearances(report.appearances);
       stills_->set_frame_time(report.frame_time);
     }
@@ -74,7 +73,7 @@ class FrameWriter {
     auto mesh = std::make_shared<const Mesh>();
     if (surface_) {
       const StageTimer timer(report_.stage_seconds, Stage::surface);
-      mesh = std::make_shared<const Mesh>(surface_->draw(simulation));
+      mesh = std::make_shared<const Mesh>(draw_surface(simulation));
       files_.add([this, number, mesh] {
         write_mesh_ply(cache_.surface_file(number), *mesh);
         whole_frames_ = number;
@@ -131,6 +130,13 @@ class FrameWriter {
   }
 
  private:
+  Mesh draw_surface(const Simulation& simulation) try {
+    return surface_->draw(simulation);
+  } catch (const ConfigError& error) {
+    if (skins_.empty()) throw;
+    throw RunFailure(std::string(error.what()) + ", or go on with --no-surface");
+  }
+
   const Scene& scene_;
   const Cache& cache_;
   RunReport& report_;

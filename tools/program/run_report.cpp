@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <system_error>
 
 #include "mallow/errors.h"
@@ -84,6 +85,14 @@ nlohmann::ordered_json past_bodies_json(const RunReport& report) {
                     {"material", body.body.material},
                     {"spacing", body.body.spacing}});
   return past;
+}
+
+/// As a checkpoint keeps them.
+nlohmann::ordered_json kept_bodies(const std::vector<BodyInfo>& bodies) {
+  nlohmann::ordered_json kept = nlohmann::ordered_json::array();
+  for (const BodyInfo& body : bodies)
+    kept.push_back({{"name", body.name}, {"material", body.material}, {"spacing", body.spacing}});
+  return kept;
 }
 
 SlotBody slot_body_from(const nlohmann::ordered_json& body) {
@@ -190,7 +199,6 @@ void RunReport::add(const StepReport& step, const Simulation& simulation) {
   smallest_step = steps == 1 ? step.time_step : std::min(smallest_step, step.time_step);
   largest_step = std::max(largest_step, step.time_step);
   if (step.limited) ++limited_steps;
-  drained += static_cast<std::int64_t>(step.drained);
   if (step.updated_references > 0) reference_updates.push_back({steps, step.updated_references});
   for (std::size_t i = 0; i < k_phase_count; ++i) phase_seconds[i] += step.seconds[i];
   add_loads(step.time_step, simulation);
@@ -205,6 +213,10 @@ void RunReport::add(const StepReport& step, const Simulation& simulation) {
   compression.largest = std::max(compression.largest, step.largest_compression);
 }
 
+std::int64_t RunReport::drained() const {
+  return std::accumulate(sink_drained.begin(), sink_drained.end(), std::int64_t{0});
+}
+
 nlohmann::ordered_json RunReport::progress() const {
   return {{"scene", scene},
           {"overrides", overrides},
@@ -216,7 +228,7 @@ nlohmann::ordered_json RunReport::progress() const {
           {"limited_steps", limited_steps},
           {"reference_updates", updates_json(*this)},
           {"events", events_json(*this)},
-          {"drained", drained},
+          {"bodies", kept_bodies(info.bodies)},
           {"past_bodies", past_bodies_json(*this)},
           {"compression", compression_json(*this)},
           {"loads", kept_loads(loads)},
@@ -237,15 +249,19 @@ void RunReport::set_progress(const nlohmann::ordered_json& progress) {
   reference_updates.clear();
   for (const auto& update : progress.at("reference_updates"))
     reference_updates.push_back({update.at("step").get<std::int64_t>(), update.at("groups").get<int>()});
-  // Checkpoints of earlier versions have none of these.
+  // Checkpoints of earlier versions lack some of these.
   if (const auto counts = progress.find("events"); counts != progress.end()) {
     counts->at("yielded").get_to(events.yielded);
     counts->at("torn").get_to(events.torn);
     counts->at("merged").get_to(events.merged);
-    counts->at("merged_bodies").get_to(events.merged_bodies);
-    counts->at("split").get_to(events.split);
+    events.merged_bodies = counts->value("merged_bodies", std::int64_t{0});
+    events.split = counts->value("split", std::int64_t{0});
   }
-  if (const auto found = progress.find("drained"); found != progress.end()) found->get_to(drained);
+  if (const auto found = progress.find("bodies"); found != progress.end())
+    for (const auto& body : *found) {
+      const SlotBody kept = slot_body_from(body);
+      info.bodies.push_back({.name = kept.name, .material = kept.material, .spacing = kept.spacing});
+    }
   if (const auto found = progress.find("past_bodies"); found != progress.end())
     past_bodies = past_bodies_from(*found);
   if (const auto found = progress.find("compression"); found != progress.end()) {
@@ -293,7 +309,7 @@ nlohmann::ordered_json to_json(const RunReport& report) {
             {"limited_steps", report.limited_steps}}},
           {"reference_updates", updates_json(report)},
           {"events", events_json(report)},
-          {"drained", report.drained},
+          {"drained", report.drained()},
           {"sinks", sinks_json(report)},
           {"past_bodies", past_bodies_json(report)},
           {"compression", compression_json(report)},
@@ -335,23 +351,6 @@ void write_report(const std::filesystem::path& file, const nlohmann::ordered_jso
   write_whole(file, report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
-void add_gone_bodies(const nlohmann::ordered_json& earlier, const std::filesystem::path& file,
-                     SimulationInfo& info) {
-  try {
-    const auto& groups = earlier.at("groups");
-    info.bodies.resize(std::max(info.bodies.size(), groups.size()));
-    for (std::size_t slot = 0; slot < groups.size(); ++slot) {
-      if (info.bodies[slot].particles > 0) continue;
-      const auto& group = groups[slot];
-      info.bodies[slot] = {.name = group.at("name").template get<std::string>(),
-                           .material = group.at("material").template get<std::string>(),
-                           .spacing = group.at("spacing").template get<float>()};
-    }
-  } catch (const nlohmann::ordered_json::exception& error) {
-    throw IoError({file.string(), 0, 0, "groups", error.what()});
-  }
-}
-
 std::vector<SlotBody> slot_bodies(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
   std::vector<SlotBody> bodies;
   try {
@@ -360,12 +359,6 @@ std::vector<SlotBody> slot_bodies(const nlohmann::ordered_json& report, const st
     throw IoError({file.string(), 0, 0, "groups", error.what()});
   }
   return bodies;
-}
-
-std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
-  std::vector<float> spacings;
-  for (const SlotBody& body : slot_bodies(report, file)) spacings.push_back(body.spacing);
-  return spacings;
 }
 
 std::vector<PastBody> past_bodies(const nlohmann::ordered_json& report, const std::filesystem::path& file) {

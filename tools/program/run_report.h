@@ -38,7 +38,7 @@ class StageTimer {
 
 /// What frames say of a body by its slot alone.
 struct SlotBody {
-  std::string name, material;
+  std::string name = {}, material = {};
   float spacing = 0;  ///< h [m]
   bool operator==(const SlotBody&) const = default;
 };
@@ -79,8 +79,7 @@ struct RunReport {
     std::int64_t merged_bodies = 0;  ///< of these: whole bodies, which are no more
     std::int64_t split = 0;          ///< bodies that came, as parts were split off others
   } events;
-  std::int64_t drained = 0;                ///< particles that sinks took
-  std::vector<std::int64_t> sink_drained;  ///< of these, each sink, as the scene lists them
+  std::vector<std::int64_t> sink_drained;  ///< particles that each sink took, as the scene lists them
   std::vector<PastBody> past_bodies;       ///< in the order of frames
   /// Of volume iterations, where there are any: StepReport::mean_compression and largest_compression.
   struct Compression {
@@ -100,9 +99,12 @@ struct RunReport {
   StageTimes stage_seconds{};
   std::uint64_t state_hash = 0;
 
+  /// Particles that all sinks took.
+  std::int64_t drained() const;
   /// How far the run is, and how long that took, as a checkpoint keeps it.
   nlohmann::ordered_json progress() const;
-  /// The reverse. Throws nlohmann's exceptions.
+  /// The reverse; of `info` there is who had the slots, also those that are gone. Throws nlohmann's
+  /// exceptions.
   void set_progress(const nlohmann::ordered_json& progress);
   /// Takes in a step that has just been made, and what happened in it.
   void add(const StepReport& step, const Simulation& simulation);
@@ -122,14 +124,7 @@ std::string hash_text(std::uint64_t hash);
 nlohmann::ordered_json read_report(const std::filesystem::path& file);
 /// Whole or not at all.
 void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report);
-/// Bodies that the report of an earlier part of a run lists and that are gone since, to sinks, without
-/// particles: reports list all of a scene, in its order. Throws IoError that names `file`.
-void add_gone_bodies(const nlohmann::ordered_json& earlier, const std::filesystem::path& file,
-                     SimulationInfo& info);
-/// What later commands need of a report: h of each body [m]. Throws IoError where the report does not fit
-/// the scene.
-std::vector<float> body_spacings(const nlohmann::ordered_json& report, const std::filesystem::path& file);
-/// All that is known of the same. Throws IoError likewise.
+/// Who had the slots as the run ended. Throws IoError where the report does not tell.
 std::vector<SlotBody> slot_bodies(const nlohmann::ordered_json& report, const std::filesystem::path& file);
 /// RunReport::past_bodies; none in a report of an earlier version. Throws IoError likewise.
 std::vector<PastBody> past_bodies(const nlohmann::ordered_json& report, const std::filesystem::path& file);

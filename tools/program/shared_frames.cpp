@@ -138,6 +138,10 @@ void SharedFrames::Claim::done() const {
   lock_->write(frames_.note_of(frame_));
 }
 
+void SharedFrames::note(int frame) const {
+  std::ofstream(file_of(frame), std::ios::binary) << note_of(frame);
+}
+
 bool SharedFrames::is_done(int frame) const {
   const Files files = files_(frame);
   return std::ranges::all_of(files.written, [](const fs::path& file) { return fs::exists(file); }) &&

@@ -72,6 +72,9 @@ class SharedFrames {
 
   /// Null where another process works on it.
   std::shared_ptr<const Claim> try_claim(int frame) const;
+  /// Notes that a frame's files are there, as Claim::done() does: for who has the folder alone, which needs
+  /// no lock. Where the note cannot be written, the frame counts as left.
+  void note(int frame) const;
   /// By this job, from the files that are there now, which nobody has changed since.
   bool is_done(int frame) const;
   /// How many of them are not.

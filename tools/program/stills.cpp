@@ -11,11 +11,15 @@ namespace {
 /// How pictures are taken, with files where they are.
 RenderConfig of_scene(const Scene& scene) {
   RenderConfig config = scene.render;
-  if (!config.environment.empty()) config.environment = scene.file.parent_path() / config.environment;
+  if (!config.environment.empty()) config.environment = environment_file(scene);
   return config;
 }
 
 }  // namespace
+
+std::filesystem::path environment_file(const Scene& scene) {
+  return scene.file.parent_path() / scene.render.environment;
+}
 
 std::vector<Collider> colliders_at(const Scene& scene, double time) {
   std::vector<Collider> colliders = visible_colliders(scene);
@@ -26,7 +30,7 @@ std::vector<Collider> colliders_at(const Scene& scene, double time) {
 }
 
 void check_environment(const Scene& scene) {
-  if (!scene.render.environment.empty()) render::read_hdr(of_scene(scene).environment);
+  if (!scene.render.environment.empty()) render::read_hdr(environment_file(scene));
 }
 
 Stills::Stills(const Scene& scene, const FilmBounds& film, std::span<const float> spacings, int threads)

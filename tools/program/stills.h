@@ -14,6 +14,8 @@ namespace mallow::program {
 /// The colliders of a scene that are seen, where they are at a time [s].
 std::vector<Collider> colliders_at(const Scene& scene, double time);
 
+/// The light that the scene names, where it is.
+std::filesystem::path environment_file(const Scene& scene);
 /// Throws IoError where the light that the scene names cannot be read.
 void check_environment(const Scene& scene);
 
@@ -27,6 +29,7 @@ class Stills {
   Stills(const Scene& scene, const ParticleFrame& first, std::span<const float> spacings, int threads);
 
   const render::Camera& camera() const { return camera_; }
+  float ball_radius() const { return ball_radius_; }  ///< of particles without a surface [m]
 
   /// Simulated time from one frame to the next [s], of which the shutter is open for a share; 0 to begin
   /// with.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tradeoff/reference.h"
 #include "tradeoff/runner.h"
 #include "tradeoff/tables.h"
 
@@ -54,14 +55,17 @@ std::vector<std::string> passed_over(const Study& study, const Limit& limit, con
   return texts;
 }
 
-/// The budget that halves the steps until the reference is near enough, by the order that halvings had so far
-/// [s]; each takes as long as all before it.
-std::optional<double> budget_needed(const Study& study, double most, double kept) {
-  const Reference& reference = study.reference;
-  const double order = reference.order.value_or(0);
-  if (study.chaotic || reference.parts_again || order < k_least_order) return std::nullopt;
-  const double halvings = std::ceil(std::log2(study.reference_error() / most) / order);
-  return std::exp2(halvings + 1) * reference.seconds / (k_reference_share * (1 - kept));
+/// Halvings of the steps after which the reference is near enough, by the order that they had so far; nothing
+/// where that foretells nothing.
+std::optional<double> halvings_needed(const Study& study, double most) {
+  const double order = study.reference.order.value_or(0);
+  if (study.chaotic || order < k_least_order) return std::nullopt;
+  return std::ceil(std::log2(study.reference_error() / most) / order);
+}
+
+/// The budget for so many more [s]; each takes as long as all before it.
+double budget_needed(const Study& study, double halvings, double kept) {
+  return std::exp2(halvings + 1) * study.reference.seconds / (k_reference_share * (1 - kept));
 }
 
 /// What to do about a reference that is too far off itself.
@@ -69,12 +73,16 @@ std::string way_out(const Study& study, double most, double kept) {
   if (study.chaotic && study.last_bit_late && study.last_bit_late->shape() > most)
     return "; no budget brings it nearer, as the last bit of one position moves shapes by " +
            number(study.last_bit_late->shape()) + " h: ask for more than that, or judge less run.frames";
+  const std::optional<double> halvings = halvings_needed(study, most);
+  if (!would_go_on(study.reference, study.rows.front().setting.scene, halvings.value_or(1)))
+    return "; no budget brings it near enough, as its steps are halved no further than helps and than "
+           "solver.time_step_factor 0.01: ask for no less than that";
   const std::string or_give = ": ask for no less than that, or give ";
   // More budget would be spent on more frames first.
   const std::string frames =
       stretch(study).empty() ? "" : "--set run.frames=" + std::to_string(study.frames) + " and ";
-  const std::optional<double> needed = budget_needed(study, most, kept);
-  return or_give + frames + (needed ? "about " + budget_option(*needed) : "more by --budget");
+  return or_give + frames +
+         (halvings ? "about " + budget_option(budget_needed(study, *halvings, kept)) : "more by --budget");
 }
 
 /// Why an error cannot be judged by this study. kept: as in its options.

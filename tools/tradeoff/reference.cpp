@@ -10,8 +10,9 @@ namespace {
 /// The reference is converged where its last halving moved particles by less than this share of what the
 /// scene as it is is off.
 constexpr double k_little = 0.1;
+/// No solver.time_step_factor is halved to less.
+constexpr double k_shortest_factor = 0.01;
 constexpr double k_grown = 1.25;  ///< see parts_again()
-constexpr float k_shortest_factor = 0.01f;
 
 /// Whether the last halving moved particles farther than the one before, by more than chance.
 bool parts_again(const std::vector<double>& differences) {
@@ -26,6 +27,11 @@ double error_left(const Reference& reference) {
   // What is left of a geometric series; with no order known, as much as the last difference.
   const double ratio = reference.order && *reference.order > 0.2 ? std::exp2(*reference.order) : 2;
   return reference.differences.back() / (ratio - 1);
+}
+
+bool can_halve(double factor, const Scene& scene, double halvings) {
+  return std::exp2(-halvings) * factor * static_cast<double>(scene.solver.time_step_factor) >
+         k_shortest_factor;
 }
 
 }  // namespace
@@ -46,8 +52,7 @@ Reference find_reference(const ReferenceSearch& search, Runner& runner) {
   const double building = std::min(cost, before.other_seconds);  // of which shorter steps need no more
   reference.factors.push_back(1);
   reference.motion = before;
-  while (static_cast<float>(factor) * scene.solver.time_step_factor > 2 * k_shortest_factor &&
-         2 * cost - building < search.until - wall_clock()) {
+  while (can_halve(factor, scene, 1) && 2 * cost - building < search.until - wall_clock()) {
     factor /= 2;
     const double started = wall_clock();
     search.say("reference, steps of 1/" + std::to_string(static_cast<int>(1 / factor)));
@@ -65,12 +70,18 @@ Reference find_reference(const ReferenceSearch& search, Runner& runner) {
     reference.motion = motion;
     before = std::move(motion);
     const double off = motion_error(search.plain, reference.motion).rms;
-    reference.converged = reference.differences.back() < k_little * off;
+    reference.order = convergence_order(reference.differences);
+    reference.converged =
+        reference.differences.back() < k_little * off && error_left(reference) <= search.enough;
     if (reference.converged) break;
   }
   reference.order = convergence_order(reference.differences);
   reference.error = error_left(reference);
   return reference;
+}
+
+bool would_go_on(const Reference& reference, const Scene& scene, double halvings) {
+  return !reference.converged && !reference.parts_again && can_halve(reference.factor, scene, halvings);
 }
 
 }  // namespace mallow::tradeoff

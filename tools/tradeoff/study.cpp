@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "program/failure.h"
@@ -58,6 +59,7 @@ class Maker {
     study_.reference = find_reference({.scene = scene_,
                                        .plain = study_.rows.front().motion,
                                        .plain_cost = plain_cost_,
+                                       .enough = k_reference_part * most_error(),
                                        .until = start_ + k_reference_share * budget(),
                                        .end = end(),
                                        .say = [this](const std::string& what) { say(what); }},
@@ -72,6 +74,11 @@ class Maker {
   }
 
  private:
+  /// That a setting may have [h].
+  double most_error() const {
+    return options_.limit && !options_.limit->is_time ? options_.limit->most
+                                                      : std::numeric_limits<double>::infinity();
+  }
   double budget() const { return options_.budget * (1 - options_.kept); }
   double end() const { return start_ + budget(); }
   double left(double share = 1) const { return share * budget() - (wall_clock() - start_); }

@@ -15,6 +15,7 @@ namespace mallow::tradeoff {
 /// Share of the moments that late errors pass over: they are of the last quarter.
 constexpr double k_late = 0.75;
 constexpr double k_reference_share = 0.5;  ///< of the budget, that the search for a reference may take
+constexpr double k_reference_part = 0.5;   ///< of the error that is allowed, that the reference may have
 
 /// What a setting has to hold.
 struct Limit {

@@ -37,10 +37,10 @@ namespace mallow::view {
 ///   rung K               a place between accurate (0) and realtime
 ///   preset NAME          a material of data/materials in place of the first one
 ///   message              prints what the window says; copied: what the clipboard holds
-///   bars                 prints where the lower one ends, how high it is, and how many plots the upper one
-///   has hand                 from here on the window waits and draws as for a hand, where something has
-///   changed film                 prints how many pictures a film has so far, and of which frames of the
-///   scene joined               until films are written
+///   bars                 prints the end and height of the lower one, and how many plots the upper one has
+///   hand                 from here on the window draws as for a hand, where something has changed
+///   film                 prints how many pictures a film has so far, and of which frames of the scene
+///   joined               until films are written
 class Script {
  public:
   explicit Script(const std::filesystem::path& file);

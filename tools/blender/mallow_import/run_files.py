@@ -134,29 +134,43 @@ class Run:
         report = os.path.join(self.folder, "report.json")
         try:
             self.report = json.loads(read_bytes(report))
-            groups = [(str(g["name"]), str(g["material"]), g.get("color")) for g in self.report["groups"]]
-            self.spacings = [g.get("spacing") for g in self.report["groups"]]
-        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+            groups = list(self.report["groups"])
+            # Whose slot another body has by now: numbers from the end, which stay when more follow.
+            self.past = [(int(p["slot"]), int(p["until"])) for p in self.report.get("past_bodies", [])]
+            bodies = dict(enumerate(groups)) | {-1 - k: p for k, p in enumerate(self.report.get("past_bodies", []))}
+            self.names = {b: str(g["name"]) for b, g in bodies.items()}
+            self.spacings = {b: g.get("spacing") for b, g in bodies.items()}
+            looks = {b: (str(g["material"]), g.get("color")) for b, g in bodies.items()}
+        except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
             raise ImportFailure(f"{report}: is not the report of a run") from error
         self.scene = read_scene(os.path.join(self.folder, "scene.toml"))
         if not self.frames():
             raise ImportFailure(f"{self.folder}: has no surfaces; `mallow surface {self.folder}` draws them")
         materials = {m.get("name"): m for m in self.scene.get("material", [])}
-        self.names = [name for name, _, _ in groups]
-        self.looks = []
-        for _, name, color in groups:
+        self.looks = {}
+        for body, (name, color) in looks.items():
             material = materials.get(name, {})
-            if not is_color(color):  # reports of earlier versions have none
-                color = material.get("color")
+            if not is_color(color):  # past bodies and reports of earlier versions have none
+                color = material.get("color", next((c for m, c in looks.values() if m == name and is_color(c)), None))
             finish = material.get("finish")
-            self.looks.append((tuple(color) if is_color(color) else (0.8, 0.8, 0.8),
-                               finish if isinstance(finish, str) else "jelly"))
+            self.looks[body] = (tuple(color) if is_color(color) else (0.8, 0.8, 0.8),
+                                finish if isinstance(finish, str) else "jelly")
         self._textures = {}
         self.skins = {}  # files, of each body that has some
+        numbers = {name: body for body, name in self.names.items()}
         for b, body in enumerate(self.scene.get("body", [])):
             name = body.get("group") or f"body[{b}]"
-            if isinstance(body.get("skin"), str) and body["skin"] and name in self.names:
-                self.skins.setdefault(self.names.index(name), []).append(body["skin"])
+            if isinstance(body.get("skin"), str) and body["skin"] and name in numbers:
+                self.skins.setdefault(numbers[name], []).append(body["skin"])
+
+    def bodies_at(self, frame, slots):
+        """Slots of a frame as numbers of the bodies that had them then."""
+        bodies = slots.copy()
+        for k in reversed(range(len(self.past))):  # the first that ended later
+            slot, until = self.past[k]
+            if frame < until:
+                bodies[slots == slot] = -1 - k
+        return bodies
 
     def surface_file(self, frame):
         return os.path.join(self.folder, "surface", f"frame_{frame:06d}.ply")

@@ -61,7 +61,7 @@ def show(run, objects, frame):
     if all(o.data.get(FRAME) == number for o in objects):
         return
     places, triangles, bodies, velocities = read_ply(run.surface_file(number))
-    owners = bodies_of_triangles(triangles, bodies)
+    owners = run.bodies_at(number, bodies_of_triangles(triangles, bodies))
     for o in objects:
         own = triangles[owners == o[BODY]]
         used = np.zeros(len(places), bool)
@@ -136,7 +136,7 @@ def import_run(folder, set_scene=True):
         collection[FOLDER] = run.folder
         bpy.context.scene.collection.children.link(collection)
     objects = []
-    for body, name in enumerate(run.names):
+    for body, name in run.names.items():
         o = known.pop(body, None)
         if o is None:
             o = bpy.data.objects.new(name, bpy.data.meshes.new(name))
