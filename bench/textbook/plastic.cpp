@@ -45,6 +45,22 @@ bool any_part_ways(const Group& group, const std::vector<Particle>& particles, d
   return found;
 }
 
+/// Of all regions as they are turned and stretched, by unit stiffness.
+double strain_energy(const Group& group, const std::vector<Particle>& particles) {
+  double energy = 0;
+  for (const std::size_t id : group.members) {
+    const Region& region = particles[id].region;
+    Vec center = Vec::Zero();
+    for (const std::size_t i : region.particles) center += particles[i].weight * particles[i].position;
+    center /= region.weight;
+    for (const std::size_t i : region.particles) {
+      const Vec arm = region.rotation * region.stretch * (particles[i].reference - region.reference_center);
+      energy += 0.5 * particles[i].weight * (center + arm - particles[i].position).squaredNorm();
+    }
+  }
+  return energy;
+}
+
 }  // namespace
 
 void flow(const Group& group, double time_step, std::vector<Particle>& particles) {
@@ -106,9 +122,16 @@ bool reframe(const Group& group, bool waits, std::vector<Particle>& particles) {
     stretches.back() = axes * clipped.cwiseInverse().asDiagonal() * axes.transpose();
   }
   if (waits && 2 * strained > stretches.size()) return false;
+  const double before = strain_energy(group, particles);
   take_reference(group, particles);
   for (std::size_t k = 0; k < stretches.size(); ++k)
     particles[group.members[k]].region.stretch = stretches[k];
+  const double after = strain_energy(group, particles),
+               share = after > before ? std::sqrt(before / after) : 1;
+  for (const std::size_t id : group.members) {
+    Matrix& stretch = particles[id].region.stretch;
+    stretch = share * stretch + (1 - share) * Matrix::Identity();
+  }
   return true;
 }
 

@@ -16,8 +16,8 @@ bool reframe_is_due(const Group& group, const std::vector<Particle>& particles);
 bool is_torn(const Group& group, double least_flow, const std::vector<Particle>& particles);
 /// Whether half of it has flowed so far that this waits for no check.
 bool has_flowed_too_far(const Group& group, const std::vector<Particle>& particles);
-/// Takes them, and leaves the elastic strain that regions have. Where `waits`, not if a blow strains half of
-/// them; returns whether it did.
+/// Takes them, and leaves the elastic strain that regions have, but for what would add to its energy. Where
+/// `waits`, not if a blow strains half of them; returns whether it did.
 bool reframe(const Group& group, bool waits, std::vector<Particle>& particles);
 
 }  // namespace mallow::textbook

@@ -155,12 +155,21 @@ void reset_stretches(ShapeMatching& shape) {
   std::ranges::fill(columns.flow.span(), 0.0f);
 }
 
-Eigen::Matrix3d stretched_moment(const ShapeMatching& shape, std::size_t region) {
+namespace {
+
+/// B of a region.
+Eigen::Matrix3d moment_of(const ShapeMatching& shape, std::size_t region) {
   const auto b = [&](std::size_t k) { return static_cast<double>(shape.moment[k][region]); };
   Eigen::Matrix3d moment;
   moment << b(0), b(5), b(4), b(5), b(1), b(3), b(4), b(3), b(2);
+  return moment;
+}
+
+}  // namespace
+
+Eigen::Matrix3d stretched_moment(const ShapeMatching& shape, std::size_t region) {
   const Eigen::Matrix3d stretch = carried_stretch(shape.plastic, region).stretch.cast<double>();
-  return stretch * moment * stretch.transpose();
+  return stretch * moment_of(shape, region) * stretch.transpose();
 }
 
 bool is_thin(const Eigen::Matrix3d& moment) {
@@ -170,13 +179,14 @@ bool is_thin(const Eigen::Matrix3d& moment) {
 
 ReframedRegion reframed_region(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
                                const Eigen::Matrix3d& moment) {
-  if (is_thin(moment)) return {};
+  const double fit = moment.trace() - 2 * rotation.cwiseProduct(m).sum();
+  if (is_thin(moment)) return {.fit = fit};
   const Eigen::Matrix3d f = rotation.transpose() * m * moment.inverse();
   const Eigen::Matrix3d e = 0.5 * (f + f.transpose());
   const auto strain_of = [&](double size) { return (e / size - Eigen::Matrix3d::Identity()).norm(); };
   if (survives_whole(e)) {
     const Eigen::Matrix3d stretch = rotation * e.inverse() * rotation.transpose();
-    return {stretch.cast<float>(), strain_of(bounded_size(e.determinant()))};
+    return {stretch.cast<float>(), strain_of(bounded_size(e.determinant())), fit};
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(e);
   const Eigen::Vector3d& found = solver.eigenvalues();
@@ -184,8 +194,25 @@ ReframedRegion reframed_region(const Eigen::Matrix3d& m, const Eigen::Matrix3d& 
   const Eigen::Vector3d strain = size * (found / size).cwiseMax(k_least_strain).cwiseMin(k_most_strain);
   const Eigen::Matrix3d axes = rotation * solver.eigenvectors();
   const Eigen::Matrix3d stretch = axes * strain.cwiseInverse().asDiagonal() * axes.transpose();
-  if (!stretch.allFinite()) return {};
-  return {stretch.cast<float>(), strain_of(size)};
+  if (!stretch.allFinite()) return {.fit = fit};
+  return {stretch.cast<float>(), strain_of(size), fit};
+}
+
+void bound_strain(double energy, ShapeMatching& shape) {
+  const std::size_t regions = shape.region_weight.size();
+  double sum = 0;
+  for (std::size_t j = 0; j < regions; ++j) {
+    const Eigen::Matrix3d stretch = carried_stretch(shape.plastic, j).stretch.cast<double>();
+    const Eigen::Matrix3d away = stretch - Eigen::Matrix3d::Identity();
+    sum += 0.5 * (away * moment_of(shape, j) * away.transpose()).trace();
+  }
+  if (!(sum > energy)) return;
+  const float share = static_cast<float>(std::sqrt(energy / sum));
+  for (std::size_t j = 0; j < regions; ++j) {
+    CarriedStretch carried = carried_stretch(shape.plastic, j);
+    carried.stretch = share * carried.stretch + (1 - share) * Eigen::Matrix3f::Identity();
+    set_stretch(carried, j, shape.plastic);
+  }
 }
 
 void list_flowed(float least, const ShapeMatching& shape, Column<std::uint32_t>& which) {

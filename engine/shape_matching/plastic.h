@@ -11,7 +11,8 @@
 #include "neighbors/neighbor_lists.h"
 
 /// Yield and creep where the strain is: every region has a plastic stretch of its own. [model 2, section 5;
-/// Mueller 2005, kept local] What flows in a step is in plastic_lanes.h; this is what is seldom done.
+/// Mueller 2005, kept local] What flows in a step is in plastic_lanes.h; this is what is seldom done. Departs
+/// from the model's print: a new frame adds no energy, see bound_strain().
 namespace mallow {
 
 struct ShapeMatching;
@@ -62,10 +63,15 @@ struct ReframedRegion {
   /// and 1.25. I where the region is thin.
   Eigen::Matrix3f stretch = Eigen::Matrix3f::Identity();
   double strain = 0;  ///< |Ê − I|, 0 where it is thin
+  double fit = 0;     ///< tr P − 2 tr(Rᵀ M): with Σ w |x − c|² it is Σ w |x − goal|² [m²]
 };
 /// m: M of plastic_lanes.h, moment: S B Sᵀ.
 ReframedRegion reframed_region(const Eigen::Matrix3d& m, const Eigen::Matrix3d& rotation,
                                const Eigen::Matrix3d& moment);
+/// Brings all S as much nearer to I as leaves regions that have just got their frame no more than this
+/// energy, ½ Σ w |x − goal|² of all [m²]: what was crushed has more particles, and farther off, in new
+/// regions, which by the same strain would pull harder.
+void bound_strain(double energy, ShapeMatching& shape);
 /// What gives a body a new frame, see Material.
 struct FrameLimits {
   float merge_flow = 0, tear_strain = 0;

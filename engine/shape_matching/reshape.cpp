@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "core/bounds.h"
 #include "neighbors/neighbor_lists.h"
+#include "shape_matching/list_sums.h"
 
 namespace mallow {
 namespace {
@@ -190,6 +192,24 @@ class RestBeside {
   std::vector<std::uint32_t> left_;  ///< sorted places of those that are not in place yet
 };
 
+/// ½ Σ w |x − goal|² of all regions [m²].
+double energy_of(const std::vector<ReframedRegion>& regions, const VectorColumn& positions, std::size_t begin,
+                 const ShapeMatching& shape) {
+  std::vector<Numbers<8>> rows(shape.reference.size(), Numbers<8>::Zero());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Eigen::Vector3d x = (positions.get(begin + i) - positions.get(begin)).cast<double>();
+    const double w = static_cast<double>(shape.weight[i]);
+    rows[i].head<5>() << w, w * x.x(), w * x.y(), w * x.z(), w * x.squaredNorm();
+  }
+  const std::vector<Numbers<8>> sums = sum_lists<8>(shape.regions, std::move(rows));
+  double energy = 0;
+  for (std::size_t j = 0; j < sums.size(); ++j) {
+    const double moment = sums[j][4] - sums[j].segment<3>(1).square().sum() / sums[j][0];
+    energy += 0.5 * std::max(0.0, moment + regions[j].fit);
+  }
+  return energy;
+}
+
 }  // namespace
 
 CarriedRegions carry_regions(const ShapeMatching& shape) {
@@ -223,6 +243,7 @@ ReframedShape reframe_regions(const VectorColumn& positions, std::size_t begin, 
   std::ranges::fill(carried.rotations, Eigen::Vector4f(0, 0, 0, 1));
   for (std::size_t i = 0; i < carried.stretches.size(); ++i)
     carried.stretches[i] = {.stretch = reframed[shape.first_region(i)].stretch};
+  carried.energy = energy_of(reframed, positions, begin, shape);
   forget_lists(carried);
   return {std::move(carried), is_strained_by_a_blow(reframed, yield, shape)};
 }
@@ -232,6 +253,7 @@ void append_carried(const CarriedRegions& behind, CarriedRegions& carried) {
   append(behind.rotations, carried.rotations);
   append(behind.stretches, carried.stretches);
   carried.former.resize(carried.rotations.size(), FormerLists::k_none);
+  carried.energy += behind.energy;
   forget_lists(carried);
 }
 
@@ -268,6 +290,7 @@ void build_carried(const CarriedRegions& carried, const Execution& execution, Re
       shape.rotation[k][j] = carried.rotations[row][static_cast<Eigen::Index>(k)];
     if (shape.flows && !carried.stretches.empty()) set_stretch(carried.stretches[row], j, shape.plastic);
   }
+  if (std::isfinite(carried.energy)) bound_strain(carried.energy, shape);
 }
 
 void erase_from_reference(std::span<const std::uint32_t> places, CarriedRegions& carried,

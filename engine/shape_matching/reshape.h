@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct CarriedRegions {
   std::vector<std::uint32_t> former;       ///< its row when regions were built; of what came k_none
   std::size_t former_rows = 0;             ///< that there were then
   Aabb news;                               ///< in the reference shape, around what came
+  /// Of strain, that their new regions may have at the most [m²], see bound_strain().
+  double energy = std::numeric_limits<double>::infinity();
 };
 
 /// Those of a shape that is built.

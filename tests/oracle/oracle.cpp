@@ -746,7 +746,29 @@ bool Oracle::has_flowed_too_far(std::size_t group) const {
   return 2 * far > all;
 }
 
-// Elastic strain stays; all else is as after an update. None where it waits for a blow to end.
+/// Of all regions as they are turned and stretched, by unit stiffness.
+double Oracle::strain_energy(std::size_t group) const {
+  double energy = 0;
+  for (const Particle& j : particles_) {
+    if (j.group != group) continue;
+    double w = 0;
+    Vec c = Vec::Zero(), c_ref = Vec::Zero();
+    const auto weight = [&](std::size_t i) { return 1 / static_cast<double>(particles_[i].region.size()); };
+    for (const std::size_t i : j.region) {
+      w += weight(i);
+      c += weight(i) * particles_[i].x;
+      c_ref += weight(i) * particles_[i].reference;
+    }
+    for (const std::size_t i : j.region) {
+      const Vec goal = j.rotation * j.stretch * (particles_[i].reference - c_ref / w) + c / w;
+      energy += 0.5 * weight(i) * (goal - particles_[i].x).squaredNorm();
+    }
+  }
+  return energy;
+}
+
+// Elastic strain stays, but for what would add to its energy; all else is as after an update. None where it
+// waits for a blow to end.
 bool Oracle::reframe(std::size_t group, bool waits) {
   match_shapes(false);
   int all = 0, strained = 0;
@@ -764,9 +786,13 @@ bool Oracle::reframe(std::size_t group, bool waits) {
     stretches.back() = axes * clipped.cwiseInverse().asDiagonal() * axes.transpose();
   }
   if (waits && 2 * strained > all) return false;
+  const double before = strain_energy(group);
   rebuild_regions(group);
   for (std::size_t i = 0; i < particles_.size(); ++i)
     if (particles_[i].group == group) particles_[i].stretch = stretches[i];
+  const double after = strain_energy(group), share = after > before ? std::sqrt(before / after) : 1;
+  for (Particle& i : particles_)
+    if (i.group == group) i.stretch = share * i.stretch + (1 - share) * Matrix::Identity();
   return true;
 }
 

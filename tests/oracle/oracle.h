@@ -186,6 +186,7 @@ class Oracle {
   bool reframe_is_due(std::size_t group) const;
   bool is_torn(std::size_t group) const;
   bool has_flowed_too_far(std::size_t group) const;
+  double strain_energy(std::size_t group) const;
   bool reframe(std::size_t group, bool waits);
   void list_regions(std::size_t group);
   void rest_anew(std::size_t group, double mean);
