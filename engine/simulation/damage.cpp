@@ -1,11 +1,14 @@
 #include "simulation/damage.h"
 
 #include <cmath>
+#include <string_view>
 
 #include "simulation/state.h"
 
 namespace mallow {
 namespace {
+
+constexpr const char* k_by_force = "acceleration by the force callback";
 
 /// Looks through one column after the other and keeps what it finds first in the earliest phase.
 class Search {
@@ -99,7 +102,7 @@ std::optional<Damage> find_damage(const Simulation::State& state, Phase last) {
   Search search(last);
   if (state.density_ran) search_sph(state, search);
   if (state.force)
-    search.column(Phase::time_step, "acceleration by the force callback", state.user_acceleration, same_row);
+    search.column(Phase::time_step, k_by_force, state.user_acceleration, same_row);
   for (const BodyState& body : state.bodies)
     if (body.matches_shape()) search_goals(body, search);
   return search.found();
@@ -116,8 +119,12 @@ namespace {
 
 [[noreturn]] void refuse(const Simulation::State& state, const Damage& damage) {
   std::ostringstream text = describe_particle(state, damage.row);
-  text << "has a number that is not finite: " << damage.column << ", of phase " << name(damage.phase)
-       << "; lower solver.time_step (now " << state.base_step() << ") or material.pressure_coefficient";
+  text << "has a number that is not finite: " << damage.column << ", of phase " << name(damage.phase);
+  if (std::string_view(damage.column) == k_by_force)
+    text << "; look at what the callback adds there";
+  else
+    text << "; lower solver.time_step (now " << state.base_step() << ") or material.pressure_coefficient"
+         << (state.force ? ", or look at what the force callback adds" : "");
   throw StepError(text.str(), state.store.id[damage.row], damage.phase);
 }
 

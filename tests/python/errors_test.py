@@ -52,6 +52,12 @@ class Exceptions(unittest.TestCase):
         self.assertIsInstance(caught.exception.particle_id, int)
         self.assertEqual(simulation.state_hash(), before)
 
+    def test_a_force_callback_that_returns_what_it_should_add(self):
+        simulation = cube()
+        simulation.set_force(lambda particles, accelerations: accelerations + 1)
+        with self.assertRaisesRegex(TypeError, "adds to the accelerations in place"):
+            simulation.step()
+
     def test_objects_that_nobody_constructed(self):
         refused = 0
         for kind in vars(mallow).values():

@@ -17,7 +17,7 @@ def resident():
 def make_and_drop():
     scene = mallow.parse_scene(SCENE)
     simulation = mallow.build(scene, threads=1)
-    simulation.set_force(lambda particles, accelerations: simulation.time)
+    simulation.set_force(lambda particles, accelerations: accelerations.fill(simulation.time))
     simulation.step()
     views = simulation.positions, simulation.ids
     surfacer = mallow.Surfacer(scene.surface, 1)

@@ -135,7 +135,7 @@ class Forces(unittest.TestCase):
     def test_a_callback_that_holds_its_simulation_is_collected(self):
         simulation = cube()
         held = weakref.ref(simulation)
-        simulation.set_force(lambda particles, accelerations: simulation.time)
+        simulation.set_force(lambda particles, accelerations: accelerations.fill(simulation.time))
         simulation.step()
         del simulation
         gc.collect()
