@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <utility>
 
 #include "colliders/pose.h"
@@ -18,6 +20,47 @@ using RowMajor = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>;
 
 /// Distances here and those in lanes are rounded differently, by a few 1e-7 of the coordinates.
 constexpr float k_rounding = 1e-5f;
+
+/// Turns in a step after which all is swept that ever is. What turns farther is met as if it turned by one
+/// more than what is left of its whole turns, which ends in the same pose.
+constexpr double k_most_turns = 2;
+
+/// No point of the collider is farther from its origin. Of what keeps particles in, all is the collider.
+float farthest_point(const Collider& collider) {
+  float farthest = 0;
+  visit_parts(collider, [&]<class Shape>(const Shape& shape) {
+    const Aabb box = bounds(shape);
+    farthest = std::max(farthest, ShapeTraits<Shape>::keeps_in(shape)
+                                      ? std::numeric_limits<float>::infinity()
+                                      : box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm());
+  });
+  return farthest;
+}
+
+void cut_turn(const Collider& collider, double seconds, const Eigen::Vector3d& stands,
+              const Eigen::Matrix3d& rotation, PlacedCollider& placed) {
+  placed.pieces.clear();
+  const Eigen::Vector3d spin = collider.angular_velocity.cast<double>();
+  const double rate = spin.norm(), whole = seconds * rate, round = 2 * std::numbers::pi;
+  if (!(whole > k_most_turn)) return;
+  const double angle = whole > k_most_turns * round ? round + std::fmod(whole, round) : whole;
+  const double count = std::ceil(angle / k_most_turn);
+  placed.pieces.resize(static_cast<std::size_t>(count));
+  placed.radius = farthest_point(collider);
+  Eigen::Map<RowMajor>(placed.piece_spin) =
+      mean_spin((angle / whole * spin).cast<float>(), seconds / count).cast<float>();
+  const auto turned_by = [&](double share) -> Eigen::Matrix3f {
+    return (Eigen::AngleAxisd(share * angle, spin / rate).toRotationMatrix() * rotation).cast<float>();
+  };
+  for (std::size_t k = 0; k < placed.pieces.size(); ++k) {
+    PlacedCollider::Piece& piece = placed.pieces[k];
+    const double begin = static_cast<double>(k) / count, end = static_cast<double>(k + 1) / count;
+    Eigen::Map<Vec3>(piece.translation) =
+        (stands + begin * seconds * collider.velocity.cast<double>()).cast<float>();
+    Eigen::Map<RowMajor>(piece.rotation) = turned_by(begin);
+    Eigen::Map<RowMajor>(piece.turned) = turned_by(end);
+  }
+}
 
 void place(const Collider& collider, const Vec3& origin, float time_step, InstructionLevel level,
            PlacedCollider& placed) {
@@ -37,6 +80,7 @@ void place(const Collider& collider, const Vec3& origin, float time_step, Instru
   Eigen::Map<RowMajor>(surface.turned) = (rotation + seconds * spin * rotation).cast<float>();
   Eigen::Map<RowMajor>(surface.spin) = spin.cast<float>();
   placed.measures_load = collider.measure_load;
+  cut_turn(collider, seconds, stands, rotation, placed);
 
   const Eigen::Vector3d by = surface.turns ? Eigen::Vector3d(0, 0, 0) : stands;
   placed.parts.clear();
@@ -88,6 +132,22 @@ std::size_t find_near_rows(const PlacedCollider::Part& part, const ContactSurfac
   return count;
 }
 
+/// What a particle at x gives whose velocity goes from `free` to v.
+void add_load(const Vec3& free, const Vec3& v, const Vec3& x, const ContactSurface& surface,
+              ColliderLoad& load) {
+  const Eigen::Vector3d given = free.cast<double>() - v.cast<double>();
+  load.impulse += given;
+  load.torque += (x.cast<double>() - Vec3(surface.translation).cast<double>()).cross(given);
+}
+
+void add_touched(const Vec3& free, const Vec3& v, const ContactBlock& block, std::size_t row,
+                 ContactSums& touched) {
+  const Vec3 got = v - free;
+  if (!got.isZero(0))
+    touched.add(got.cast<double>(), block.position.get(row).cast<double>(),
+                block.before.get(row).cast<double>());
+}
+
 /// A block that meets the parts of a collider one after the other. A part may throw it at the next one, so
 /// that the rows in reach are found for each.
 class BlockMeeting {
@@ -120,30 +180,21 @@ class BlockMeeting {
     if (load_ || touched_) remember(count);
     part.lanes->resolve(part.numbers, surface_, step_, raw(block_.position), raw(block_.before), rows_.data(),
                         count, raw(velocity_), block_.bounds.squared_speed);
-    if (load_) add_load(count);
-    if (touched_) add_touched(count);
+    if (load_) add_loads(count);
+    if (touched_) add_touches(count);
   }
 
  private:
   void remember(std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) free_[k] = velocity_.get(rows_[k]);
   }
-  void add_load(std::size_t count) {
-    const Eigen::Vector3d c = Vec3(surface_.translation).cast<double>();
-    for (std::size_t k = 0; k < count; ++k) {
-      const Eigen::Vector3d given = free_[k].cast<double>() - velocity_.get(rows_[k]).cast<double>();
-      load_->impulse += given;
-      load_->torque += (block_.position.get(rows_[k]).cast<double>() - c).cross(given);
-    }
+  void add_loads(std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k)
+      add_load(free_[k], velocity_.get(rows_[k]), block_.position.get(rows_[k]), surface_, *load_);
   }
-  void add_touched(std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::uint32_t row = rows_[k];
-      const Vec3 got = velocity_.get(row) - free_[k];
-      if (!got.isZero(0))
-        touched_->add(got.cast<double>(), block_.position.get(row).cast<double>(),
-                      block_.before.get(row).cast<double>());
-    }
+  void add_touches(std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k)
+      add_touched(free_[k], velocity_.get(rows_[k]), block_, rows_[k], *touched_);
   }
 
   ContactBlock& block_;
@@ -157,6 +208,146 @@ class BlockMeeting {
   float largest_;
   BlockRows rows_;
   std::array<Vec3, k_block> free_;
+};
+
+/// A block that meets a collider which turns far in the step, piece by piece of its turn. Rows go along as
+/// the pieces leave them; here they count from 0.
+class TurnMeeting {
+ public:
+  TurnMeeting(ContactBlock& block, const PlacedCollider& collider, const ContactStep& step,
+              VectorColumn& velocity, ColliderLoad* load, ContactSums* touched)
+      : block_(block),
+        collider_(collider),
+        surface_(collider.surface),
+        step_(step),
+        velocity_(velocity),
+        load_(collider.measures_load ? load : nullptr),
+        touched_(touched),
+        count_(block.end - block.begin),
+        share_(1 / static_cast<float>(collider.pieces.size())) {
+    std::copy_n(collider.piece_spin, 9, surface_.spin);
+    piece_step_.time_step = share_ * step.time_step;
+    for (std::size_t i = block.begin; i < block.end; ++i)
+      fastest_ = std::max(fastest_, block.before.get(i).squaredNorm());
+  }
+
+  void meet() {
+    if (is_far()) return;
+    take_rows();
+    for (std::size_t k = 0; k < collider_.pieces.size(); ++k) {
+      const PlacedCollider::Piece& piece = collider_.pieces[k];
+      std::copy_n(piece.translation, 3, surface_.translation);
+      std::copy_n(piece.rotation, 9, surface_.rotation);
+      std::copy_n(piece.turned, 9, surface_.turned);
+      kick(k);
+      for (const PlacedCollider::Part& part : collider_.parts) meet(part);
+      go_on();
+    }
+    give_means();
+    block_.bounds.squared_speed = std::max(block_.bounds.squared_speed, fastest_);
+  }
+
+ private:
+  using Vectors3 = std::array<std::array<float, k_block>, 3>;
+  static Vectors raw(Vectors3& v) { return {v[0].data(), v[1].data(), v[2].data()}; }
+  static ConstVectors raw_const(const Vectors3& v) { return {v[0].data(), v[1].data(), v[2].data()}; }
+
+  /// What is not a number is not far.
+  bool is_far() const {
+    const Vec3 min(block_.bounds.min), max(block_.bounds.max), c(collider_.surface.translation);
+    const float gap = (min - c).cwiseMax(c - max).cwiseMax(0.0f).norm();
+    const float reach =
+        step_.contact_offset + step_.time_step * (std::sqrt(fastest_) + Vec3(surface_.velocity).norm());
+    return gap > (collider_.radius + reach) * (1 + k_rounding) +
+                     k_rounding * (min.cwiseAbs().cwiseMax(max.cwiseAbs()).norm() + c.norm());
+  }
+
+  void take_rows() {
+    const auto take = [&](const ConstVectors& from, Vectors3& to) {
+      std::copy_n(from.x + block_.begin, count_, to[0].data());
+      std::copy_n(from.y + block_.begin, count_, to[1].data());
+      std::copy_n(from.z + block_.begin, count_, to[2].data());
+    };
+    take(mallow::raw(block_.position), x_);
+    take(mallow::raw(block_.before), before_);
+    take(mallow::raw(std::as_const(velocity_)), free_);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t i = 0; i < count_; ++i) kick_[a][i] = share_ * (free_[a][i] - before_[a][i]);
+    for (auto& sum : sum_) sum.fill(0);
+    is_met_.fill(0);
+  }
+
+  /// What accelerates rows acts in each piece by its share, or friction of the first had all that presses
+  /// them on. Those that nothing has met are where their step takes them.
+  void kick(std::size_t piece) {
+    const auto left = static_cast<float>(collider_.pieces.size() - 1 - piece);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t i = 0; i < count_; ++i)
+        v_[a][i] = is_met_[i] != 0 ? v_[a][i] + kick_[a][i] : free_[a][i] - left * kick_[a][i];
+    for (std::size_t i = 0; i < count_; ++i) fastest_ = std::max(fastest_, velocity_of(i).squaredNorm());
+  }
+
+  void meet(const PlacedCollider::Part& part) {
+    // Rows have left the bounds of the block by no more than their way.
+    const float way = step_.time_step * std::sqrt(fastest_);
+    const float speed =
+        most_speed(block_.bounds, surface_) + Eigen::Map<const RowMajor>(surface_.spin).norm() * way;
+    const float reach = step_.contact_offset + way + piece_step_.time_step * (std::sqrt(fastest_) + speed);
+    const Bounds seen = seen_bounds(block_.bounds, surface_);
+    float largest = seen.largest() + Vec3(surface_.translation).norm();
+    for (const float number : part.numbers.at) largest = std::max(largest, std::abs(number));
+    const float slack = k_rounding * (largest + reach);
+    if (part.lanes->least_distance(part.numbers, seen.min.data(), seen.max.data()) > reach + slack) return;
+    const std::size_t near =
+        find_near_rows(part, surface_, piece_step_, raw_const(x_), raw_const(v_), slack, 0, count_,
+                       block_.pin ? block_.pin + block_.begin : nullptr, rows_);
+    for (std::size_t k = 0; k < near; ++k) came_[k] = velocity_of(rows_[k]);
+    part.lanes->resolve(part.numbers, surface_, piece_step_, raw_const(x_), raw_const(before_), rows_.data(),
+                        near, raw(v_), fastest_);
+    for (std::size_t k = 0; k < near; ++k) is_met_[rows_[k]] |= velocity_of(rows_[k]) != came_[k];
+  }
+
+  /// To the end of the piece. Who was met came with what that made of it, to the next.
+  void go_on() {
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t i = 0; i < count_; ++i) {
+        const float went = is_met_[i] != 0 ? v_[a][i] : free_[a][i];
+        x_[a][i] += piece_step_.time_step * went;
+        sum_[a][i] += went;
+        before_[a][i] = is_met_[i] != 0 ? went : before_[a][i];
+      }
+  }
+
+  void give_means() {
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (is_met_[i] == 0) continue;
+      const std::size_t row = block_.begin + i;
+      const Vec3 v = share_ * Vec3(sum_[0][i], sum_[1][i], sum_[2][i]), free = velocity_.get(row);
+      velocity_.set(row, v);
+      if (load_) add_load(free, v, block_.position.get(row), collider_.surface, *load_);
+      if (touched_) add_touched(free, v, block_, row, *touched_);
+    }
+  }
+
+  Vec3 velocity_of(std::size_t i) const { return {v_[0][i], v_[1][i], v_[2][i]}; }
+
+  ContactBlock& block_;
+  const PlacedCollider& collider_;
+  ContactSurface surface_;
+  const ContactStep& step_;
+  ContactStep piece_step_ = step_;
+  VectorColumn& velocity_;
+  ColliderLoad* const load_;
+  ContactSums* const touched_;
+  const std::size_t count_;
+  const float share_;
+  float fastest_ = block_.bounds.squared_speed;  ///< no |v|² in any piece so far is more
+  /// Of the rows: where they are, v^t or how they left the piece before, v as the step has it, its share of
+  /// what accelerates them, v in the piece, and the sum of those.
+  Vectors3 x_, before_, free_, kick_, v_, sum_;
+  std::array<std::uint8_t, k_block> is_met_;
+  BlockRows rows_;
+  std::array<Vec3, k_block> came_;
 };
 
 }  // namespace
@@ -177,9 +368,14 @@ void resolve_contacts(const ContactBlock& rows, std::span<const PlacedCollider> 
                       std::span<ContactSums> touches) {
   ContactBlock block = rows;
   for (std::size_t k = 0; k < colliders.size(); ++k) {
-    BlockMeeting meeting(block, colliders[k], step, velocity, loads.empty() ? nullptr : &loads[k],
-                         touches.empty() ? nullptr : &touches[k]);
-    for (const PlacedCollider::Part& part : colliders[k].parts) meeting.meet(part);
+    ColliderLoad* const load = loads.empty() ? nullptr : &loads[k];
+    ContactSums* const touched = touches.empty() ? nullptr : &touches[k];
+    if (colliders[k].pieces.empty()) {
+      BlockMeeting meeting(block, colliders[k], step, velocity, load, touched);
+      for (const PlacedCollider::Part& part : colliders[k].parts) meeting.meet(part);
+    } else {
+      TurnMeeting(block, colliders[k], step, velocity, load, touched).meet();
+    }
   }
 }
 
