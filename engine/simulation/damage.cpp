@@ -101,8 +101,7 @@ std::optional<Damage> find_damage(const Simulation::State& state, Phase last) {
   if (const std::optional<Damage> found = search_state(state)) return found;
   Search search(last);
   if (state.density_ran) search_sph(state, search);
-  if (state.force)
-    search.column(Phase::time_step, k_by_force, state.user_acceleration, same_row);
+  if (state.force) search.column(Phase::time_step, k_by_force, state.user_acceleration, same_row);
   for (const BodyState& body : state.bodies)
     if (body.matches_shape()) search_goals(body, search);
   return search.found();

@@ -49,10 +49,10 @@ void call_force(const SimulationCell& cell, const ForceInput& input, const Vecto
   if (cell.force.is_none()) return;
   const py::object function = cell.force;
   py::array adds = column_view(accelerations);
-  const py::object result = function(
-      PythonForceInput{input.time, column_view(input.ids), column_view(input.positions),
-                       column_view(input.velocities)},
-      adds);
+  const py::object result =
+      function(PythonForceInput{input.time, column_view(input.ids), column_view(input.positions),
+                                column_view(input.velocities)},
+               adds);
   sealed(adds);
   if (!result.is_none())
     throw py::type_error(
