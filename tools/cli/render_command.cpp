@@ -27,6 +27,7 @@ namespace {
 
 struct RenderOptions : program::CachedRunOptions {
   FilmOptions film;
+  bool overwrite = false;
   FrameOptions frames;
 };
 
@@ -70,6 +71,7 @@ void render_cache(const RenderOptions& options) {
   check_film(options.film);
   program::CachedRun run = program::open_cached_run(options, "render");
   print_warning(run.cache.lock_warning());
+  refuse_to_replace(options.film, options.overwrite ? program::Replace::overwrite : program::Replace::no);
   program::InputFiles(run.scene).refuse(options.film.file, "--film");
   program::check_environment(run.scene);
   const std::vector<int> chosen = program::choose_frames(options.frames.range, frames_to_show(run.cache));
@@ -107,6 +109,8 @@ void add_render_command(CLI::App& app) {
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
   program::add_threads_option(*command, options->threads);
+  command->add_flag("--overwrite", options->overwrite,
+                    "Replace the file of --film where it is no film of mallow's");
   add_film_options(*command, options->film);
   add_frame_options(*command, options->frames);
   command->callback([options] {

@@ -312,6 +312,11 @@ std::string Series::saved() const {
   return state.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+bool is_series(std::string_view beginning) {
+  return beginning.starts_with("frame,time [s],steps,particles,height [m],top [m]") ||
+         beginning.starts_with("frame,time,steps,particles,height,top,");
+}
+
 const char* series_help() {
   return "Columns of --series, a row for frame 0 and each frame after it, units in the header:\n"
          "frame, time, steps;\n"
