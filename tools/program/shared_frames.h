@@ -27,6 +27,8 @@ class FileLock {
 
   /// What the file is to hold.
   void write(const std::string& text) const;
+  /// Of the open file. A program that gets it keeps the lock too, until both have ended.
+  int descriptor() const { return descriptor_; }
 
  private:
   FileLock(std::filesystem::path file, int descriptor) : file_(std::move(file)), descriptor_(descriptor) {}
