@@ -361,7 +361,7 @@ void run(const RunOptions& options) {
   };
   try {
     if (out) out->write_scene(run.scene);
-    close_report("the run has not ended yet");
+    close_report(program::k_not_ended_yet);
     run_stages(options, run);
     std::vector<std::string> warnings =
         program::end_warnings(run.scene, run.report.info, snapshot(*run.simulation));
