@@ -43,7 +43,8 @@ TEST_F(cli_film, goes_to_the_file_that_is_named_and_not_into_the_folder) {
   EXPECT_EQ(names_in(folder_), (std::vector<std::string>{"a: b.mp4", "cube.toml", "out"}));
 
   const std::string first = read_text(at("a: b.mp4"));
-  outcome = run_mallow({"render", at("out"), "--film", at("again.mp4"), "--threads", "1"});
+  for (int time = 0; time < 2; ++time)  // a film of mallow's may be replaced by another
+    outcome = run_mallow({"render", at("out"), "--film", at("again.mp4"), "--threads", "1"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(read_text(at("again.mp4")), first);
   EXPECT_EQ(names_in(at("out")), k_run_without_film);

@@ -118,6 +118,73 @@ TEST_F(cli_inputs, a_mesh_is_not_replaced_by_its_points) {
   EXPECT_EQ(read_text(at("mesh.ply")), k_tetrahedron);
 }
 
+TEST_F(cli_inputs, a_file_that_is_there_is_replaced_where_that_is_asked_for_or_it_is_of_the_same_kind) {
+  const std::string mine = "print('hours of work')\n";
+  const auto is_kept = [&](const std::string& name, const std::string& option,
+                           std::vector<std::string> arguments, bool overwrites) {
+    SCOPED_TRACE(arguments.front() + " " + option);
+    write(name, mine);
+    arguments.insert(arguments.end(), {option, at(name)});
+    const Outcome outcome = run_mallow(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find(name + ": " + option + ": is there already, and was not written by " + option),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(outcome.err.find("--overwrite") != std::string::npos, overwrites) << outcome.err;
+    EXPECT_EQ(read_text(at(name)), mine);
+    if (!overwrites) return;
+    arguments.push_back("--overwrite");
+    for (const bool again : {false, true}) {
+      const Outcome replaced = run_mallow(arguments);
+      EXPECT_LE(replaced.exit_code, 1) << again << replaced.err;
+      EXPECT_NE(read_text(at(name)), mine);
+      if (name.ends_with(".png") || name.ends_with(".ply")) return;
+      if (!again) arguments.pop_back();  // now it is what the option wrote before
+    }
+  };
+  const std::vector<std::string> quick{"run", scene_, "--frames", "0", "--no-images", "--no-surface"};
+  is_kept("gen.py", "--series", quick, true);
+  is_kept("report.py", "--report", quick, true);
+  is_kept("state.py", "--state-out", quick, true);
+  write("mesh.ply", k_tetrahedron);
+  const std::vector<std::string> sample{"sample", at("mesh.ply"), "--count", "50"};
+  is_kept("points.csv", "--out", sample, true);
+  is_kept("points.ply", "--out", sample, true);
+  ASSERT_EQ(run({"--out", at("a"), "--frames", "2", "--checkpoint-every", "1"}).exit_code, 0);
+  ASSERT_EQ(run({"--out", at("b"), "--frames", "2", "--set", "solver.gravity=[0,0,-1]"}).exit_code, 0);
+  const std::vector<std::string> compare{"compare", at("a"), at("b")};
+  is_kept("rows.csv", "--csv", compare, true);
+  is_kept("most.png", "--picture", compare, true);
+  for (const char* option : {"--series", "--report", "--state-out"})
+    is_kept("resumed.py", option, {"run", "--resume", at("a"), "--frames", "3"}, false);
+  write("film.mp4", mine);
+  for (const std::vector<std::string>& film :
+       {std::vector<std::string>{"render", at("a"), "--film", at("film.mp4")},
+        std::vector<std::string>{"run", scene_, "--out", at("c"), "--film", at("film.mp4")}})
+    expect_refused(run_mallow(film), "--film: is there already");
+  EXPECT_EQ(read_text(at("film.mp4")), mine);
+  EXPECT_FALSE(fs::exists(at("c")));
+  EXPECT_EQ(quick_run({scene_, "--series", write("empty.csv", "").string()}).exit_code, 0);
+}
+
+TEST_F(cli_inputs, files_of_a_study_replace_those_of_a_study_alone) {
+  fs::create_directory(at("site"));
+  write("site/index.html", "mine");
+  write("tuned.toml", "mine");
+  expect_refused(run_mallow({"tradeoff", scene_, "--out", at("site")}),
+                 "index.html: --out: is there already");
+  expect_refused(run_mallow({"tune", scene_, "--error", "1h", "--out", at("site")}),
+                 "--out: is there already");
+  expect_refused(run_mallow({"tune", scene_, "--error", "1h", "--write", at("tuned.toml")}),
+                 "tuned.toml: --write: is there already");
+  EXPECT_EQ(read_text(at("site/index.html")), "mine");
+  EXPECT_EQ(read_text(at("tuned.toml")), "mine");
+  const std::vector<std::string> study{"tradeoff",     scene_,      "--budget",  "1s",
+                                       "--repeats",    "1",         "--threads", "1",
+                                       "--no-surface", "--no-film", "--out",     at("study")};
+  for (const bool again : {false, true}) EXPECT_EQ(run_mallow(study).exit_code, 0) << again;
+}
+
 TEST_F(cli_inputs, no_file_is_written_twice_by_one_run) {
   fs::create_directory(at("b"));
   expect_refused(quick_run({scene_, "--report", at("a"), "--state-out", at("b/../a")}), "is also --report");

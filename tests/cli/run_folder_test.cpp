@@ -123,9 +123,23 @@ TEST_F(cli_run_folder, is_that_of_one_run_until_it_ends_or_is_killed) {
   expect_refused(run_mallow({"surface", at("out")}), in_use);
   expect_refused(run_mallow({"render", at("out"), "--no-film"}), in_use);
   expect_refused(run_mallow({"export", at("out"), "--particles", "csv", "--out", at("csv")}), in_use);
+  while (fs::exists(at("out/checkpoint.previous")) == false) ASSERT_TRUE(first.alive());
+  Outcome info = run_mallow({"info", at("out")});
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  for (const std::string& part :
+       {"not yet: process " + std::to_string(first.process()) + " on ", std::string(" of 1000000, step ")})
+    EXPECT_NE(info.out.find(part), std::string::npos) << info.out;
+  EXPECT_EQ(info.out.find("frames           0 of"), std::string::npos) << "it has come farther: " << info.out;
+  EXPECT_EQ(info.out.find("to go on"), std::string::npos) << info.out;
   ASSERT_TRUE(first.alive());
   first.send(SIGKILL);
   first.wait();
+  info = run_mallow({"info", at("out")});
+  for (const std::string& part : {std::string("ended            not complete: the run was killed"),
+                                  std::string("checkpoint       at frame "),
+                                  "to go on         mallow run --resume " + at("out") + "\n"})
+    EXPECT_NE(info.out.find(part), std::string::npos) << info.out;
+  EXPECT_EQ(info.out.find("frames           0 of"), std::string::npos) << info.out;
   const Outcome outcome = run_mallow({"run", "--resume", at("out"), "--steps", "1"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }

@@ -113,17 +113,19 @@ TEST_F(cli_share, frames_are_named_as_in_python_and_the_last_part_joins_the_film
   const auto part = [&](const std::string& frames) {
     return run_mallow({"render", at("many"), "--frames", frames});
   };
-  EXPECT_EQ(part("1:-1:2").out, "pictures 3\nleft 4, and the film\n");
+  const std::string film = std::string("; the call that does the last of them adds ") +
+                           (program::is_installed("ffmpeg") ? "the film\n" : "summary.html\n");
+  EXPECT_EQ(part("1:-1:2").out, "pictures 3\nstill to do: frames 0, 2, 4, 6" + film);
   EXPECT_EQ(names_in(at("many/images")),
             (std::vector<std::string>{"frame_000001.png", "frame_000003.png", "frame_000005.png"}));
   EXPECT_FALSE(fs::exists(at("many/film.mp4")));
-  EXPECT_EQ(part("-1:").out, "pictures 1\nleft 3, and the film\n");
+  EXPECT_EQ(part("-1:").out, "pictures 1\nstill to do: frames 0, 2, 4" + film);
   EXPECT_EQ(part(":5:2").out, "pictures 3\n");
   expect_same("many", "one", {"images"});
   if (program::is_installed("ffmpeg")) expect_same("many", "one", {"film.mp4"});
 
   EXPECT_EQ(run_mallow({"render", at("many"), "--frames", "2:4", "--set", "render.width=80"}).out,
-            "pictures 2\nleft 5, and the film\n")
+            "pictures 2\nstill to do: frames 0, 1, 4 to 6" + film)
       << "pictures of other settings do not count";
   EXPECT_EQ(run_mallow({"render", at("many"), "--share"}).out, "pictures 2\n") << "those are taken again";
   expect_same("many", "one", {"images"});
@@ -162,6 +164,36 @@ TEST_F(cli_share, exports_are_shared_and_what_plays_them_is_added_once) {
     EXPECT_TRUE(read_text(at("one/export/surface/" + name)) == read_text(at("many/export/surface/" + name)))
         << name;
   }
+}
+
+TEST_F(cli_share,
+       what_plays_an_export_of_some_frames_plays_these_and_says_which_are_missing_where_all_are_asked_for) {
+  make_runs("6");
+  const auto part = [&](std::vector<std::string> more) {
+    std::vector<std::string> all{"export", at("one"), "--surface", "usda", "--animation", "glb"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = run_mallow(all);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.out;
+  };
+  EXPECT_EQ(part({"--frames", "2:5"}), "surface 3\nanimation 3\n");
+  const std::string three = read_text(at("one/export/surface.glb"));
+  EXPECT_NE(three.find("\"frame 2\""), std::string::npos);
+  EXPECT_EQ(three.find("\"frame 3\""), std::string::npos);
+  const std::string usda = read_text(at("one/export/surface.usda"));
+  EXPECT_NE(usda.find("startTimeCode = 2"), std::string::npos) << usda.substr(0, 400);
+  EXPECT_NE(usda.find("endTimeCode = 4"), std::string::npos) << usda.substr(0, 400);
+  EXPECT_EQ(part({"--frames", "2:5", "--share"}),
+            "still to do: frames 0, 1, 5, 6; the call that does the last of them adds surface.usda, "
+            "surface.glb\n");
+  EXPECT_EQ(part({"--share"}), "surface 7\nanimation 7\n");
+  EXPECT_EQ(run_mallow({"surface", at("one"), "--frames", "1:7", "--set", "surface.voxels=20"}).out,
+            "surfaces 6\nstill to do: frame 0; the call that does the last of them adds summary.html\n");
+  fs::remove(at("one/surface/frame_000003.ply"));
+  const Outcome none = run_mallow({"export", at("one"), "--animation", "glb", "--frames", "3:4"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("--frames: '3:4' names no frame that has a surface"), std::string::npos)
+      << none.err;
 }
 
 TEST_F(cli_share, whole_commands_and_those_that_share_wait_for_each_other) {

@@ -211,20 +211,24 @@ TEST_F(sweep_runs, take_the_processors_of_the_slot_that_slurm_gives) {
 }
 
 TEST_F(sweep_runs, have_a_folder_to_themselves_until_they_end_however_that_comes) {
-  write_spec("[1]", 1000);
+  write_spec("[1]", 40000);
   Running running({"sweep", spec_, "--out", at("out"), "--jobs", "1"});
-  while (!fs::exists(at("out/points/00000")) && running.alive())
+  while (!fs::exists(at("out/points/00000/series.csv")) && running.alive())
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   const Outcome other = run_mallow({"sweep", spec_, "--out", at("out")});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_NE(other.err.find("is in use by another mallow sweep"), std::string::npos) << other.err;
   running.send(SIGKILL);
   EXPECT_EQ(running.wait().exit_code, -1) << "it was still at work";
-  // A run that the dead one left over writes into the folder of its point until it ends.
-  while (std::system(("pgrep -f '[r]un .*" + at("out/points") + "' >/dev/null").c_str()) == 0)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  // A run that the dead one left over has the folder of its point, and writes into it, until it ends.
+  const auto is_left_over = [&] {
+    return std::system(("pgrep -f '[r]un .*" + at("out/points") + "' >/dev/null").c_str()) == 0;
+  };
+  EXPECT_TRUE(is_left_over()) << "it was to outlive its sweep, or this shows nothing";
   write_spec("[1]", 8);
-  EXPECT_EQ(sweep("out"), sweep("fresh"));
+  const std::string table = sweep("out");
+  EXPECT_FALSE(is_left_over()) << "the sweep waited for it";
+  EXPECT_EQ(table, sweep("fresh"));
 }
 
 TEST_F(sweep_runs, of_one_point_by_two_processes_are_run_once) {

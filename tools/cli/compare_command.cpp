@@ -34,6 +34,7 @@ struct CompareOptions {
   std::string csv, picture;
   bool json = false;
   int threads = 0;
+  bool overwrite = false;
 };
 
 /// Two runs or states, frame by frame.
@@ -246,6 +247,11 @@ void run(const CompareOptions& options) {
     for (const auto& file : states->files()) inputs.add(file);
   if (!options.csv.empty()) inputs.refuse(options.csv, "--csv");
   if (!options.picture.empty()) inputs.refuse(options.picture, "--picture");
+  const auto replace = options.overwrite ? program::Replace::overwrite : program::Replace::no;
+  program::refuse_to_replace(options.csv, "--csv", replace, [](std::string_view beginning) {
+    return beginning.starts_with("frame,time_a [s],time_b [s],same_bits,");
+  });
+  program::refuse_to_replace(options.picture, "--picture", replace);
   const Comparison comparison = compare(options, a, b);
   print_warning(comparison.other_bodies);
   const bool same_frames = comparison.only_a.empty() && comparison.only_b.empty();
@@ -288,6 +294,7 @@ void add_compare_command(CLI::App& app) {
   command->add_option("--picture", options->picture,
                       "Write a picture (PNG) of the frame where they differ most: B's particles, from grey "
                       "where A has them to red where they are farthest from there");
+  command->add_flag("--overwrite", options->overwrite, "Replace files of --csv and --picture that are there");
   command->add_flag("--json", options->json, "Print JSON in place of a table");
   program::add_threads_option(*command, options->threads);
   command->footer(

@@ -27,7 +27,8 @@ SurfaceAnimation::SurfaceAnimation(const std::vector<std::string>& formats, std:
 }
 
 void SurfaceAnimation::add(const Mesh& mesh, int number) {
-  for (GlbSeries& file : files_) file.add(mesh, number / frames_per_second_);
+  if (!first_) first_ = number;
+  for (GlbSeries& file : files_) file.add(mesh, (number - *first_) / frames_per_second_);
 }
 
 void SurfaceAnimation::write(const std::filesystem::path& out) {
@@ -45,11 +46,14 @@ SkinAnimation::SkinAnimation(const program::CachedRun& run) : run_(run), skinned
 
 void SkinAnimation::add(const Mesh& mesh, int number) {
   Mesh part = program::part_of(mesh, skinned_);
-  if (poses_.empty()) first_ = part;
+  if (poses_.empty()) {
+    first_ = part;
+    first_frame_ = number;
+  }
   if (part.triangles != first_.triangles || part.normals.size() != first_.vertices.size())
     throw IoError({run_.cache.surface_file(number).string(), 0, 0, "--skins",
                    "has other skins than the frames before it; run the scene again"});
-  poses_.push_back({static_cast<double>(number) / run_.scene.render.frames_per_second,
+  poses_.push_back({static_cast<double>(number - first_frame_) / run_.scene.render.frames_per_second,
                     std::move(part.vertices), std::move(part.normals)});
 }
 

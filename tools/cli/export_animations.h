@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ class SurfaceAnimation {
  private:
   const std::vector<std::string>& formats_;
   double frames_per_second_;
+  std::optional<int> first_;  ///< frame, with which it begins to play
   std::vector<GlbSeries> files_;
 };
 
@@ -45,6 +47,7 @@ class SkinAnimation {
   const program::CachedRun& run_;
   std::vector<bool> skinned_;
   Mesh first_;
+  int first_frame_ = 0;
   std::vector<MeshPose> poses_;
 };
 

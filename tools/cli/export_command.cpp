@@ -1,6 +1,7 @@
 #include "cli/export_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -42,6 +43,16 @@ void require_surfaces(const program::Cache& cache) {
                      "' draws them"});
 }
 
+/// What plays frames is of the chosen ones alone: one of them must have a surface.
+void require_chosen_surface(const program::Cache& cache, const std::string& range,
+                            const std::vector<int>& chosen) {
+  for (const int frame : chosen)
+    if (fs::exists(cache.surface_file(frame))) return;
+  throw IoError({cache.folder().string(), 0, 0, "--frames",
+                 "'" + range + "' names no frame that has a surface; 'mallow surface " +
+                     program::shell_word(cache.folder().string()) + "' draws them"});
+}
+
 /// A scene may name what an earlier export wrote.
 void refuse_inputs(const ExportOptions& options, const program::CachedRun& run, const fs::path& out) {
   const program::InputFiles inputs(run.scene);
@@ -75,7 +86,27 @@ std::string job_of(const ExportOptions& options, const program::CachedRun& run) 
   return job;
 }
 
-/// Beside other processes; the one that finds all frames written adds what plays them.
+/// What plays frames, and is made of all of them.
+std::vector<std::string> names_of_players(const ExportOptions& options) {
+  std::vector<std::string> names;
+  const auto add = [&](const char* kind, const std::vector<std::string>& formats) {
+    for (const auto& [format, ending] : {std::pair{"vtp", ".pvd"}, std::pair{"usda", ".usda"}})
+      if (std::ranges::count(formats, format)) names.push_back(std::string(kind) + ending);
+  };
+  add("surface", options.surface);
+  add("particles", options.particles);
+  for (const std::string& format : options.animation) names.push_back(animation_name(format));
+  if (!options.skins.empty()) names.push_back("skins.glb");
+  return names;
+}
+
+void add_players(const std::vector<int>& frames, Export& all) {
+  for (const int number : frames) all.add_frame(number);
+  all.finish();
+}
+
+/// Beside other processes. With --share the one that finds all frames of the run written adds what plays
+/// them; else what plays them is of the frames that were chosen.
 void share_export(const ExportOptions& options, const program::CachedRun& run, const fs::path& out,
                   const std::vector<int>& chosen, Export& all) {
   const program::SharedFrames shared(out, "export", job_of(options, run),
@@ -88,15 +119,15 @@ void share_export(const ExportOptions& options, const program::CachedRun& run, c
                      all.write_frame(number);
                      claim->done();
                    });
+  if (!options.frames.share && !options.frames.elsewhere.by_scheduler()) return add_players(chosen, all);
   const std::vector<int> frames = run.cache.particle_frames();
   std::vector<fs::path> made;
   for (const std::string& format : options.animation) made.push_back(out / animation_name(format));
   if (!options.skins.empty()) made.push_back(out / "skins.glb");
-  const std::size_t left = shared.join(frames, made, [&] {
-    for (const int number : frames) all.add_frame(number);
-    all.finish();
-  });
-  if (left > 0) std::printf("left %zu\n", left);
+  if (shared.join(frames, made, [&] { add_players(frames, all); }) == 0) return;
+  std::string players;
+  for (const std::string& name : names_of_players(options)) players += (players.empty() ? "" : ", ") + name;
+  print_left(shared, frames, players);
 }
 
 void export_frames(const ExportOptions& options) {
@@ -108,6 +139,8 @@ void export_frames(const ExportOptions& options) {
     require_surfaces(cache);
   if (!options.skins.empty()) SkinAnimation{run};  // throws where there are none
   const std::vector<int> chosen = program::choose_frames(options.frames.range, cache.particle_frames());
+  if (!options.frames.range.empty() && options.particles.empty())
+    require_chosen_surface(cache, options.frames.range, chosen);
   const fs::path out = options.out.empty() ? cache.export_folder() : fs::path(options.out);
   refuse_inputs(options, run, out);
   const program::RunLock lock = lock_folder(out, options.frames.shared());

@@ -7,7 +7,6 @@
 #include "mallow/errors.h"
 #include "program/failure.h"
 #include "program/film.h"
-#include "program/output_files.h"
 
 namespace mallow::cli {
 
@@ -27,6 +26,10 @@ void check_film(const FilmOptions& options) {
       stderr,
       "mallow: %s will not be made, because the program ffmpeg is not installed; everything else will be\n",
       options.file.c_str());
+}
+
+void refuse_to_replace(const FilmOptions& options, program::Replace replace) {
+  program::refuse_to_replace(options.file, "--film", replace, program::is_film);
 }
 
 void check_pictures(const FilmOptions& options, const program::Cache& cache, int last) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "program/cache.h"
+#include "program/output_files.h"
 
 namespace CLI {
 class App;
@@ -22,6 +23,9 @@ void add_film_options(CLI::App& command, FilmOptions& options);
 /// Before any work: throws ConfigError or IoError where FILE is no film that can be written, and says on
 /// stderr where ffmpeg is not installed, so that there will be none.
 void check_film(const FilmOptions& options);
+
+/// Throws IoError where FILE is there, and is no film of mallow's.
+void refuse_to_replace(const FilmOptions& options, program::Replace replace);
 
 /// Before a run goes on: throws IoError where its film would lack the picture of a frame up to `last`.
 void check_pictures(const FilmOptions& options, const program::Cache& cache, int last);

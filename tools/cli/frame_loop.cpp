@@ -3,11 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <string>
 #include <thread>
 
 #include "mallow/errors.h"
 #include "program/failure.h"
+#include "program/frame_range.h"
 #include "program/interrupt.h"
 #include "program/machine.h"
 #include "program/progress.h"
@@ -39,7 +41,9 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
           "--frames", options.range,
           "Only frames A to B, B not included, every S-th of them, as in Python: negative numbers "
           "count from the end. Many processes may work on one folder; no two write one frame. Who does "
-          "the last frame makes the film, or what plays an export")
+          "the last frame makes the film; what plays an export plays these frames alone, or with --share "
+          "all, and "
+          "is made by who does the last one")
       ->option_text("A:B[:S]");
   options.command = &command;
   add_elsewhere_options(command, options.elsewhere, "the frames", {"local", "parallel", "slurm"});
@@ -75,6 +79,14 @@ void check(const FrameOptions& options) {
   check(options.elsewhere);
   if (options.elsewhere.jobs > 0 && !options.elsewhere.by_scheduler())
     throw ConfigError("--jobs", "is not allowed without --on parallel or slurm");
+}
+
+void print_left(const program::SharedFrames& shared, const std::vector<int>& frames,
+                const std::string& then) {
+  const std::vector<int> left = shared.left(frames);
+  if (!left.empty())
+    std::printf("still to do: %s%s\n", program::frames_text(left).c_str(),
+                then.empty() ? "" : ("; the call that does the last of them adds " + then).c_str());
 }
 
 std::size_t for_each_frame(const std::vector<int>& frames, const char* verb,

@@ -29,6 +29,9 @@ struct FrameOptions {
 void add_frame_options(CLI::App& command, FrameOptions& options);
 /// Throws ConfigError where an option is given that --on does not have.
 void check(const FrameOptions& options);
+/// Says which of `frames` are not there yet, as others do them or nobody was asked to. then: what the call
+/// that does the last of them adds.
+void print_left(const program::SharedFrames& shared, const std::vector<int>& frames, const std::string& then);
 
 /// Held while a frame is worked on, its done() called once its files are there; null where nobody else can
 /// work on the folder.

@@ -27,6 +27,7 @@ namespace {
 
 struct RenderOptions : program::CachedRunOptions {
   FilmOptions film;
+  bool overwrite = false;
   FrameOptions frames;
 };
 
@@ -60,10 +61,9 @@ void share_rendering(const RenderOptions& options, program::CachedRun& run, cons
   std::vector<std::filesystem::path> made;
   if (!options.film.no_film && program::can_make_films())
     made.push_back(options.film.file.empty() ? cache.film_file() : std::filesystem::path(options.film.file));
-  const std::size_t left =
-      taker.taken().join(frames_to_show(cache), made, [&] { finish(options, run, seconds); });
+  taker.taken().join(frames_to_show(cache), made, [&] { finish(options, run, seconds); });
   std::printf("pictures %zu\n", count);
-  if (left > 0) std::printf("left %zu, and the film\n", left);
+  print_left(taker.taken(), frames_to_show(cache), made.empty() ? "summary.html" : "the film");
 }
 
 void render_cache(const RenderOptions& options) {
@@ -71,6 +71,7 @@ void render_cache(const RenderOptions& options) {
   program::CachedRun run = program::open_cached_run(options, "render");
   print_warning(run.cache.lock_warning());
   program::InputFiles(run.scene).refuse(options.film.file, "--film");
+  refuse_to_replace(options.film, options.overwrite ? program::Replace::overwrite : program::Replace::no);
   program::check_environment(run.scene);
   const std::vector<int> chosen = program::choose_frames(options.frames.range, frames_to_show(run.cache));
   try {
@@ -108,6 +109,8 @@ void add_render_command(CLI::App& app) {
       ->allow_extra_args(false);
   program::add_threads_option(*command, options->threads);
   add_film_options(*command, options->film);
+  command->add_flag("--overwrite", options->overwrite,
+                    "Replace the file of --film where it is no film of mallow's");
   add_frame_options(*command, options->frames);
   command->callback([options] {
     check(options->frames);

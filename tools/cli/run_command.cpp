@@ -103,13 +103,32 @@ void check_outputs(const RunOptions& options) {
   check_apart(options);
 }
 
-/// Nothing that is written may be what is read.
+/// Whether a file that begins so is a state as CSV.
+bool is_state(std::string_view beginning) {
+  return beginning.starts_with("id,x,y,z,vx,vy,vz,body");
+}
+
+/// No file that somebody may miss is replaced unasked. A series of a run that goes on is continued.
+void refuse_to_replace(const RunOptions& options) {
+  using program::Replace;
+  const Replace replace = !options.resume.empty() ? Replace::has_no_word
+                          : options.overwrite     ? Replace::overwrite
+                                                  : Replace::no;
+  program::refuse_to_replace(options.state_out, "--state-out", replace, is_state);
+  program::refuse_to_replace(options.report, "--report", replace, program::is_report);
+  if (options.resume.empty())
+    program::refuse_to_replace(options.series, "--series", replace, program::is_series);
+  refuse_to_replace(options.film, replace);
+}
+
+/// Nothing that is written may be what is read, or is to be kept.
 void refuse_inputs(const RunOptions& options, const Scene& scene) {
   const program::InputFiles inputs(scene);
   inputs.refuse(options.state_out, "--state-out");
   inputs.refuse(options.report, "--report");
   inputs.refuse(options.series, "--series");
   inputs.refuse(options.film.file, "--film");
+  refuse_to_replace(options);
   if (!options.out.empty()) program::Cache::refuse_inputs(options.out, inputs, "--out", true);
   // A run that goes on reads its own scene.toml, and writes there what of it has changed.
   if (!options.resume.empty()) program::Cache::refuse_inputs(options.resume, inputs, "--resume", false);
@@ -178,6 +197,7 @@ void resume_series(const RunOptions& options, const program::CheckpointedRun& sa
   if (!saved.series.empty()) {
     run.series.emplace(saved.series, options.series, *run.simulation);
   } else if (!options.series.empty()) {
+    program::refuse_to_replace(options.series, "--series", program::Replace::has_no_word, program::is_series);
     run.series.emplace(options.series, *run.simulation);
     print_warning("--series " + options.series + ": begins behind frame " +
                   std::to_string(saved.report.frames) + ", as the run was started without it");
@@ -341,7 +361,7 @@ void run(const RunOptions& options) {
   };
   try {
     if (out) out->write_scene(run.scene);
-    close_report("the run has not ended yet");
+    close_report(program::k_not_ended_yet);
     run_stages(options, run);
     std::vector<std::string> warnings =
         program::end_warnings(run.scene, run.report.info, snapshot(*run.simulation));
@@ -445,7 +465,9 @@ void add_run_command(CLI::App& app) {
   add_film_options(*command, options->film);
   // A film is made of pictures.
   command->get_option("--film")->excludes(no_images);
-  command->add_flag("--overwrite", options->overwrite, "Replace an earlier run in the --out folder")
+  command
+      ->add_flag("--overwrite", options->overwrite,
+                 "Replace an earlier run in the --out folder, and files that are there under the names given")
       ->excludes(resume);
   command->callback([options] {
     check_together(*options);

@@ -29,6 +29,7 @@ struct SampleOptions {
   std::vector<float> center;
   std::optional<float> radius;
   std::string out;
+  bool overwrite = false;
   int threads = 0;
 };
 
@@ -62,6 +63,10 @@ void sample_mesh(const SampleOptions& options) {
     program::InputFiles mesh;
     mesh.add(options.mesh);
     mesh.refuse(out, "--out");
+    const auto is_state = [](std::string_view text) { return text.starts_with("id,x,y,z,vx,vy,vz,body"); };
+    program::refuse_to_replace(out, "--out",
+                               options.overwrite ? program::Replace::overwrite : program::Replace::no,
+                               out.extension() == ".csv" ? is_state : program::IsOwn());
   }
   const int threads = program::resolve_threads(options.threads);
   MeshSource source{std::filesystem::absolute(options.mesh), {}, {}};
@@ -94,6 +99,7 @@ void add_sample_command(CLI::App& app) {
   command->add_option("--radius", options->radius,
                       "Print the mean number of points within this distance of a point");
   command->add_option("--out", options->out, "Write the points to this file, .csv or .ply");
+  command->add_flag("--overwrite", options->overwrite, "Replace the --out file that is there");
   program::add_threads_option(*command, options->threads);
   command->callback([options] {
     if (!options->count && !options->spacing) throw ConfigError("", "--count or --spacing is needed");

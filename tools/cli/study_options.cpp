@@ -77,6 +77,8 @@ void add_study_options(CLI::App& command, StudyArguments& arguments) {
       ->capture_default_str();
   program::add_threads_option(command, arguments.threads);
   command.add_flag("--no-surface", arguments.no_surface, "Draw no surface: a frame is its steps alone");
+  command.add_flag("--overwrite", arguments.overwrite,
+                   "Replace files that are there, also those that no study wrote");
   command.add_flag(
       "--no-film", arguments.no_film,
       "Make no film of the scene as it is beside another setting; it takes a tenth of the budget");
@@ -100,14 +102,22 @@ tradeoff::StudyOptions study_options(const StudyArguments& arguments, const Scen
   return options;
 }
 
-void check_study_files(const std::filesystem::path& folder, const Scene& scene) {
+void check_study_files(const std::filesystem::path& folder, const Scene& scene, bool overwrite) {
   const program::InputFiles inputs(scene);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw IoError({folder.string(), 0, 0, "--out", "cannot be made: " + error.message()});
+  // The table of a study tells that the files beside it are those of that study.
+  bool is_study = false;
   for (const char* name : {"tradeoff.csv", "tradeoff.json", "index.html", k_film}) {
     program::check_writable(folder / name);
     inputs.refuse(folder / name, "--out");
+    const program::IsOwn is_own = [&](std::string_view beginning) {
+      is_study = is_study || beginning.starts_with("setting,frames,all_frames,on_front,");
+      return is_study;
+    };
+    program::refuse_to_replace(folder / name, "--out",
+                               overwrite ? program::Replace::overwrite : program::Replace::no, is_own);
   }
 }
 

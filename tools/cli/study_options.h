@@ -21,6 +21,7 @@ struct StudyArguments {
   int threads = 0;
   bool no_surface = false;
   bool no_film = false;
+  bool overwrite = false;
 };
 /// What the columns mean, for the end of a command's help.
 std::string study_columns();
@@ -29,8 +30,9 @@ void add_study_options(CLI::App& command, StudyArguments& arguments);
 tradeoff::StudyOptions study_options(const StudyArguments& arguments, const Scene& scene);
 /// Share of the budget that is kept for the film of a study.
 double film_share(const StudyArguments& arguments, bool has_folder);
-/// Makes the folder of --out; none of its files is an input. Throws IoError.
-void check_study_files(const std::filesystem::path& folder, const Scene& scene);
+/// Makes the folder of --out; none of its files is an input, or one that no study wrote unless `overwrite`.
+/// Throws IoError.
+void check_study_files(const std::filesystem::path& folder, const Scene& scene, bool overwrite);
 /// The page with its film, the CSV and the JSON of a study. deadline: wall_clock() at which the film ends.
 void write_study(const std::filesystem::path& folder, const tradeoff::Study& study,
                  const StudyArguments& arguments, const tradeoff::StudyOptions& options, double deadline,

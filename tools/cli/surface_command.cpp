@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "cli/frame_loop.h"
 #include "cli/messages.h"
@@ -86,18 +87,18 @@ void draw_surfaces(const SurfaceOptions& options) {
     program::close_cached_run(run, seconds, std::array{program::Stage::surface});
     write_summary(run.cache, run.scene, run.report);
   };
-  std::size_t count = 0, left = 0;
+  std::size_t count = 0;
+  std::optional<program::SharedFrames> shared;
   try {
     if (options.frames.shared()) {
-      const program::SharedFrames shared(
-          run.cache.folder(), "surface", print_scene(run.scene),
-          [&](int frame) -> program::SharedFrames::Files {
-            return {{run.cache.particles_file(frame)}, {run.cache.surface_file(frame)}};
-          });
+      shared.emplace(run.cache.folder(), "surface", print_scene(run.scene),
+                     [&](int frame) -> program::SharedFrames::Files {
+                       return {{run.cache.particles_file(frame)}, {run.cache.surface_file(frame)}};
+                     });
       count = options.frames.elsewhere.by_scheduler()
-                  ? do_frames_elsewhere(options.frames, chosen, shared, run.cache.folder(), options.threads)
-                  : draw_frames(options, run, chosen, &shared, seconds);
-      left = shared.join(frames, {}, finish);
+                  ? do_frames_elsewhere(options.frames, chosen, *shared, run.cache.folder(), options.threads)
+                  : draw_frames(options, run, chosen, &*shared, seconds);
+      shared->join(frames, {}, finish);
     } else {
       count = draw_frames(options, run, frames, nullptr, seconds);
       finish();
@@ -108,7 +109,7 @@ void draw_surfaces(const SurfaceOptions& options) {
     throw program::RunFailure(error.what());
   }
   std::printf("surfaces %zu\n", count);
-  if (left > 0) std::printf("left %zu\n", left);
+  if (shared) print_left(*shared, frames, "summary.html");
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ void run(const TradeoffOptions& options) {
   const Scene scene = read_scene(options.study.scene);
   tradeoff::StudyOptions study_with = study_options(options.study, scene);
   study_with.kept = film_share(options.study, !options.out.empty());
-  if (!options.out.empty()) check_study_files(options.out, scene);
+  if (!options.out.empty()) check_study_files(options.out, scene, options.study.overwrite);
   try {
     const double deadline = tradeoff::wall_clock() + study_with.budget;
     const tradeoff::Study study = tradeoff::study(scene, study_with);

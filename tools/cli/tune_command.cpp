@@ -111,8 +111,11 @@ void run(const TuneOptions& options) {
   if (!options.write.empty()) {
     program::InputFiles(scene).refuse(options.write, "--write");
     program::check_writable(options.write);
+    // One that was written before may have been worked on by hand since.
+    program::refuse_to_replace(options.write, "--write",
+                               options.study.overwrite ? program::Replace::overwrite : program::Replace::no);
   }
-  if (!options.out.empty()) check_study_files(options.out, scene);
+  if (!options.out.empty()) check_study_files(options.out, scene, options.study.overwrite);
   try {
     tune(options, scene, study_with, limit);
   } catch (const tradeoff::Stopped&) {

@@ -227,9 +227,12 @@ Cache Cache::open(const fs::path& folder, Access access) {
     forget_shared_frames(folder);
   } else {
     if (!marked && access == Access::share) RunLock::for_writing(folder);  // makes the mark
-    if (marked || access == Access::share) cache.lock_ = RunLock::for_reading(folder);
+    if (access == Access::look && marked)
+      cache.lock_ = RunLock::for_looking(folder);
+    else if (marked || access == Access::share)
+      cache.lock_ = RunLock::for_reading(folder);
   }
-  if (cache.particle_frames().empty())
+  if (access != Access::look && cache.particle_frames().empty())
     throw IoError({folder.string(), 0, 0, "", "holds no particles of any frame"});
   return cache;
 }

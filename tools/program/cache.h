@@ -55,8 +55,9 @@ class Cache {
   /// the folder holds no run or is in use.
   static Cache open_to_resume(const std::filesystem::path& folder);
   /// The cache of an earlier run, to write into it, to read it, or to write into it beside others that do the
-  /// same (SharedFrames). Throws IoError where the folder holds none or is in use.
-  enum class Access { read, write, share };
+  /// same (SharedFrames). Throws IoError where the folder holds none or is in use. look: as read, also while
+  /// somebody writes, and before there is a frame: each file is whole, but they need not be of one moment.
+  enum class Access { read, write, share, look };
   static Cache open(const std::filesystem::path& folder, Access access);
 
   /// Throws IoError where the scene.toml of a run in `folder` could not name the scene's files: TOML has no
@@ -69,6 +70,8 @@ class Cache {
   const std::filesystem::path& folder() const { return folder_; }
   /// What to warn of where the disk has no locks, so that others can write here; else empty.
   const std::string& lock_warning() const { return lock_.warning(); }
+  /// Who writes into a cache that is looked at; empty where nobody does.
+  const std::string& writer() const { return lock_.writer(); }
   std::filesystem::path scene_file() const { return folder_ / "scene.toml"; }
   std::filesystem::path report_file() const { return folder_ / "report.json"; }
   std::filesystem::path summary_file() const { return folder_ / "summary.html"; }

@@ -77,7 +77,8 @@ CachedRun open_cached_run(const CachedRunOptions& options, const std::string& se
   check_overrides(options.overrides, section);
   const bool writes = !section.empty();
   const Cache::Access access = options.shared ? Cache::Access::share : Cache::Access::write;
-  Cache cache = Cache::open(options.folder, writes ? access : Cache::Access::read);
+  const Cache::Access reads = options.looks ? Cache::Access::look : Cache::Access::read;
+  Cache cache = Cache::open(options.folder, writes ? access : reads);
   // Scene and report belong together: not one from before another process wrote them, one from after.
   const auto lock = writes && options.shared ? lock_shared_folder(options.folder) : nullptr;
   // A cache stands anywhere, its scene's files where they were; from here on none of them is read.

@@ -16,6 +16,7 @@ struct CachedRunOptions {
   std::string folder;
   std::vector<std::string> overrides;  ///< "section.key=value"
   int threads = 0;                     ///< 0: one for each processor
+  bool looks = false;                  ///< also while somebody writes, see Cache::Access::look
   bool shared = false;                 ///< others may write into the folder too, see SharedFrames
 };
 

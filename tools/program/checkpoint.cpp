@@ -138,4 +138,17 @@ CheckpointedRun load_newest_checkpoint(const Cache& cache, int threads) {
                  why + "; start again with: mallow run SCENE --out " + shell_word(folder) + " --overwrite"});
 }
 
+std::optional<CheckpointPlace> place_of_checkpoint(const Cache& cache) {
+  for (const fs::path& file : {cache.checkpoint_file(), previous_checkpoint(cache.checkpoint_file())}) {
+    try {
+      RunReport report;
+      report.set_progress(nlohmann::ordered_json::parse(require_chunk(read_checkpoint(file), k_progress)));
+      return CheckpointPlace{report.frames, report.steps};
+    } catch (const Error&) {  // the one before may be whole
+    } catch (const nlohmann::ordered_json::exception&) {
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace mallow::program

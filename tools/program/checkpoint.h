@@ -1,7 +1,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -54,5 +56,12 @@ struct CheckpointedRun {
 /// The run of the newest checkpoint that is whole. A newer one that is damaged is removed, lest it take the
 /// place of the whole one. Throws IoError that says what is wrong with all there are, and what can be done.
 CheckpointedRun load_newest_checkpoint(const Cache& cache, int threads);
+
+/// How far the newest checkpoint that is whole came. None where there is no such one.
+struct CheckpointPlace {
+  int frame = 0;
+  std::int64_t step = 0;
+};
+std::optional<CheckpointPlace> place_of_checkpoint(const Cache& cache);
 
 }  // namespace mallow::program

@@ -81,12 +81,15 @@ int run_program(std::vector<std::string> arguments, const std::filesystem::path&
   return exit_status(status);
 }
 
-int run_logged(std::vector<std::string> arguments, const std::filesystem::path& log, AtEnd at_end) {
+int run_logged(std::vector<std::string> arguments, const std::filesystem::path& log, AtEnd at_end,
+               std::optional<int> kept) {
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
   ::posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
   ::posix_spawn_file_actions_adddup2(&actions, 1, 2);
+  // Onto itself: it is not closed then as the program starts, and not given to others that start meanwhile.
+  if (kept) ::posix_spawn_file_actions_adddup2(&actions, *kept, *kept);
   const pid_t child = start(arguments, actions);
   const EndOf end(child);
   int status = 0;

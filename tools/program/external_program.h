@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,9 @@ enum class AtEnd {
   end_tasks,  ///< it is asked twice: GNU parallel lets its tasks run on at the first time
   wait,       ///< it is waited for
 };
-/// The same here, with all that it says in a file.
+/// The same here, with all that it says in a file. kept: a descriptor that it gets, and with it a lock that
+/// stays until it ends, whatever becomes of this process.
 int run_logged(std::vector<std::string> arguments, const std::filesystem::path& log,
-               AtEnd at_end = AtEnd::end);
+               AtEnd at_end = AtEnd::end, std::optional<int> kept = {});
 
 }  // namespace mallow::program

@@ -14,6 +14,8 @@ namespace {
 constexpr const char* k_ffmpeg = "ffmpeg";
 /// The same whatever a run has: the bytes of a film depend on it.
 constexpr const char* k_threads = "2";
+/// In the metadata of every film.
+constexpr const char* k_made_by = "made by mallow";
 
 /// The pictures of the present folder from frame `first` on to an MP4.
 std::vector<std::string> command_line(int first, const std::string& film, int frames_per_second) {
@@ -41,6 +43,8 @@ std::vector<std::string> command_line(int first, const std::string& film, int fr
           "yuv420p",
           "-threads",
           k_threads,
+          "-metadata",
+          std::string("comment=") + k_made_by,
           "-movflags",
           "+faststart",
           "-f",
@@ -66,6 +70,10 @@ bool can_make_films() {
 std::string missing_picture(const Cache& cache, int frame) {
   return "the picture of frame " + std::to_string(frame) + " is missing; 'mallow render " +
          shell_word(cache.folder().string()) + "' takes all of them again";
+}
+
+bool is_film(std::string_view beginning) {
+  return beginning.substr(0, 12).ends_with("ftypisom") && beginning.find(k_made_by) != beginning.npos;
 }
 
 void make_film(const Cache& cache, const std::filesystem::path& film, int frames_per_second) {

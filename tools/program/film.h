@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "program/cache.h"
 
@@ -19,5 +20,8 @@ void make_film(const Cache& cache, const std::filesystem::path& film, int frames
 /// The same of the pictures frame_000000.png and so on of a folder, from `first` to the last that follows.
 void make_film(const std::filesystem::path& pictures, int first, const std::filesystem::path& film,
                int frames_per_second);
+
+/// Whether a file that begins so is a film that make_film() made.
+bool is_film(std::string_view beginning);
 
 }  // namespace mallow::program

@@ -53,4 +53,19 @@ std::vector<int> choose_frames(const std::string& text, const std::vector<int>& 
   return chosen;
 }
 
+std::string frames_text(std::span<const int> frames) {
+  constexpr int k_most_ranges = 8;
+  std::string text = frames.size() == 1 ? "frame " : "frames ";
+  int ranges = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i, ++ranges) {
+    if (ranges == k_most_ranges) return text + " and " + std::to_string(frames.size() - i) + " more";
+    std::size_t last = i;
+    while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
+    text += (i > 0 ? ", " : "") + std::to_string(frames[i]);
+    if (last > i) text += (last > i + 1 ? " to " : ", ") + std::to_string(frames[last]);
+    i = last;
+  }
+  return text;
+}
+
 }  // namespace mallow::program

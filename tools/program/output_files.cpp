@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <string>
 
 #include "mallow/errors.h"
@@ -25,6 +26,22 @@ void check_writable(const std::filesystem::path& file) {
     throw IoError({file.string(), 0, 0, "", std::string("cannot be written: ") + std::strerror(errno)});
   ::close(descriptor);
   ::unlink(probe.c_str());
+}
+
+void refuse_to_replace(const std::filesystem::path& file, const std::string& option, Replace replace,
+                       const IsOwn& is_own) {
+  constexpr std::size_t k_beginning = std::size_t{1} << 20;  // holds what ffmpeg says of a film
+  std::error_code unknown;
+  if (replace == Replace::overwrite || !std::filesystem::is_regular_file(file, unknown)) return;
+  std::string beginning(k_beginning, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(beginning.data(), static_cast<std::streamsize>(k_beginning));
+  beginning.resize(static_cast<std::size_t>(stream.gcount()));
+  const bool is_empty = std::filesystem::file_size(file, unknown) == 0;
+  if (is_empty || (is_own && is_own(beginning))) return;
+  throw IoError({file.string(), 0, 0, option,
+                 "is there already, and was not written by " + option + "; give another name" +
+                     (replace == Replace::no ? ", or --overwrite to replace it" : "")});
 }
 
 }  // namespace mallow::program

@@ -136,6 +136,20 @@ RunLock RunLock::for_reading(const fs::path& folder) {
   return {mark.release(), std::move(warning), false};
 }
 
+RunLock RunLock::for_looking(const fs::path& folder) {
+  const fs::path file = folder / k_run_mark;
+  Descriptor mark(file, O_RDONLY | O_NOFOLLOW);
+  if (mark.value() < 0) fail(file, std::string("cannot be read: ") + std::strerror(errno));
+  if (::flock(mark.value(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    RunLock none;
+    const std::string by = holder(text_of(mark.value()));
+    none.writer_ = by.empty() ? "another mallow" : by.substr(std::string_view(" by ").size());
+    return none;
+  }
+  std::string warning = lock(mark.value(), LOCK_SH, folder);
+  return {mark.release(), std::move(warning), false};
+}
+
 RunLock RunLock::for_exports(const fs::path& folder, bool shared) {
   Descriptor place(folder, O_RDONLY | O_DIRECTORY);
   if (place.value() < 0) fail(folder, std::string("cannot be opened: ") + std::strerror(errno));
@@ -152,11 +166,13 @@ RunLock::~RunLock() {
 RunLock::RunLock(RunLock&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)),
       warning_(std::move(other.warning_)),
+      writer_(std::move(other.writer_)),
       signed_(std::exchange(other.signed_, false)) {}
 
 RunLock& RunLock::operator=(RunLock&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
   std::swap(warning_, other.warning_);
+  std::swap(writer_, other.writer_);
   std::swap(signed_, other.signed_);
   return *this;
 }

@@ -29,6 +29,8 @@ class RunLock {
   static RunLock for_writing(const std::filesystem::path& folder);
   /// Nobody writes. Throws IoError where somebody does.
   static RunLock for_reading(const std::filesystem::path& folder);
+  /// The same where nobody writes; else it holds nothing, and writer() says who writes.
+  static RunLock for_looking(const std::filesystem::path& folder);
   /// Nobody else exports into `folder`, which has no mark: the lock is on the folder itself. shared: but for
   /// others that say the same, and share the frames.
   static RunLock for_exports(const std::filesystem::path& folder, bool shared = false);
@@ -39,6 +41,8 @@ class RunLock {
 
   /// Why nothing is locked, on a disk without locks; else empty.
   const std::string& warning() const { return warning_; }
+  /// "process 42 on HOST" or "another mallow", of for_looking(); else empty.
+  const std::string& writer() const { return writer_; }
 
  private:
   RunLock(int descriptor, std::string warning, bool signed_by_us)
@@ -46,6 +50,7 @@ class RunLock {
 
   int descriptor_ = -1;
   std::string warning_;
+  std::string writer_ = {};
   bool signed_ = false;  ///< the mark says that this process writes
 };
 

@@ -351,6 +351,12 @@ void write_report(const std::filesystem::path& file, const nlohmann::ordered_jso
   write_whole(file, report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
+bool is_report(std::string_view beginning) {
+  const std::size_t second = beginning.find(",\n");
+  return beginning.starts_with("{\n  \"version\": ") && second != beginning.npos &&
+         beginning.substr(second).starts_with(",\n  \"scene\": ");
+}
+
 std::vector<SlotBody> slot_bodies(const nlohmann::ordered_json& report, const std::filesystem::path& file) {
   std::vector<SlotBody> bodies;
   try {

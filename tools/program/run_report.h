@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mallow/appearance.h"
@@ -124,6 +125,10 @@ std::string hash_text(std::uint64_t hash);
 nlohmann::ordered_json read_report(const std::filesystem::path& file);
 /// Whole or not at all.
 void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report);
+/// The `error` of a report until its run ends, or for good where that was killed.
+inline constexpr const char* k_not_ended_yet = "the run has not ended yet";
+/// Whether a file that begins so is a report.
+bool is_report(std::string_view beginning);
 /// Who had the slots as the run ended. Throws IoError where the report does not tell.
 std::vector<SlotBody> slot_bodies(const nlohmann::ordered_json& report, const std::filesystem::path& file);
 /// RunReport::past_bodies; none in a report of an earlier version. Throws IoError likewise.

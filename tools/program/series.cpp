@@ -312,6 +312,11 @@ std::string Series::saved() const {
   return state.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+bool is_series(std::string_view beginning) {
+  return beginning.starts_with("frame,time [s],steps,particles,height [m],top [m]") ||
+         beginning.starts_with("frame,time,steps,particles,height,top,");
+}
+
 const char* series_help() {
   return "Columns of --series, a row for frame 0 and each frame after it, units in the header:\n"
          "frame, time, steps;\n"
@@ -333,7 +338,8 @@ const char* series_help() {
          "collider[0].force_x, _y, _z, .torque_x, _y, _z: on each of up to 32 colliders, mean since the row\n"
          "  before; torques are about where its pose is, the origin of its shape;\n"
          "NAME.height, .top, .x, .y, .z (centre of mass), .kinetic_energy, .parts: of each body where there\n"
-         "  are 2 to 32; empty once a body is gone;\n"
+         "  are 2 to 32, NAME as its group or body[9]; empty once a body is gone; those above are of all "
+         "matter;\n"
          "NAME.temperature_min, _mean, _max: of the particles of each body that carries heat, up to 32.\n"
          "Where gravity is no planet's in m/s2 units are the scene's own, and the header names none.";
 }

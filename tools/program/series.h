@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mallow/report.h"
@@ -55,5 +56,7 @@ class Series {
 
 /// What the columns mean, for a program's help.
 const char* series_help();
+/// Whether a file that begins so is a series.
+bool is_series(std::string_view beginning);
 
 }  // namespace mallow::program

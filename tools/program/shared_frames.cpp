@@ -148,8 +148,14 @@ bool SharedFrames::is_done(int frame) const {
          text_of(file_of(frame)) == note_of(frame);
 }
 
+std::vector<int> SharedFrames::left(const std::vector<int>& frames) const {
+  std::vector<int> left = frames;
+  std::erase_if(left, [&](int frame) { return is_done(frame); });
+  return left;
+}
+
 std::size_t SharedFrames::count_left(const std::vector<int>& frames) const {
-  return static_cast<std::size_t>(std::ranges::count_if(frames, [&](int frame) { return !is_done(frame); }));
+  return left(frames).size();
 }
 
 std::size_t SharedFrames::join(const std::vector<int>& frames, const std::vector<fs::path>& made,

@@ -27,6 +27,8 @@ class FileLock {
 
   /// What the file is to hold.
   void write(const std::string& text) const;
+  /// Of the open file. A program that gets it keeps the lock too, until both have ended.
+  int descriptor() const { return descriptor_; }
 
  private:
   FileLock(std::filesystem::path file, int descriptor) : file_(std::move(file)), descriptor_(descriptor) {}
@@ -77,7 +79,9 @@ class SharedFrames {
   void note(int frame) const;
   /// By this job, from the files that are there now, which nobody has changed since.
   bool is_done(int frame) const;
-  /// How many of them are not.
+  /// Those of them that are not.
+  std::vector<int> left(const std::vector<int>& frames) const;
+  /// How many.
   std::size_t count_left(const std::vector<int>& frames) const;
   /// Once all of `frames` are done, one process calls `join`, which makes `made` of them; others wait until
   /// that is there. Returns how many frames are left, for others to do.

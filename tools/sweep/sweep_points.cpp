@@ -68,7 +68,8 @@ void check_frames(const SweepSpec& spec) {
                           "is not allowed where run.frames is varied: every run has frames of its own"}});
 }
 
-/// Keeps other processes off a point; they wait. Null on a disk without locks.
+/// Keeps other processes off a point; they wait. The point's run gets it too, so that one that a killed sweep
+/// left behind has the point until it ends. Null on a disk without locks.
 std::unique_ptr<program::FileLock> lock_point(const fs::path& folder, bool& waited) try {
   const fs::path file = folder / k_sweep_lock;
   auto lock = program::FileLock::try_lock(file);
@@ -152,10 +153,11 @@ std::vector<std::string> SweepFolder::arguments(std::size_t point, int threads) 
 
 /// Runs the point, and takes the picture of its last frame where there is one to be. Gives the exit code of
 /// what failed, or 0. log: where that says why.
-int SweepFolder::execute(std::size_t point, int threads, fs::path& log) const {
+int SweepFolder::execute(std::size_t point, int threads, const program::FileLock* lock, fs::path& log) const {
   const fs::path folder = fs::absolute(point_folder(point));
   log = folder / "log.txt";
-  int code = program::run_logged(arguments(point, threads), log);
+  const std::optional<int> kept = lock ? std::optional(lock->descriptor()) : std::nullopt;
+  int code = program::run_logged(arguments(point, threads), log, program::AtEnd::end, kept);
   if (!spec_.images) return code;
   const std::vector<std::string> last{(folder / "run").string(), "--frames=-1:", "--threads",
                                       std::to_string(threads)};
@@ -165,7 +167,7 @@ int SweepFolder::execute(std::size_t point, int threads, fs::path& log) const {
     log = folder / (command.front() + ".txt");
     command.insert(command.begin(), program_.string());
     command.insert(command.end(), last.begin(), last.end());
-    code = program::run_logged(command, log);
+    code = program::run_logged(command, log, program::AtEnd::end, kept);
   }
   return code;
 }
@@ -240,7 +242,7 @@ Outcome SweepFolder::run(std::size_t point, int threads) const {
     write_whole(folder / "scene.toml", program::Cache::scene_text(folder, own));
     fs::remove(folder / "point.json");
     fs::path log;
-    const int code = execute(point, threads, log);
+    const int code = execute(point, threads, lock.get(), log);
     if (const int signal = program::interrupted())
       throw program::Interrupted("ended by a signal; the same command goes on with what is left", signal);
     outcome.status = code == program::k_exit_done        ? Status::done

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mallow/scene.h"
+#include "program/shared_frames.h"
 #include "sweep/sweep_spec.h"
 
 namespace mallow::sweep {
@@ -63,7 +64,8 @@ class SweepFolder {
   std::vector<std::string> arguments(std::size_t point, int threads) const;
   Scene scene(std::size_t point) const;
   std::string hash(std::size_t point, Scene scene) const;
-  int execute(std::size_t point, int threads, std::filesystem::path& log) const;
+  int execute(std::size_t point, int threads, const program::FileLock* lock,
+              std::filesystem::path& log) const;
   bool is_of_now(std::size_t point, const std::string& hash_then) const;
 
   SweepSpec spec_;
