@@ -22,7 +22,7 @@ struct Twist {
   Vec3 velocity{0, 0, 0};          ///< of the translation [m/s]
   Vec3 angular_velocity{0, 0, 0};  ///< [rad/s]
 };
-Twist twist_between(const Pose& from, const Pose& to, double seconds);
+MALLOW_EXPORT Twist twist_between(const Pose& from, const Pose& to, double seconds);
 
 /// Gives those that have keyframes the velocities with which a step that ends at `end` [s] takes them there.
 void drive_colliders(double end, double time_step, std::span<Collider> colliders);

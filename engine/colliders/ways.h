@@ -6,7 +6,7 @@
 namespace mallow {
 
 /// Whether it goes or turns, now or between keyframes.
-bool is_driven(const Collider& collider);
+MALLOW_EXPORT bool is_driven(const Collider& collider);
 /// Of what goes or turns edgewise somewhere on its way, and is meant to cut [m]: the side across the way of
 /// the box around it, in its own frame. Infinite where it does not, is not four times as long, or is hollow.
 float blade_thickness(const Collider& collider);
