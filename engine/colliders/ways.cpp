@@ -1,5 +1,6 @@
 #include "colliders/ways.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
